@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace stiv::bindings {
+
+void bind_surface(pybind11::module_& module);
+void bind_deformation(pybind11::module_& module);
+void bind_detection(pybind11::module_& module);
+void bind_acceptance(pybind11::module_& module);
+void bind_editing(pybind11::module_& module);
+
+}  // namespace stiv::bindings

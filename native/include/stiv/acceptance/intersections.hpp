@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// Do two triangles meet anywhere but in the vertices they share? `shared` corners are given by equal indices.
+/// Touching, coplanar overlap, duplicates and neighbours folded flat onto each other count; exact.
+bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const Positions& q);
+
+/// Pairs of triangle indices, smaller first, sorted.
+using TrianglePairs = std::vector<std::pair<Index, Index>>;
+
+/// Exact static test of a whole surface; keeps its tree between calls. Pairs of bodies that do not meet are left out.
+class IntersectionTest {
+ public:
+  explicit IntersectionTest(std::shared_ptr<const Surface> surface);
+  ~IntersectionTest();
+  IntersectionTest(IntersectionTest&&) noexcept;
+  IntersectionTest& operator=(IntersectionTest&&) noexcept;
+
+  /// All pairs that intersect at positions q, (N, 3).
+  TrianglePairs find(const Positions& q, Execution& execution);
+
+  /// Loose edges against triangles: pairs (loose edge, triangle) that meet.
+  TrianglePairs find_loose_edges(const Positions& q, Execution& execution);
+
+  /// True if there is none of either kind; ends at the first. `moved` (N, may be empty: all) marks vertices that differ
+  /// from a state known to be free: pairs of unmoved triangles are not looked at.
+  bool is_free(const Positions& q, const std::vector<unsigned char>& moved, Execution& execution);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace stiv

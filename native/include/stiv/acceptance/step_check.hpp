@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stiv/acceptance/intersections.hpp"
+#include "stiv/detection/detector.hpp"
+
+namespace stiv {
+
+/// Is the linear step start -> end free, and its end free of intersections? Conservative continuous check of the path,
+/// then the exact static test: the two conditions of an accepted state. [DESIGN 4]
+bool is_step_free(Detector& detector, IntersectionTest& intersections, const Positions& start, const Positions& end,
+                  Proximity proximity, Execution& execution);
+
+}  // namespace stiv

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// Controls [first, first + count) are stored in single precision in a frame of their own: what comes back after
+/// storing world position x is frame * float32(frame^-1 * x). `frame` is affine, local to world, and invertible.
+struct StorageFrame {
+  Index first = 0;
+  Index count = 0;
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+};
+
+/// The controls as they will be read back after storing, (m, 3). Idempotent bit by bit. Controls in no frame stay as
+/// they are. [DESIGN 4, "values as stored"]
+Controls as_stored(const Controls& p, const std::vector<StorageFrame>& frames);
+
+}  // namespace stiv

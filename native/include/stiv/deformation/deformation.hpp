@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "stiv/deformation/metric.hpp"
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// A map q = f(p) from controls to surface positions, and what the response needs of its Jacobian J. [P5.1, App. B]
+/// Immutable after construction; every method may be called from several threads.
+class Deformation {
+ public:
+  virtual ~Deformation() = default;
+
+  virtual Index control_count() const = 0;  ///< m
+  virtual Index vertex_count() const = 0;   ///< n
+
+  /// q = f(p): (m, 3) -> (n, 3).
+  virtual Positions surface(const Controls& p) const = 0;
+
+  /// J(p)' g: a sparse covector over vertices pulled back to controls.
+  virtual SparseField pull_back(const Controls& p, const SparseField& g) const = 0;
+
+  /// J(p) d: the surface's velocity under a motion d of the controls, (m, 3) -> (n, 3). For tests and linearisation.
+  virtual Positions push_forward(const Controls& p, const Controls& d) const = 0;
+
+  /// The factored metric of the controls, made once a session. @see Metric
+  virtual std::unique_ptr<Metric> metric(const MetricOptions& options) const = 0;
+
+  /// Vertices that control `c` moves, ascending. For local edits.
+  virtual std::vector<Index> support(Index control) const = 0;
+};
+
+}  // namespace stiv

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "stiv/deformation/deformation.hpp"
+
+namespace stiv {
+
+/// Weights of controls in vertices, (n, m), the same for x, y and z.
+using WeightMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
+
+/// q = M p + c. Every linear deformation (subdivision, lattice, their chains) becomes one of these.
+/// @param offset (n, 3), or (0, 3) for none
+/// @throws InputError naming the row: weights or offset not finite, shapes that do not fit.
+std::shared_ptr<const Deformation> make_linear(WeightMatrix matrix, Positions offset = Positions());
+
+}  // namespace stiv

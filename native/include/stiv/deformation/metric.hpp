@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+struct MetricOptions {
+  /// eps: damping of J'J relative to its mean diagonal; 0.1 smooth, 0.01 tight. In (0, inf).
+  double smoothness = 0.1;
+
+  /// Weight w_i >= 0 of each control's response, (m); 0 pins it exactly. Empty: all 1. [P5.2]
+  Eigen::VectorXd weights;
+};
+
+/// The inverse metric of the controls, W^1/2 (J'J + damping)^-1 W^1/2 restricted to controls with w > 0: steps along
+/// it are steepest for E = 1/2 |f(p) - q~|^2. [DESIGN 3, "Metric"]
+class Metric {
+ public:
+  virtual ~Metric() = default;
+
+  /// M(p)^-1 g, a covector over controls to a displacement of controls. Rows of pinned controls are absent from it.
+  virtual SparseField apply_inverse(const Controls& p, const SparseField& g) const = 0;
+};
+
+}  // namespace stiv

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "stiv/detection/event.hpp"
+#include "stiv/detection/proximity.hpp"
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+enum class BroadPhase {
+  bvh,         ///< bounding-volume hierarchies, kept and refitted
+  brute_force  ///< all pairs: the oracle of the others
+};
+
+struct DetectorOptions {
+  BroadPhase broad_phase = BroadPhase::bvh;
+};
+
+/// Finds interference along linear steps of one surface; keeps its trees between calls. [P4.1]
+/// Pairs that share a vertex, pairs of bodies that do not meet and pairs of which no vertex moves are left out.
+/// Results do not depend on the number of threads, and not on the broad phase.
+class Detector {
+ public:
+  Detector(std::shared_ptr<const Surface> surface, DetectorOptions options = {});
+  ~Detector();
+  Detector(Detector&&) noexcept;
+  Detector& operator=(Detector&&) noexcept;
+
+  /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
+  Events find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
+
+  /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
+  double earliest_time(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
+
+  const Surface& surface() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace stiv

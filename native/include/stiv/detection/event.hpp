@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+enum class EventKind : std::uint8_t {
+  vertex_face,  ///< vertices: v, a, b, c
+  edge_edge     ///< vertices: a0, a1 of one edge, b0, b1 of the other
+};
+
+/// Two primitives that come as near as the separation at `time` in [0, 1] of a step. [P3.1, DESIGN 3]
+/// With the weights w: sum_k w_k = 0 and sum_k w_k x_k(time) is the separation vector, from second to first side.
+struct Event {
+  EventKind kind = EventKind::vertex_face;
+  std::array<Index, 4> vertices{};
+  double time = 0;
+  std::array<double, 4> weights{};   ///< VF (1, -a, -b, -c); EE (1-s, s, -(1-u), -u)
+  Vector3 normal = Vector3::Zero();  ///< unit; normal . (relative displacement) <= 0; zero when none can be told
+  double start_distance = 0;         ///< distance of the two primitives at the start of the step
+};
+
+using Events = std::vector<Event>;
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Number of leading vertices that form the first side: 1 for VF, 2 for EE.
+inline constexpr int first_side_size(EventKind kind) { return kind == EventKind::vertex_face ? 1 : 2; }
+
+/// sum_k w_k d_k of the event's four vertices in a field `d` over the surface, (N, 3).
+template <class Field>
+Vector3 weighted_sum(const Event& event, const Field& d) {
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < 4; ++k)
+    sum += event.weights[static_cast<std::size_t>(k)] * d.row(event.vertices[static_cast<std::size_t>(k)]).transpose();
+  return sum;
+}
+
+}  // namespace stiv

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "stiv/detection/event.hpp"
+#include "stiv/detection/proximity.hpp"
+
+namespace stiv {
+
+/// Four vertices moving linearly over a step, in the order of Event::vertices.
+struct PairMotion {
+  std::array<Vector3, 4> start;
+  std::array<Vector3, 4> end;
+};
+
+/// What is known of a contact besides who meets.
+struct Contact {
+  double time = 0;
+  std::array<double, 4> weights{};
+  Vector3 normal = Vector3::Zero();
+  double start_distance = 0;
+};
+
+/// The first time at which the pair is within `proximity.threshold(d0)`, or nothing if it never is. Conservative: a
+/// contact is never missed and the time is never later than the true one; a report is at most 10 % of the threshold too
+/// wide. Distances are those of the clamped primitives (edges and vertices of a triangle included).
+std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity);
+
+/// Time at which the pair first is within `separation` (>= 0), never later than the true time; 0 if it starts so;
+/// infinity (`never`) if it never does.
+double time_of_impact(EventKind kind, const PairMotion& motion, double separation);
+
+}  // namespace stiv

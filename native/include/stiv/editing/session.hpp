@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stiv/deformation/deformation.hpp"
+#include "stiv/editing/options.hpp"
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+enum class EditStatus {
+  reached,    ///< the goal itself, no correction needed
+  corrected,  ///< interference was resolved; the controls are as near to the goal as the response brought them
+  blocked,    ///< stopped at the last clear state before the response could settle; `blocking` names the bodies
+  budget,     ///< the time budget ended first; the last accepted state is returned
+  cancelled,  ///< cancelled; the state before the edit is returned
+  unchanged   ///< nothing to do: empty surface, no controls, or goal equal to the accepted controls
+};
+
+struct EditResult {
+  EditStatus status = EditStatus::unchanged;
+  Controls controls;            ///< accepted controls, as stored, (m, 3)
+  Positions surface;            ///< f(controls), (N, 3), world
+  double energy = 0;            ///< 1/2 |f(controls) - f(goal)|^2
+  double fraction = 1;          ///< least fraction of a step that acceptance allowed
+  Events events;                ///< contacts that the last responding round found
+  Index patches = 0;            ///< their number of patches
+  std::vector<Index> blocking;  ///< bodies in contact when blocked
+  Counters counters;
+  Timings timings;
+};
+
+/// An editing session: a surface, the deformation that moves it, and the last accepted controls. Every accepted state
+/// is free of intersections, and reachable from the one before without passing through. [DESIGN 4] Not for use from two
+/// threads at once; different sessions are independent.
+class EditSession {
+ public:
+  /// @throws InputError for shapes and values that do not fit; StartIntersectsError if f(controls) intersects itself
+  ///         where bodies meet.
+  EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation, Controls controls,
+              EditOptions options = {});
+  ~EditSession();
+  EditSession(EditSession&&) noexcept;
+  EditSession& operator=(EditSession&&) noexcept;
+
+  /// One edit from the accepted controls toward `goal`, (m, 3).
+  EditResult edit(const Controls& goal, Execution& execution);
+
+  /// One mouse move of a drag: the increment since the last move's goal, then a pull toward the absolute goal, so that
+  /// deep goals neither drag sideways nor lose travel, and the shape comes back with the mouse. [DESIGN 4, "Deep
+  /// goals"]
+  EditResult drag(const Controls& goal, Execution& execution);
+
+  /// Solve again from the accepted state toward the last goal until E no longer falls: never a larger E.
+  EditResult settle(Execution& execution);
+
+  /// Take a state that was accepted before (undo, Esc) as the accepted one. @throws StartIntersectsError
+  void restore(const Controls& controls);
+
+  const Controls& controls() const;  ///< accepted, (m, 3)
+  const Positions& surface() const;  ///< f(accepted), (N, 3)
+  double separation() const;         ///< h in force
+  const Surface& topology() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace stiv

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// What was done, in numbers that do not depend on the machine.
+struct Counters {
+  std::int64_t sub_edits = 0;         ///< passes of the outer loop
+  std::int64_t rounds = 0;            ///< detections that were followed by a response
+  std::int64_t detections = 0;        ///< traversals of the whole scene
+  std::int64_t candidate_pairs = 0;   ///< pairs whose bounds overlap
+  std::int64_t pairs_tested = 0;      ///< pairs that reached the iterative narrow phase
+  std::int64_t events = 0;            ///< interference events found
+  std::int64_t acceptance_tries = 0;  ///< states proposed to the acceptance test
+};
+
+/// Where the time went, in seconds of wall time.
+struct Timings {
+  double deformation = 0;  ///< f(p), J'
+  double detection = 0;
+  double volumes = 0;
+  double response = 0;
+  double acceptance = 0;
+  double total = 0;
+};
+
+/// How a piece of work is carried out and observed: threads, progress, cancellation, counters, timings.
+/// One object a call; only `request_cancel` may be called from another thread.
+class Execution {
+ public:
+  /// @param threads number of threads; 0: one for each processor that the process may use.
+  explicit Execution(int threads = 0);
+
+  int threads() const { return threads_; }
+
+  /// Ask the work to stop; it does so within milliseconds by throwing Interrupted.
+  void request_cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancel_requested() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+
+  /// Let another object's flag (set from another thread, alive during the call) cancel the work as well.
+  void watch(const std::atomic<bool>* flag) { external_flag_ = flag; }
+
+  /// Stop after so many seconds from now, as if cancelled.
+  void set_time_budget(double seconds);
+  bool budget_used_up() const;
+
+  /// @throws Interrupted when cancelled or over the time budget. Called between iterations and between chunks.
+  void check() const;
+
+  /// Called with a phase's name and the fraction done in [0, 1], from the calling thread only.
+  void set_progress(std::function<void(const char* phase, double fraction)> report) { progress_ = std::move(report); }
+  void report(const char* phase, double fraction) const;
+
+  /// Calls `work(begin, end, chunk)` for consecutive chunks of [0, count), on all threads. Chunk boundaries depend on
+  /// `count` and `chunk_size` alone, so results collected by chunk number do not depend on the number of threads.
+  /// The first exception (lowest chunk) is rethrown in the calling thread after all threads have ended.
+  void for_chunks(Index count, Index chunk_size, const std::function<void(Index, Index, Index)>& work) const;
+  static Index chunk_count(Index count, Index chunk_size) { return (count + chunk_size - 1) / chunk_size; }
+
+  Counters counters;
+  Timings timings;
+
+ private:
+  int threads_;
+  std::atomic<bool> cancelled_{false};
+  const std::atomic<bool>* external_flag_ = nullptr;
+  std::optional<std::chrono::steady_clock::time_point> deadline_;
+  std::function<void(const char*, double)> progress_;
+};
+
+/// Adds the time of a scope to one of the timings.
+class ScopedTimer {
+ public:
+  explicit ScopedTimer(double& seconds) : seconds_(seconds) {}
+  ~ScopedTimer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Round to nearest, denormals kept, for the length of a scope in this thread: another add-on may have set otherwise,
+/// and every error bound of this library assumes the default. Each public entry and each worker thread holds one.
+class FloatingPointScope {
+ public:
+  FloatingPointScope();
+  ~FloatingPointScope();
+  FloatingPointScope(const FloatingPointScope&) = delete;
+  FloatingPointScope& operator=(const FloatingPointScope&) = delete;
+
+ private:
+  std::uint32_t saved_control_;
+  int saved_rounding_;
+};
+
+}  // namespace stiv

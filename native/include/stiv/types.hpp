@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace stiv {
+
+/// Index of a vertex, edge, triangle, control or body.
+using Index = std::int32_t;
+
+using Vector3 = Eigen::Vector3d;
+
+/// Points in space, one a row: (N, 3), row major, so that they share memory with NumPy arrays.
+using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// The controls `p` of a deformation, (m, 3). What a row means is the deformation's affair: a cage vertex, a
+/// lattice point, or for a rigid placement two rows, centre and rotation vector.
+using Controls = Positions;
+
+/// Corner indices of triangles, (F, 3).
+using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// End point indices of edges, (E, 2).
+using Edges = Eigen::Matrix<Index, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+/// A field of 3-vectors that is zero nearly everywhere: `value[k]` stands at row `index[k]`, each row once, ascending.
+/// Gradients of volumes, over surface vertices or over controls.
+struct SparseField {
+  std::vector<Index> index;
+  std::vector<Vector3> value;
+};
+
+}  // namespace stiv

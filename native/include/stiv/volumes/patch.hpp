@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/surface.hpp"
+#include "stiv/volumes/region.hpp"
+
+namespace stiv {
+
+enum class ConstraintKind {
+  per_patch,  ///< one STIV for each patch
+  single      ///< one for all
+};
+
+/// Label of each region, 0, 1, ...: regions of neighbouring vertices and regions of the same event are one patch.
+/// Joining by side alone gives collinear constraints. [P3.3, DESIGN 3 "Constraints"]
+std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind);
+
+}  // namespace stiv

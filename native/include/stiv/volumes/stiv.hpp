@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/detection/event.hpp"
+#include "stiv/detection/proximity.hpp"
+#include "stiv/surface.hpp"
+#include "stiv/volumes/patch.hpp"
+#include "stiv/volumes/region.hpp"
+
+namespace stiv {
+
+/// A space-time interference volume and its gradient by the surface's positions at the end of the step.
+struct Stiv {
+  double volume = 0;     ///< sum_i A_i (n . sum_k w_k q1_k - target); negative while the patch interferes
+  SparseField gradient;  ///< sum_i A_i w_k n at vertex k
+};
+
+/// The STIVs of a step, one a patch. [P3.1 Eq. 1, P4 Eq. 3; DESIGN 3 "Gradient"]
+/// @param end    q1, (N, 3)
+/// @param areas  A_i, (N), held constant through an edit
+std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
+                                       const std::vector<Index>& labels, const Positions& end,
+                                       const Eigen::VectorXd& areas, Proximity proximity);
+
+}  // namespace stiv

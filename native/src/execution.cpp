@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/execution.hpp"
+
+#include <algorithm>
+#include <cfenv>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#if defined(__x86_64__) || defined(_M_X64)
+#include <xmmintrin.h>
+#endif
+
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+#if defined(__x86_64__) || defined(_M_X64)
+// Bits of MXCSR that turn denormals to zero: DAZ (6) and FTZ (15). [Intel SDM vol. 1, 10.2.3]
+constexpr std::uint32_t denormal_bits = 0x8040;
+std::uint32_t read_control() { return _mm_getcsr(); }
+void write_control(std::uint32_t control) { _mm_setcsr(control); }
+#elif defined(__aarch64__)
+// FPCR.FZ (24) flushes denormals to zero. [Arm ARM, FPCR]
+constexpr std::uint32_t denormal_bits = 1U << 24;
+std::uint32_t read_control() {
+  std::uint64_t control;
+  asm volatile("mrs %0, fpcr" : "=r"(control));
+  return static_cast<std::uint32_t>(control);
+}
+void write_control(std::uint32_t control) { asm volatile("msr fpcr, %0" : : "r"(static_cast<std::uint64_t>(control))); }
+#else
+constexpr std::uint32_t denormal_bits = 0;
+std::uint32_t read_control() { return 0; }
+void write_control(std::uint32_t) {}
+#endif
+
+int usable_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+}  // namespace
+
+Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()) {}
+
+void Execution::set_time_budget(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+bool Execution::budget_used_up() const { return deadline_ && std::chrono::steady_clock::now() >= *deadline_; }
+
+void Execution::check() const {
+  const bool watched = external_flag_ != nullptr && external_flag_->load(std::memory_order_relaxed);
+  if (cancel_requested() || watched) throw Interrupted("cancelled");
+  if (budget_used_up()) throw Interrupted("time budget used up");
+}
+
+void Execution::report(const char* phase, double fraction) const {
+  if (progress_) progress_(phase, fraction);
+}
+
+void Execution::for_chunks(Index count, Index chunk_size, const std::function<void(Index, Index, Index)>& work) const {
+  const Index chunks = chunk_count(count, chunk_size);
+  std::atomic<Index> next{0};
+  std::vector<std::exception_ptr> failures(static_cast<std::size_t>(chunks));
+  std::atomic<bool> failed{false};
+  const auto run = [&] {
+    const FloatingPointScope floating_point;
+    for (Index chunk = next++; chunk < chunks && !failed.load(std::memory_order_relaxed); chunk = next++) {
+      try {
+        check();
+        work(chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size), chunk);
+      } catch (...) {
+        failures[static_cast<std::size_t>(chunk)] = std::current_exception();
+        failed.store(true, std::memory_order_relaxed);
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int k = 1; k < std::min<Index>(threads_, chunks); ++k) helpers.emplace_back(run);
+  run();
+  for (std::thread& helper : helpers) helper.join();
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+FloatingPointScope::FloatingPointScope() : saved_control_(read_control()), saved_rounding_(std::fegetround()) {
+  std::fesetround(FE_TONEAREST);
+  write_control(read_control() & ~denormal_bits);
+}
+
+FloatingPointScope::~FloatingPointScope() {
+  std::fesetround(saved_rounding_);
+  write_control(saved_control_);
+}
+
+}  // namespace stiv

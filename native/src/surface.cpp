@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+/// Row-wise check of corner indices: in range, and all corners of one body.
+template <class Corners>
+void check_corners(const SurfaceDefinition& definition, const Corners& corners, const char* what) {
+  for (Index row = 0; row < corners.rows(); ++row) {
+    for (Index k = 0; k < corners.cols(); ++k) {
+      const Index vertex = corners(row, k);
+      if (vertex >= 0 && vertex < definition.vertex_count) continue;
+      std::ostringstream message;
+      message << what << " " << row << ": vertex index " << vertex << " is out of range 0.."
+              << definition.vertex_count - 1;
+      throw InputError(message.str());
+    }
+    const auto body = [&](Index k) { return definition.vertex_body[static_cast<std::size_t>(corners(row, k))]; };
+    for (Index k = 1; k < corners.cols(); ++k) {
+      if (body(k) == body(0)) continue;
+      std::ostringstream message;
+      message << what << " " << row << " joins two objects, \""
+              << definition.bodies[static_cast<std::size_t>(body(0))].name << "\" and \""
+              << definition.bodies[static_cast<std::size_t>(body(k))].name << "\"; give each object its own vertices";
+      throw InputError(message.str());
+    }
+  }
+}
+
+void fill_defaults(SurfaceDefinition& definition) {
+  if (definition.bodies.empty()) definition.bodies.push_back({"surface", Mobility::deformable});
+  if (definition.vertex_body.empty())
+    definition.vertex_body.assign(static_cast<std::size_t>(definition.vertex_count), 0);
+}
+
+void check_bodies(const SurfaceDefinition& definition) {
+  const auto count = static_cast<Index>(definition.bodies.size());
+  if (definition.vertex_body.size() != static_cast<std::size_t>(definition.vertex_count)) {
+    std::ostringstream message;
+    message << "vertex_body has " << definition.vertex_body.size() << " entries for " << definition.vertex_count
+            << " vertices";
+    throw InputError(message.str());
+  }
+  const auto require = [&](Index body, const std::string& where) {
+    if (body >= 0 && body < count) return;
+    std::ostringstream message;
+    message << where << ": body index " << body << " is out of range 0.." << count - 1;
+    throw InputError(message.str());
+  };
+  for (std::size_t vertex = 0; vertex < definition.vertex_body.size(); ++vertex)
+    require(definition.vertex_body[vertex], "vertex " + std::to_string(vertex));
+  for (const auto& [a, b] : definition.ignored) {
+    require(a, "ignored pair");
+    require(b, "ignored pair");
+  }
+}
+
+Edges unique_edges(const SurfaceDefinition& definition) {
+  std::vector<std::pair<Index, Index>> found;
+  const auto add = [&](Index a, Index b) {
+    if (a != b) found.emplace_back(std::min(a, b), std::max(a, b));
+  };
+  for (Index face = 0; face < definition.triangles.rows(); ++face)
+    for (Index k = 0; k < 3; ++k) add(definition.triangles(face, k), definition.triangles(face, (k + 1) % 3));
+  for (Index edge = 0; edge < definition.loose_edges.rows(); ++edge)
+    add(definition.loose_edges(edge, 0), definition.loose_edges(edge, 1));
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  Edges edges(static_cast<Index>(found.size()), 2);
+  for (std::size_t k = 0; k < found.size(); ++k) edges.row(static_cast<Index>(k)) << found[k].first, found[k].second;
+  return edges;
+}
+
+std::vector<unsigned char> meeting_bodies(const SurfaceDefinition& definition) {
+  const std::vector<Body>& bodies = definition.bodies;
+  const std::size_t count = bodies.size();
+  std::vector<unsigned char> meets(count * count, 1);
+  for (std::size_t a = 0; a < count; ++a) {
+    meets[a * count + a] = bodies[a].mobility == Mobility::deformable;
+    for (std::size_t b = 0; b < count; ++b)
+      if (bodies[a].mobility == Mobility::fixed && bodies[b].mobility == Mobility::fixed) meets[a * count + b] = 0;
+  }
+  for (const auto& [a, b] : definition.ignored) {
+    meets[static_cast<std::size_t>(a) * count + static_cast<std::size_t>(b)] = 0;
+    meets[static_cast<std::size_t>(b) * count + static_cast<std::size_t>(a)] = 0;
+  }
+  return meets;
+}
+
+/// Neighbours of all vertices in compressed rows.
+void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, std::vector<Index>& neighbours) {
+  start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for (Index edge = 0; edge < edges.rows(); ++edge)
+    for (Index k = 0; k < 2; ++k) ++start[static_cast<std::size_t>(edges(edge, k)) + 1];
+  for (std::size_t vertex = 0; vertex + 1 < start.size(); ++vertex) start[vertex + 1] += start[vertex];
+  neighbours.resize(static_cast<std::size_t>(2 * edges.rows()));
+  std::vector<Index> cursor(start.begin(), start.end() - 1);
+  const auto add = [&](Index from, Index to) {
+    neighbours[static_cast<std::size_t>(cursor[static_cast<std::size_t>(from)]++)] = to;
+  };
+  // Edges come sorted, so the smaller neighbours of a vertex must be entered before its larger ones.
+  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 1), edges(edge, 0));
+  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
+}
+
+/// Name of the body of `vertex`, and the place of `vertex` among the vertices of that body.
+std::pair<std::string, Index> place_in_body(const SurfaceDefinition& definition, Index vertex) {
+  const Index body = definition.vertex_body[static_cast<std::size_t>(vertex)];
+  const auto begin = definition.vertex_body.begin();
+  return {definition.bodies[static_cast<std::size_t>(body)].name,
+          static_cast<Index>(std::count(begin, begin + vertex, body))};
+}
+
+}  // namespace
+
+Surface::Surface(SurfaceDefinition definition) : definition_(std::move(definition)) {
+  if (definition_.vertex_count < 0) throw InputError("vertex count is negative");
+  fill_defaults(definition_);
+  check_bodies(definition_);
+  check_corners(definition_, definition_.triangles, "face");
+  check_corners(definition_, definition_.loose_edges, "edge");
+  edges_ = unique_edges(definition_);
+  meets_ = meeting_bodies(definition_);
+  connect(edges_, vertex_count(), neighbour_start_, neighbours_);
+}
+
+Eigen::VectorXd Surface::vertex_areas(const Positions& q) const {
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count());
+  for (Index face = 0; face < triangles().rows(); ++face) {
+    const auto corner = [&](Index k) -> Vector3 { return q.row(triangles()(face, k)); };
+    const double third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
+    for (Index k = 0; k < 3; ++k) areas[triangles()(face, k)] += third;
+  }
+  return areas;
+}
+
+std::string Surface::describe_vertex(Index vertex) const {
+  const auto [name, place] = place_in_body(definition_, vertex);
+  return "object \"" + name + "\", vertex " + std::to_string(place);
+}
+
+std::string Surface::describe_triangle(Index triangle) const {
+  const Index body = body_of(triangles()(triangle, 0));
+  Index place = 0;
+  for (Index other = 0; other < triangle; ++other) place += body_of(triangles()(other, 0)) == body;
+  return "object \"" + bodies()[static_cast<std::size_t>(body)].name + "\", face " + std::to_string(place);
+}
+
+void Surface::check_positions(const Positions& q) const {
+  if (q.rows() != vertex_count()) {
+    std::ostringstream message;
+    message << "positions have " << q.rows() << " rows, the surface has " << vertex_count() << " vertices";
+    throw InputError(message.str());
+  }
+  for (Index vertex = 0; vertex < q.rows(); ++vertex)
+    if (!q.row(vertex).allFinite()) throw InputError(describe_vertex(vertex) + ": coordinate is not finite");
+}
+
+}  // namespace stiv

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <cfenv>
+#include <numeric>
+
+#include "stiv/error.hpp"
+#include "stiv/execution.hpp"
+
+using namespace stiv;
+
+TEST_CASE("execution: chunks cover the range once, for any number of threads") {
+  for (const int threads : {1, 2, 5}) {
+    const Execution execution(threads);
+    std::vector<int> seen(1003, 0);
+    execution.for_chunks(1003, 10, [&](Index begin, Index end, Index) {
+      for (Index k = begin; k < end; ++k) ++seen[static_cast<std::size_t>(k)];
+    });
+    CHECK(std::accumulate(seen.begin(), seen.end(), 0) == 1003);
+    CHECK(*std::max_element(seen.begin(), seen.end()) == 1);
+  }
+}
+
+TEST_CASE("execution: cancelling and a used up budget interrupt") {
+  Execution cancelled(2);
+  cancelled.request_cancel();
+  CHECK_THROWS_AS(cancelled.for_chunks(10, 1, [](Index, Index, Index) {}), Interrupted);
+  Execution late(1);
+  late.set_time_budget(0);
+  CHECK_THROWS_AS(late.check(), Interrupted);
+  std::atomic<bool> flag{false};
+  Execution watching(1);
+  watching.watch(&flag);
+  CHECK_NOTHROW(watching.check());
+  flag = true;
+  CHECK_THROWS_AS(watching.check(), Interrupted);
+}
+
+TEST_CASE("execution: an exception of a worker reaches the caller") {
+  const Execution execution(2);
+  const auto fail = [](Index begin, Index, Index) {
+    if (begin == 7) throw InputError("seven");
+  };
+  CHECK_THROWS_WITH_AS(execution.for_chunks(20, 1, fail), "seven", InputError);
+}
+
+TEST_CASE("execution: floating-point mode is set within a scope and given back") {
+  std::fesetround(FE_UPWARD);
+  {
+    const FloatingPointScope scope;
+    CHECK(std::fegetround() == FE_TONEAREST);
+  }
+  CHECK(std::fegetround() == FE_UPWARD);
+  std::fesetround(FE_TONEAREST);
+}
