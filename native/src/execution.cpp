@@ -51,8 +51,7 @@ void Execution::set_time_budget(double seconds) {
 bool Execution::budget_used_up() const { return deadline_ && std::chrono::steady_clock::now() >= *deadline_; }
 
 void Execution::check() const {
-  const bool watched = external_flag_ != nullptr && external_flag_->load(std::memory_order_relaxed);
-  if (cancel_requested() || watched) throw Interrupted("cancelled");
+  if (cancel_requested()) throw Interrupted("cancelled");
   if (budget_used_up()) throw Interrupted("time budget used up");
 }
 

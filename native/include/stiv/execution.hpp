@@ -43,7 +43,10 @@ class Execution {
 
   /// Ask the work to stop; it does so within milliseconds by throwing Interrupted.
   void request_cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancel_requested() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancel_requested() const noexcept {
+    const bool watched = external_flag_ != nullptr && external_flag_->load(std::memory_order_relaxed);
+    return watched || cancelled_.load(std::memory_order_relaxed);
+  }
 
   /// Let another object's flag (set from another thread, alive during the call) cancel the work as well.
   void watch(const std::atomic<bool>* flag) { external_flag_ = flag; }

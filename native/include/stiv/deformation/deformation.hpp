@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "stiv/deformation/metric.hpp"
 #include "stiv/types.hpp"
@@ -31,6 +32,10 @@ class Deformation {
 
   /// Vertices that control `c` moves, ascending. For local edits.
   virtual std::vector<Index> support(Index control) const = 0;
+
+  /// Rows of the controls that are rotation vectors rather than points, ascending: increments of those are composed as
+  /// rotations, and large ones are cut into steps. A concatenation gives those of its parts, shifted.
+  virtual std::vector<Index> rotation_rows() const { return {}; }
 };
 
 }  // namespace stiv
