@@ -4,23 +4,39 @@
 #include <vector>
 
 #include "stiv/deformation/deformation.hpp"
+#include "stiv/execution.hpp"
 #include "stiv/volumes/stiv.hpp"
 
 namespace stiv {
 
-/// A linear constraint on the controls, row . p >= bound, normalised in the metric, with its image M^-1 row.
+/// A linear constraint on the controls, row . p >= bound, with its image step = M^-1 row; row . step = 1.
 struct ControlConstraint {
   SparseField row;
   SparseField step;
   double bound = 0;
 };
 
-/// Linearises STIVs at the controls p; constraints that no free control can change are left out.
+/// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control can change are left
+/// out. (mathematics.md, Eq. 11)
+/// @param metric_at controls at which the metric is taken; the same for constraints that are solved together
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
-                                                   const Metric& metric, const Controls& p);
+                                                   const Controls& p, const Metric& metric, const Controls& metric_at);
 
-/// The point nearest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r, with the LCP's
-/// multipliers. `multipliers` is the first guess and receives the solution.
-Controls project(const Controls& from, const std::vector<ControlConstraint>& constraints, Eigen::VectorXd& multipliers);
+/// Constraints that are met together. Their Gram matrix grows with them and the last multipliers are the next first
+/// guess, so that adding a few rows and projecting again is cheap.
+class ConstraintSet {
+ public:
+  void add(std::vector<ControlConstraint> constraints);
+  std::size_t size() const { return constraints_.size(); }
+
+  /// The point nearest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
+  /// multipliers of the LCP. (mathematics.md, Eq. 12)
+  Controls project(const Controls& from, const Execution& execution);
+
+ private:
+  std::vector<ControlConstraint> constraints_;
+  Eigen::MatrixXd gram_;  ///< row_r . step_s
+  Eigen::VectorXd multipliers_;
+};
 
 }  // namespace stiv

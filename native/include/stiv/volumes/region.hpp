@@ -15,7 +15,8 @@ struct Region {
 };
 
 /// Each event falls into one region on either side, that of its heaviest vertex; a region keeps the earliest event
-/// whose normal is usable (n . Drho < -1e-8 |Drho|). Sorted by vertex; ties go to the first event.
+/// whose normal is usable (n . Drho < -1e-8 |Drho|). Sorted by vertex; ties go to the first event. Empty although there
+/// are events: none of them tells a way out, and the edit has to be truncated.
 /// @param displacement Dq = end - start, (N, 3)
 std::vector<Region> earliest_regions(const Events& events, const Positions& displacement);
 

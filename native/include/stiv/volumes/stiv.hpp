@@ -13,7 +13,7 @@ namespace stiv {
 
 /// A space-time interference volume and its gradient by the surface's positions at the end of the step.
 struct Stiv {
-  double volume = 0;     ///< sum_i A_i (n . sum_k w_k q1_k - target); negative while the patch interferes
+  double volume = 0;     ///< sum_i A_i min(n . sum_k w_k q1_k - target, -target / 1000); negative
   SparseField gradient;  ///< sum_i A_i w_k n at vertex k
 };
 
@@ -23,5 +23,9 @@ struct Stiv {
 std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
                                        const std::vector<Index>& labels, const Positions& end,
                                        const Eigen::VectorXd& areas, Proximity proximity);
+
+/// The areas A_i at positions q, (N): barycentric areas; vertices without one (loose, or of degenerate faces alone) get
+/// the mean of the others, since they collide all the same.
+Eigen::VectorXd region_areas(const Surface& surface, const Positions& q);
 
 }  // namespace stiv

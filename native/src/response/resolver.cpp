@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/response/resolver.hpp"
+
+#include <cmath>
+
+#include "stiv/response/lcp.hpp"
+
+namespace stiv {
+
+namespace {
+
+/// In the metric J'J a row's squared length is at most that of the volume's gradient. A smaller part than this is what
+/// rounding leaves where free controls move all corners of the contacts alike, or move none.
+constexpr double least_squared_length = 1e-24;
+
+double squared_norm(const SparseField& field) {
+  double sum = 0;
+  for (const Vector3& value : field.value) sum += value.squaredNorm();
+  return sum;
+}
+
+/// Product of two sparse fields; both are ascending.
+double dot(const SparseField& a, const SparseField& b) {
+  double sum = 0;
+  for (std::size_t i = 0, j = 0; i < a.index.size() && j < b.index.size();) {
+    if (a.index[i] == b.index[j])
+      sum += a.value[i++].dot(b.value[j++]);
+    else if (a.index[i] < b.index[j])
+      ++i;
+    else
+      ++j;
+  }
+  return sum;
+}
+
+double dot(const SparseField& a, const Controls& p) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.index.size(); ++k) sum += a.value[k].dot(p.row(a.index[k]).transpose());
+  return sum;
+}
+
+void add_scaled(Controls& p, double factor, const SparseField& field) {
+  for (std::size_t k = 0; k < field.index.size(); ++k) p.row(field.index[k]) += factor * field.value[k].transpose();
+}
+
+void scale(SparseField& field, double factor) {
+  for (Vector3& value : field.value) value *= factor;
+}
+
+}  // namespace
+
+std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
+                                                   const Controls& p, const Metric& metric, const Controls& metric_at) {
+  std::vector<ControlConstraint> constraints;
+  for (const Stiv& stiv : stivs) {
+    ControlConstraint constraint;
+    constraint.row = deformation.pull_back(p, stiv.gradient);
+    constraint.step = metric.apply_inverse(metric_at, constraint.row);
+    const double squared_length = dot(constraint.row, constraint.step);
+    if (!(squared_length > least_squared_length * squared_norm(stiv.gradient))) continue;
+    const double normalise = 1 / std::sqrt(squared_length);
+    scale(constraint.row, normalise);
+    scale(constraint.step, normalise);
+    constraint.bound = dot(constraint.row, p) - normalise * stiv.volume;
+    constraints.push_back(std::move(constraint));
+  }
+  return constraints;
+}
+
+void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
+  const auto before = static_cast<Eigen::Index>(constraints_.size());
+  for (ControlConstraint& constraint : constraints) constraints_.push_back(std::move(constraint));
+  const auto after = static_cast<Eigen::Index>(constraints_.size());
+  gram_.conservativeResize(after, after);
+  for (Eigen::Index row = before; row < after; ++row)
+    for (Eigen::Index column = 0; column <= row; ++column)
+      gram_(row, column) = gram_(column, row) = dot(constraints_[row].row, constraints_[column].step);
+}
+
+Controls ConstraintSet::project(const Controls& from, const Execution& execution) {
+  Eigen::VectorXd excess(static_cast<Eigen::Index>(constraints_.size()));
+  for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, from) - constraints_[r].bound;
+  LcpOptions options;
+  options.execution = &execution;
+  multipliers_ = solve_lcp(gram_, excess, multipliers_, options);
+  Controls p = from;
+  for (Eigen::Index r = 0; r < excess.size(); ++r)
+    if (multipliers_[r] > 0) add_scaled(p, multipliers_[r], constraints_[r].step);
+  return p;
+}
+
+}  // namespace stiv

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/volumes/stiv.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace stiv {
+
+namespace {
+
+/// A pair may have slid on by the end of the step, so that its frozen plane (n, w) is no longer violated although the
+/// pair still met on the way. Such a region keeps this fraction of its target as violation, or it would weigh against
+/// its neighbours and V could vanish while events remain. (mathematics.md, Eq. 8)
+constexpr double least_violation = 1e-3;
+
+/// A_i (n . sum_k w_k q1_k - target), Eq. 8.
+double region_volume(const Event& event, const Positions& end, double area, Proximity proximity) {
+  const double target = proximity.target(event.start_distance);
+  const double approach = event.normal.dot(weighted_sum(event, end)) - target;
+  return area * std::min(approach, -least_violation * target);
+}
+
+struct GradientEntry {
+  Index patch, vertex;
+  Vector3 value;
+};
+
+/// Sums the entries of equal patch and vertex into the patches' fields.
+void gather(std::vector<GradientEntry>& entries, std::vector<Stiv>& stivs) {
+  std::stable_sort(entries.begin(), entries.end(), [](const GradientEntry& a, const GradientEntry& b) {
+    return std::tie(a.patch, a.vertex) < std::tie(b.patch, b.vertex);
+  });
+  for (const GradientEntry& entry : entries) {
+    SparseField& field = stivs[entry.patch].gradient;
+    if (!field.index.empty() && field.index.back() == entry.vertex) {
+      field.value.back() += entry.value;
+    } else {
+      field.index.push_back(entry.vertex);
+      field.value.push_back(entry.value);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
+                                       const std::vector<Index>& labels, const Positions& end,
+                                       const Eigen::VectorXd& areas, Proximity proximity) {
+  const Index count = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
+  std::vector<Stiv> stivs(count);
+  std::vector<GradientEntry> entries;
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    const Event& event = events[regions[k].event];
+    const double area = areas[regions[k].vertex];
+    stivs[labels[k]].volume += region_volume(event, end, area, proximity);
+    for (int corner = 0; corner < 4; ++corner)  // Eq. 9
+      entries.push_back({labels[k], event.vertices[corner], area * event.weights[corner] * event.normal});
+  }
+  gather(entries, stivs);
+  return stivs;
+}
+
+Eigen::VectorXd region_areas(const Surface& surface, const Positions& q) {
+  Eigen::VectorXd areas = surface.vertex_areas(q);
+  const Index count = static_cast<Index>((areas.array() > 0).count());
+  const double substitute = count > 0 ? areas.sum() / count : 1;
+  for (double& area : areas)
+    if (!(area > 0)) area = substitute;
+  return areas;
+}
+
+}  // namespace stiv
