@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Each target does its own set-up. A finished step leaves a file under build/, so that nothing is done twice.
+
+PYTHON := $(shell tools/choose_python.sh)
+BLENDERS := $(shell $(PYTHON) tools/blender_versions.py)
+DEMO_BLENDER := $(shell $(PYTHON) tools/blender_versions.py --demo)
+
+NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f)
+PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
+OPENSUBDIV := build/opensubdiv
+WHEEL := build/wheel/ready
+BLENDER_VENVS := $(BLENDERS:%=build/venv-blender-%/ready)
+
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER := ccache
+endif
+
+.PHONY: help demo test test-native test-sanitizers test-python test-blender lint extension bench format clean
+.SILENT:
+
+help: ## List the targets
+	sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 18
+
+demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/demo/ and check the result
+	build/venv-blender/bin/python blend_fixtures/demo.py --output build/demo
+
+test: build/stiv_tests build/stiv_tests_asan build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
+	build/venv/bin/python tools/run_tests.py native sanitizers python blender lint
+
+test-native: build/stiv_tests ## Run the core's own tests
+	build/venv/bin/python tools/run_tests.py native
+
+test-sanitizers: build/stiv_tests_asan ## Run the core's own tests under address and undefined-behaviour sanitizers
+	build/venv/bin/python tools/run_tests.py sanitizers
+
+test-python: build/venv/stiv ## Run the Python tests that need no Blender
+	build/venv/bin/python tools/run_tests.py python
+
+test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blender on every Blender module
+	build/venv/bin/python tools/run_tests.py blender
+
+lint: build/venv/lint ## Check format, style and types
+	build/venv/bin/python tools/run_tests.py lint
+
+extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as an extension
+	build/venv/bin/python tools/build_extension.py build/wheel/*.whl
+
+bench: build/venv-blender ## Run the benchmarks
+	build/venv-blender/bin/python -m benchmarks
+
+format: build/venv/lint ## Format C++ and Python in place
+	tools/lint.sh --fix
+
+clean: ## Remove everything that was built or downloaded
+	rm -rf build dist
+
+# Set-up, one step a rule.
+
+build/debian: tools/debian_packages.txt tools/install_debian_packages.sh
+	tools/install_debian_packages.sh tools/debian_packages.txt
+	mkdir -p $(@D) && touch $@
+
+build/venv/ready: tools/requirements/build.txt tools/requirements/test.txt | build/debian
+	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/build.txt -r tools/requirements/test.txt
+	touch $@
+
+build/venv/lint: tools/requirements/lint.txt build/venv/ready
+	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/lint.txt
+	touch $@
+
+$(OPENSUBDIV): $(wildcard tools/opensubdiv_source.sh) | build/debian
+	$(if $<,$< $@,mkdir -p $@)
+	touch $@
+
+$(WHEEL): $(NATIVE_SOURCES) $(PYTHON_SOURCES) build/venv/ready $(OPENSUBDIV)
+	tools/build_wheel.sh build/venv/bin/python $(OPENSUBDIV)
+	touch $@
+
+build/venv/stiv: $(WHEEL)
+	tools/install_wheel.sh build/venv
+	touch $@
+
+build/stiv_tests: $(WHEEL)
+	cmake --build build/native --target stiv_tests
+	touch $@
+
+build/stiv_tests_asan: $(NATIVE_SOURCES) $(OPENSUBDIV)
+	cmake --preset asan -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset asan --target stiv_tests
+	touch $@
+
+build/venv-blender-%/ready: $(WHEEL) tools/requirements/test.txt
+	tools/make_venv.sh $(PYTHON) $(@D) bpy==$* -r tools/requirements/test.txt
+	tools/install_wheel.sh $(@D)
+	touch $@
+
+build/venv-blender: build/venv-blender-$(DEMO_BLENDER)/ready
+	ln -sfn venv-blender-$(DEMO_BLENDER) $@

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the installed wheel and the source archive hold."""
+
+import importlib.metadata
+import tarfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def installed_files() -> set[str]:
+    try:
+        files = importlib.metadata.files("stiv")
+    except importlib.metadata.PackageNotFoundError:
+        pytest.skip("stiv is not installed as a wheel")
+    return {file.as_posix() for file in files or []}
+
+
+def test_wheel_holds_every_module_of_the_package(installed_files: set[str]) -> None:
+    sources = {path.relative_to(ROOT / "python").as_posix() for path in (ROOT / "python").rglob("*.py")}
+    assert sources
+    assert sources <= installed_files
+    assert "stiv/py.typed" in installed_files
+
+
+def test_wheel_holds_the_addon_as_a_package(installed_files: set[str]) -> None:
+    sources = {f"stiv_addon/{path.relative_to(ROOT / 'addon').as_posix()}" for path in (ROOT / "addon").rglob("*.py")}
+    assert sources <= installed_files
+
+
+def test_wheel_holds_the_licenses_of_what_is_linked(installed_files: set[str]) -> None:
+    names = {Path(name).name for name in installed_files if "/licenses/" in name}
+    assert names >= {"LICENSE", "Eigen.txt", "OpenSubdiv.txt", "OpenSubdiv-NOTICE.txt", "pybind11.txt"}
+
+
+def test_source_archive_holds_what_a_build_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    backend = pytest.importorskip("scikit_build_core.build", reason="the build backend is in build/venv only")
+    monkeypatch.chdir(ROOT)
+    with tarfile.open(tmp_path / backend.build_sdist(str(tmp_path))) as archive:
+        names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    assert names >= {
+        "CMakeLists.txt",
+        "LICENSE",
+        "native/CMakeLists.txt",
+        "python/stiv/__init__.py",
+    }
+    assert not any(name.startswith(("build/", "dist/")) or name.endswith(".so") for name in names)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a run of tests came to, counted from the JUnit files that pytest and ctest write."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+DOCTEST_SUMMARY = re.compile(r"test cases:\s*\d+ \|\s*(\d+) passed \|\s*(\d+) failed")
+
+
+@dataclass
+class Counts:
+    """Numbers of tests, and how many were skipped for each reason."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: Counter[str] = field(default_factory=Counter)
+
+    def add(self, other: "Counts") -> None:
+        """Take in the numbers of another run."""
+        self.passed += other.passed
+        self.failed += other.failed
+        self.skipped.update(other.skipped)
+
+
+def from_exit_code(code: int) -> Counts:
+    """One test, decided by the exit code of a process."""
+    return Counts(passed=int(code == 0), failed=int(code != 0))
+
+
+def from_pytest(path: Path, code: int) -> Counts:
+    """Counts of pytest's JUnit file; a run that ended badly without a failed test counts as one failure."""
+    counts = Counts()
+    for case in _cases(path):
+        skip = case.find("skipped")
+        if skip is not None:
+            counts.skipped[_reason(skip)] += 1
+        elif case.find("failure") is not None or case.find("error") is not None:
+            counts.failed += 1
+        else:
+            counts.passed += 1
+    nothing_collected = 5
+    if code not in (0, nothing_collected):
+        counts.failed = max(counts.failed, 1)
+    return counts
+
+
+def from_ctest(path: Path, code: int) -> Counts:
+    """Test cases that doctest reports in the output ctest keeps; a process without a report is one failure."""
+    counts = Counts()
+    for case in _cases(path):
+        summary = DOCTEST_SUMMARY.search(case.findtext("system-out", ""))
+        if summary is None:
+            counts.failed += 1
+        else:
+            counts.add(Counts(int(summary[1]), int(summary[2])))
+    if code != 0:
+        counts.failed = max(counts.failed, 1)
+    return counts
+
+
+def _reason(skip: ElementTree.Element) -> str:
+    """Why a test was skipped; for a whole module pytest writes it into the text, after its place."""
+    if skip.get("message") == "collection skipped" and skip.text:
+        return skip.text.split("Skipped: ")[-1].rstrip("\"')")
+    return skip.get("message", "no reason given")
+
+
+def _cases(path: Path) -> list[ElementTree.Element]:
+    return list(ElementTree.parse(path).iter("testcase")) if path.exists() else []

@@ -1,0 +1,18 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# lint.sh [--fix | CHECK]: one check (cpp-format, python-format, python-style, types), or formats everything in place.
+set -eu
+bin=build/venv/bin
+cpp_files() { git ls-files --cached --others --exclude-standard '*.cpp' '*.hpp'; }
+case ${1:-} in
+    cpp-format) cpp_files | xargs $bin/clang-format --dry-run --Werror ;;
+    python-format) $bin/ruff format --check . ;;
+    python-style) $bin/ruff check . ;;
+    types) $bin/mypy ;;
+    --fix)
+        cpp_files | xargs $bin/clang-format -i
+        $bin/ruff check --fix .
+        $bin/ruff format .
+        ;;
+    *) echo "lint.sh: name one check, or --fix" >&2; exit 2 ;;
+esac
