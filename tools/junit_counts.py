@@ -64,7 +64,7 @@ def from_ctest(path: Path, code: int) -> Counts:
 def _reason(skip: ElementTree.Element) -> str:
     """Why a test was skipped; for a whole module pytest writes it into the text, after its place."""
     if skip.get("message") == "collection skipped" and skip.text:
-        return skip.text.split("Skipped: ")[-1].rstrip("\"')")
+        return skip.text.split("Skipped: ")[-1].removesuffix('")')
     return skip.get("message", "no reason given")
 
 
