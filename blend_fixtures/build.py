@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes every fixture as a .blend file with its edit script beside it.
+
+    python blend_fixtures/build.py [NAME ...] [--output FOLDER]
+
+Needs Blender as a Python module. Use the oldest supported one (4.2): every later version opens what it writes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+os.environ["HOME"] = "/"  # Blender writes the home folder into every file it saves
+
+import bpy
+
+FOLDER = Path(__file__).resolve().parent
+sys.path.insert(0, str(FOLDER.parent))
+
+from blend_fixtures.blender_objects import build_scene  # noqa: E402
+from blend_fixtures.scenes.catalogue import all_fixtures  # noqa: E402
+from blend_fixtures.scenes.fixture import Fixture  # noqa: E402
+
+
+def edit_script(fixture: Fixture) -> str:
+    """The fixture's steps as the text of its .edits.json."""
+    head = {"schema": "stiv-edits", "version": 1, "description": fixture.summary, "settings": fixture.settings}
+    lines = ",\n".join("    " + json.dumps(step) for step in fixture.steps)
+    fields = "".join(f"  {json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
+    return "{\n" + fields + '  "steps": [\n' + lines + "\n  ]\n}\n"
+
+
+def write(fixture: Fixture, folder: Path) -> None:
+    """Writes NAME.blend and NAME.edits.json into `folder`."""
+    build_scene(fixture)
+    with tempfile.TemporaryDirectory() as scratch:  # a .blend keeps the path it was saved under: none of a home folder
+        saved = Path(scratch) / f"{fixture.name}.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(saved), compress=True, check_existing=False)
+        shutil.copyfile(saved, folder / saved.name)
+    (folder / f"{fixture.name}.edits.json").write_text(edit_script(fixture), encoding="utf-8")
+    size = (folder / f"{fixture.name}.blend").stat().st_size
+    print(f"{fixture.name}: {size / 1024:.0f} KiB")
+
+
+def main() -> None:
+    """Builds the fixtures named, or all."""
+    parser = argparse.ArgumentParser(description="Write the fixtures' .blend files and edit scripts.")
+    parser.add_argument("names", nargs="*", help="fixtures to write (default: all)")
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder to write to")
+    arguments = parser.parse_args()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    fixtures = {fixture.name: fixture for fixture in all_fixtures()}
+    unknown = [name for name in arguments.names if name not in fixtures]
+    if unknown:
+        parser.error(f"no fixture named {', '.join(unknown)}; there are {', '.join(fixtures)}")
+    for name in arguments.names or fixtures:
+        write(fixtures[name], arguments.output)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)  # the Blender module of 4.2 and 4.5 may hang when the interpreter ends
