@@ -39,10 +39,11 @@ class Shape:
 
 def joined(shapes: Sequence[Shape]) -> Shape:
     """One shape made of several, vertices and faces in the order given."""
-    starts = np.cumsum([0] + [len(shape.vertices) for shape in shapes])
-    faces = [
-        tuple(i + int(start) for i in face) for shape, start in zip(shapes, starts, strict=True) for face in shape.faces
-    ]
+    faces: list[tuple[int, ...]] = []
+    start = 0
+    for shape in shapes:
+        faces += [tuple(i + start for i in face) for face in shape.faces]
+        start += len(shape.vertices)
     return Shape(np.concatenate([shape.vertices for shape in shapes]), tuple(faces))
 
 
