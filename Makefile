@@ -5,7 +5,7 @@ PYTHON := $(shell tools/choose_python.sh)
 BLENDERS := $(shell $(PYTHON) tools/blender_versions.py)
 DEMO_BLENDER := $(shell $(PYTHON) tools/blender_versions.py --demo)
 
-NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f)
+NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f 2>/dev/null)
 PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready

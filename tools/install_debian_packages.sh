@@ -18,6 +18,13 @@ if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "Run as root, or install sudo, or: apt-get install$missing" >&2; exit 1; }
     sudo=sudo
 fi
-apt() { $sudo env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=5 -o Dpkg::Use-Pty=0 -q "$@"; }
-apt update
-apt install -y --no-install-recommends $missing
+apt() { $sudo env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=5 -o DPkg::Lock::Timeout=300 "$@"; }
+log=$(mktemp)
+apt update >"$log" 2>&1 || echo "apt-get update had errors; going on with the lists that are there"
+if apt install -y --no-install-recommends $missing >>"$log" 2>&1; then
+    rm "$log"
+else
+    tail -n 30 "$log" >&2
+    echo "Installing Debian packages failed; the full log is $log" >&2
+    exit 1
+fi
