@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+#include "stiv/deformation/deformation.hpp"
+
+namespace stiv::testing {
+
+/// Points in [-1, 1]^3, the same for the same seed.
+inline Positions random_positions(Index count, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  Positions positions(count, 3);
+  for (Index row = 0; row < count; ++row)
+    for (Index axis = 0; axis < 3; ++axis) positions(row, axis) = coordinate(generator);
+  return positions;
+}
+
+/// Every `stride`-th row of a random field, as a sparse one.
+inline SparseField random_field(Index count, Index stride, unsigned seed) {
+  const Positions values = random_positions(count, seed);
+  SparseField field;
+  for (Index row = 0; row < count; row += stride) {
+    field.index.push_back(row);
+    field.value.push_back(values.row(row));
+  }
+  return field;
+}
+
+inline Positions dense(const SparseField& field, Index count) {
+  Positions values = Positions::Zero(count, 3);
+  for (std::size_t k = 0; k < field.index.size(); ++k) values.row(field.index[k]) += field.value[k].transpose();
+  return values;
+}
+
+/// df/dp(c, axis) by central differences, (n, 3).
+inline Positions difference(const Deformation& deformation, const Controls& p, Index control, int axis, double step) {
+  Controls forward = p, backward = p;
+  forward(control, axis) += step;
+  backward(control, axis) -= step;
+  return (deformation.surface(forward) - deformation.surface(backward)) / (2 * step);
+}
+
+/// push_forward and pull_back against central differences of `surface`, control by control, axis by axis; and the
+/// support of each control against what the differences show to move.
+inline void check_derivatives(const Deformation& deformation, const Controls& p, double tolerance = 1e-7) {
+  const Index m = deformation.control_count(), n = deformation.vertex_count();
+  REQUIRE(p.rows() == m);
+  const SparseField g = random_field(n, 2, 7);
+  const SparseField pulled_field = deformation.pull_back(p, g);
+  CHECK(std::is_sorted(pulled_field.index.begin(), pulled_field.index.end()));
+  const Positions covector = dense(g, n), pulled = dense(pulled_field, m);
+  for (Index control = 0; control < m; ++control) {
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(n);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Positions expected = difference(deformation, p, control, axis, 1e-5);
+      Controls unit = Controls::Zero(m, 3);
+      unit(control, axis) = 1;
+      CHECK((deformation.push_forward(p, unit) - expected).cwiseAbs().sum() < tolerance * n);
+      CHECK(pulled(control, axis) == doctest::Approx(covector.cwiseProduct(expected).sum()).epsilon(tolerance * n));
+      moved += expected.rowwise().squaredNorm();
+    }
+    const std::vector<Index> support = deformation.support(control);
+    CHECK(std::is_sorted(support.begin(), support.end()));
+    for (Index vertex = 0; vertex < n; ++vertex)
+      if (moved[vertex] > tolerance) CHECK(std::binary_search(support.begin(), support.end(), vertex));
+  }
+}
+
+/// J, (3n, 3m), column by column from push_forward.
+inline Eigen::MatrixXd dense_jacobian(const Deformation& deformation, const Controls& p) {
+  const Index m = deformation.control_count(), n = deformation.vertex_count();
+  Eigen::MatrixXd jacobian(3 * n, 3 * m);
+  for (Index column = 0; column < 3 * m; ++column) {
+    Controls unit = Controls::Zero(m, 3);
+    unit(column / 3, column % 3) = 1;
+    const Positions moved = deformation.push_forward(p, unit);
+    jacobian.col(column) = Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * n);
+  }
+  return jacobian;
+}
+
+/// `metric` against W^1/2 (J'J + diag(damping))^-1 W^1/2 of the degrees of freedom whose weight is positive.
+/// @param damping (3m) what is added to the diagonal of J'J
+inline void check_metric(const Deformation& deformation, const Controls& p, const MetricOptions& options,
+                         const Eigen::VectorXd& damping, double tolerance = 1e-9) {
+  const Index m = deformation.control_count();
+  const Eigen::MatrixXd jacobian = dense_jacobian(deformation, p);
+  Eigen::MatrixXd full = jacobian.transpose() * jacobian;
+  full.diagonal() += damping;
+  const Eigen::VectorXd weights = options.weights.size() > 0 ? options.weights : Eigen::VectorXd::Ones(m).eval();
+  std::vector<Index> free;
+  for (Index row = 0; row < 3 * m; ++row)
+    if (weights[row / 3] > 0) free.push_back(row);
+  const SparseField g = random_field(m, 1, 11);
+  const Positions covector = dense(g, m);
+  const Eigen::VectorXd flat = Eigen::Map<const Eigen::VectorXd>(covector.data(), 3 * m);
+  Eigen::VectorXd root(static_cast<Index>(free.size()));
+  for (std::size_t k = 0; k < free.size(); ++k) root[static_cast<Index>(k)] = std::sqrt(weights[free[k] / 3]);
+  const Eigen::VectorXd solution =
+      root.cwiseProduct(Eigen::MatrixXd(full(free, free)).fullPivLu().solve(root.cwiseProduct(flat(free))));
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(3 * m);
+  expected(free) = solution;
+
+  const SparseField step = deformation.metric(options)->apply_inverse(p, g);
+  CHECK(std::is_sorted(step.index.begin(), step.index.end()));
+  for (const Index control : step.index) CHECK(weights[control] > 0);
+  const Positions found = dense(step, m);
+  CHECK((Eigen::Map<const Eigen::VectorXd>(found.data(), 3 * m) - expected).norm() <= tolerance * expected.norm());
+}
+
+/// Damping of linear deformations: eps times the mean diagonal of J'J over the controls that may respond.
+inline Eigen::VectorXd mean_damping(const Deformation& deformation, const Controls& p, const MetricOptions& options) {
+  const Eigen::VectorXd diagonal = dense_jacobian(deformation, p).colwise().squaredNorm();
+  double sum = 0, count = 0;
+  for (Index row = 0; row < diagonal.size(); ++row) {
+    if (options.weights.size() > 0 && options.weights[row / 3] == 0) continue;
+    sum += diagonal[row];
+    ++count;
+  }
+  return Eigen::VectorXd::Constant(diagonal.size(), options.smoothness * sum / count);
+}
+
+}  // namespace stiv::testing

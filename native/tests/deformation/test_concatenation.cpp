@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/finite_differences.hpp"
+#include "stiv/deformation/concatenation.hpp"
+#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/linear.hpp"
+#include "stiv/deformation/rigid.hpp"
+#include "stiv/error.hpp"
+
+using namespace stiv;
+using namespace stiv::testing;
+
+namespace {
+
+WeightMatrix two_control_weights(Index n) {
+  WeightMatrix matrix(n, 2);
+  for (Index row = 0; row < n; ++row) {
+    matrix.insert(row, 0) = 0.1 * row;
+    matrix.insert(row, 1) = 1 - 0.1 * row;
+  }
+  return matrix;
+}
+
+/// Rigid, linear and identity parts whose vertices are interleaved and out of order; 5 and 11 stay.
+std::shared_ptr<const Deformation> mixed(const Positions& start) {
+  const std::vector<Index> rigid{7, 1, 3, 9};
+  return make_concatenation({{make_rigid(start(rigid, Eigen::all)), rigid},
+                             {make_linear(two_control_weights(4)), {10, 0, 2, 8}},
+                             {make_identity(2), {6, 4}}},
+                            start);
+}
+
+}  // namespace
+
+TEST_CASE("concatenation: parts are placed and the others stay") {
+  const Positions start = random_positions(12, 1);
+  const auto whole = mixed(start);
+  CHECK(whole->control_count() == 6);
+  CHECK(whole->vertex_count() == 12);
+  const Controls p = random_positions(6, 2);
+  const Positions q = whole->surface(p);
+  CHECK(q.row(5) == start.row(5));
+  CHECK(q.row(11) == start.row(11));
+  CHECK(q.row(6) == p.row(4));
+  CHECK(q.row(4) == p.row(5));
+  CHECK((q.row(2) - 0.2 * p.row(2) - 0.8 * p.row(3)).norm() < 1e-15);
+  CHECK(whole->support(0) == std::vector<Index>{1, 3, 7, 9});
+  CHECK(whole->support(4) == std::vector<Index>{6});
+}
+
+TEST_CASE("concatenation: derivatives") { check_derivatives(*mixed(random_positions(12, 1)), random_positions(6, 2)); }
+
+TEST_CASE("concatenation: each part keeps its own metric") {
+  const Positions start = random_positions(12, 1);
+  const auto whole = mixed(start);
+  const Controls p = random_positions(6, 2);
+  MetricOptions options;
+  options.weights = (Eigen::VectorXd(6) << 1, 2, 3, 0, 0.5, 1).finished();
+  const SparseField g = random_field(6, 1, 3);
+  const Positions found = dense(whole->metric(options)->apply_inverse(p, g), 6);
+
+  const auto rigid = make_rigid(start(std::vector<Index>{7, 1, 3, 9}, Eigen::all));
+  const auto rigid_metric = rigid->metric({0.1, options.weights.head(2)});
+  const Positions rigid_step = dense(rigid_metric->apply_inverse(p.topRows(2), {{0, 1}, {g.value[0], g.value[1]}}), 2);
+  CHECK(found.topRows(2) == rigid_step);
+  const auto linear_metric = make_linear(two_control_weights(4))->metric({0.1, options.weights.segment(2, 2)});
+  CHECK(found.middleRows(2, 2) ==
+        dense(linear_metric->apply_inverse(p.middleRows(2, 2), {{0, 1}, {g.value[2], g.value[3]}}), 2));
+  CHECK(found.row(4) == 0.5 * g.value[4].transpose());
+  CHECK(found.row(5) == g.value[5].transpose());
+}
+
+TEST_CASE("concatenation: bad input is named") {
+  const Positions start = random_positions(4, 1);
+  CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 1}}, {make_identity(2), {2, 1}}}, start),
+                       doctest::Contains("part 1, vertex 1: already moved by part 0"), InputError);
+  CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 4}}}, start), doctest::Contains("vertex 4"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 1, 2}}}, start), doctest::Contains("3 vertices"),
+                       InputError);
+  CHECK_THROWS_AS(make_concatenation({{nullptr, {}}}, start), InputError);
+  CHECK(make_concatenation({}, start)->surface(Controls(0, 3)) == start);
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/finite_differences.hpp"
+#include "stiv/deformation/identity.hpp"
+#include "stiv/error.hpp"
+
+using namespace stiv;
+using namespace stiv::testing;
+
+TEST_CASE("identity: derivatives and metric") {
+  const auto identity = make_identity(7);
+  const Controls p = random_positions(7, 1);
+  CHECK(identity->surface(p) == p);
+  check_derivatives(*identity, p);
+  MetricOptions options;
+  check_metric(*identity, p, options, Eigen::VectorXd::Zero(21));
+  options.weights.setLinSpaced(7, 0, 3);
+  check_metric(*identity, p, options, Eigen::VectorXd::Zero(21));
+}
+
+TEST_CASE("identity: what is sparse stays sparse") {
+  const auto identity = make_identity(1000);
+  const SparseField g{{3, 500}, {Vector3(1, 2, 3), Vector3(4, 5, 6)}};
+  const Controls p = Controls::Zero(1000, 3);
+  CHECK(identity->pull_back(p, g).index == g.index);
+  CHECK(identity->metric({})->apply_inverse(p, g).index == g.index);
+}
+
+TEST_CASE("identity: bad input is named") {
+  const auto identity = make_identity(4);
+  CHECK_THROWS_WITH_AS(identity->surface(Controls::Zero(5, 3)), doctest::Contains("5 rows"), InputError);
+  MetricOptions options;
+  options.weights = Eigen::Vector4d(1, 1, -1, 1);
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("control 2"), InputError);
+  options.weights = Eigen::Vector3d(1, 1, 1);
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("3 control weights for 4"), InputError);
+  CHECK_THROWS_WITH_AS(identity->metric({0.0, {}}), doctest::Contains("smoothness"), InputError);
+  CHECK_THROWS_AS(make_identity(-1), InputError);
+  CHECK(make_identity(0)->surface(Controls(0, 3)).rows() == 0);
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/finite_differences.hpp"
+#include "stiv/deformation/linear.hpp"
+#include "stiv/error.hpp"
+
+using namespace stiv;
+using namespace stiv::testing;
+
+namespace {
+
+/// Each vertex hangs on the control of its own number (modulo m) and on the three that follow.
+WeightMatrix banded_weights(Index n, Index m) {
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  const Positions values = random_positions(4 * n, 5);
+  for (Index row = 0; row < n; ++row)
+    for (Index k = 0; k < 4; ++k) entries.emplace_back(row, (row + k) % m, values(4 * row + k, 0));
+  WeightMatrix matrix(n, m);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+void check_linear_metric(const Deformation& linear, Index m) {
+  const Controls p = Controls::Zero(m, 3);
+  MetricOptions options;
+  check_metric(linear, p, options, mean_damping(linear, p, options));
+  options.smoothness = 0.01;
+  options.weights = Eigen::VectorXd::LinSpaced(m, 0.5, 2);
+  for (Index control = 0; control < m; control += 3) options.weights[control] = 0;
+  check_metric(linear, p, options, mean_damping(linear, p, options));
+}
+
+}  // namespace
+
+TEST_CASE("linear: derivatives") {
+  const Positions offset = random_positions(12, 3);
+  const auto linear = make_linear(banded_weights(12, 5), offset);
+  check_derivatives(*linear, random_positions(5, 1));
+  CHECK(linear->surface(Controls::Zero(5, 3)) == offset);
+}
+
+TEST_CASE("linear: metric of few controls") { check_linear_metric(*make_linear(banded_weights(60, 25)), 25); }
+
+TEST_CASE("linear: metric of many controls") { check_linear_metric(*make_linear(banded_weights(1000, 1000)), 1000); }
+
+TEST_CASE("linear: a sparse covector over many controls") {
+  const auto linear = make_linear(banded_weights(40, 20));
+  const auto metric = linear->metric({});
+  const Controls p = Controls::Zero(20, 3);
+  const SparseField whole = random_field(20, 1, 2), part{{4, 9}, {whole.value[4], whole.value[9]}};
+  Positions sum = Positions::Zero(20, 3);
+  for (Index k = 0; k < 20; ++k)
+    sum += dense(metric->apply_inverse(p, {{k}, {whole.value[static_cast<std::size_t>(k)]}}), 20);
+  CHECK((sum - dense(metric->apply_inverse(p, whole), 20)).norm() < 1e-12 * sum.norm());
+  CHECK(metric->apply_inverse(p, {}).index.empty());
+  CHECK(metric->apply_inverse(p, part).index.size() == 20);
+}
+
+TEST_CASE("linear: controls that move nothing stay put") {
+  WeightMatrix matrix(2, 3);
+  matrix.insert(0, 0) = 1;
+  matrix.insert(1, 2) = 0.5;
+  matrix.insert(1, 1) = 0;
+  const auto linear = make_linear(matrix);
+  CHECK(linear->support(1).empty());
+  const SparseField step = linear->metric({})->apply_inverse(Controls::Zero(3, 3), random_field(3, 1, 1));
+  CHECK(step.index == std::vector<Index>{0, 2});
+}
+
+TEST_CASE("linear: everything pinned") {
+  MetricOptions options;
+  options.weights = Eigen::VectorXd::Zero(5);
+  const auto metric = make_linear(banded_weights(6, 5))->metric(options);
+  CHECK(metric->apply_inverse(Controls::Zero(5, 3), random_field(5, 1, 1)).index.empty());
+}
+
+TEST_CASE("linear: bad input is named") {
+  WeightMatrix matrix = banded_weights(6, 4);
+  CHECK_THROWS_WITH_AS(make_linear(matrix, Positions::Zero(5, 3)), doctest::Contains("5 rows"), InputError);
+  Positions offset = Positions::Zero(6, 3);
+  offset(2, 0) = INFINITY;
+  CHECK_THROWS_WITH_AS(make_linear(matrix, offset), doctest::Contains("row 2"), InputError);
+  matrix.coeffRef(3, 1) = NAN;
+  CHECK_THROWS_WITH_AS(make_linear(matrix), doctest::Contains("row 3: weight of control 1"), InputError);
+}
