@@ -17,6 +17,7 @@ endif
 
 .PHONY: help demo test test-native test-sanitizers test-python test-blender lint extension bench format clean
 .SILENT:
+.NOTPARALLEL:
 
 help: ## List the targets
 	sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 18

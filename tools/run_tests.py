@@ -17,13 +17,18 @@ from junit_counts import Counts
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
+TIME_LIMIT = 1800  # seconds for one part
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 
 
 def run(title: str, command: list[str | Path]) -> int:
-    """Run one command from the root of the source tree, with its output shown as it comes."""
+    """Run one command from the root of the source tree, with its output shown as it comes; end it when it hangs."""
     print(f"\n== {title}", flush=True)
-    return subprocess.run(command, cwd=ROOT, check=False).returncode
+    try:
+        return subprocess.run(command, cwd=ROOT, check=False, timeout=TIME_LIMIT).returncode
+    except subprocess.TimeoutExpired:
+        print(f"{title}: ended after {TIME_LIMIT} s", flush=True)
+        return 1
 
 
 def native(title: str, folder: str) -> Counts:
