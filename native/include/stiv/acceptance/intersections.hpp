@@ -10,8 +10,10 @@
 
 namespace stiv {
 
-/// Do two triangles meet anywhere but in the vertices they share? `shared` corners are given by equal indices.
-/// Touching, coplanar overlap, duplicates and neighbours folded flat onto each other count; exact.
+/// Do two triangles meet in a point off the hull of the vertices they share (nothing, that vertex, that edge)? Shared
+/// corners are told by equal indices; three of them always count as meeting. Touching, coplanar overlap, coincident
+/// vertices of different index and neighbours folded flat onto each other count; triangles without area are segments or
+/// points. Exact in the range of orientation_3d.
 bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const Positions& q);
 
 /// Pairs of triangle indices, smaller first, sorted.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "stiv/acceptance/storage.hpp"
+#include "stiv/error.hpp"
+
+using namespace stiv;
+
+namespace {
+
+class Sampler {
+ public:
+  explicit Sampler(unsigned seed) : random_(seed) {}
+  double signed_unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
+  double magnitude() { return std::pow(10, 7 * signed_unit()); }
+  double any_size() { return signed_unit() * magnitude(); }
+
+  /// Rotation, non-uniform scale of any sign, shear by a parent, offset: each of its own size.
+  Eigen::Matrix4d frame() {
+    Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+    const auto turn = [&] {
+      return Eigen::Quaterniond(signed_unit(), signed_unit(), signed_unit(), signed_unit()).normalized();
+    };
+    const Vector3 scale(signed_unit() + 1.01, -signed_unit() - 1.01, signed_unit() + 1.01);
+    frame.topLeftCorner<3, 3>() =
+        magnitude() * turn().toRotationMatrix() * scale.asDiagonal() * turn().toRotationMatrix();
+    frame.topRightCorner<3, 1>() << any_size(), any_size(), any_size();
+    return frame;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+bool same_bits(const Controls& a, const Controls& b) {
+  return a.rows() == b.rows() && std::equal(a.data(), a.data() + a.size(), b.data(), [](double x, double y) {
+           return x == y && std::signbit(x) == std::signbit(y);
+         });
+}
+
+}  // namespace
+
+TEST_CASE("as_stored: idempotent bit by bit in any frame at any magnitude") {
+  Sampler sample(3);
+  for (int round = 0; round < 3000; ++round) {
+    const std::vector<StorageFrame> frames = {{0, 20, sample.frame()}};
+    Controls p(20, 3);
+    for (Index k = 0; k < p.size(); ++k) p.data()[k] = sample.any_size();
+    const Controls once = as_stored(p, frames);
+    REQUIRE(same_bits(as_stored(once, frames), once));
+  }
+}
+
+TEST_CASE("as_stored: nearest single precision value in the frame") {
+  Sampler sample(4);
+  for (int round = 0; round < 200; ++round) {
+    const Eigen::Matrix4d frame = sample.frame();
+    const Eigen::Vector4d local(sample.signed_unit(), sample.signed_unit(), sample.signed_unit(), 1);
+    Controls p(1, 3);
+    p.row(0) = (frame * local).head<3>();
+    const Eigen::Vector4d stored = as_stored(p, {{0, 1, frame}}).row(0).transpose().homogeneous();
+    const double lost = 0x1p-50 * frame.topRightCorner<3, 1>().norm() / frame.topLeftCorner<3, 3>().norm();
+    CHECK(((frame.inverse() * stored) - local).norm() < 0x1p-24 * 1.8 + 1e4 * lost);
+  }
+}
+
+TEST_CASE("as_stored: float32 in the identity, untouched outside the frames") {
+  Controls p(3, 3);
+  p << 0.1, 0.2, 0.3, 0.1, 0.2, 0.3, -1e-7, 1e7, 0.1;
+  const Controls stored = as_stored(p, {{1, 2}});
+  CHECK(stored.row(0) == p.row(0));
+  CHECK(stored.bottomRows(2) == p.bottomRows(2).cast<float>().cast<double>());
+}
+
+TEST_CASE("as_stored: bad frames are named") {
+  Controls p = Controls::Zero(4, 3);
+  StorageFrame frame{1, 2};
+  frame.frame(2, 2) = 0;
+  CHECK_THROWS_WITH_AS(as_stored(p, {frame}), doctest::Contains("controls 1 to 2: the matrix is singular"), InputError);
+  frame.frame = Eigen::Matrix4d::Identity();
+  frame.frame(0, 3) = std::nan("");
+  CHECK_THROWS_WITH_AS(as_stored(p, {frame}), doctest::Contains("not finite"), InputError);
+  frame.frame = 2 * Eigen::Matrix4d::Identity();
+  CHECK_THROWS_WITH_AS(as_stored(p, {frame}), doctest::Contains("not affine"), InputError);
+  CHECK_THROWS_WITH_AS(as_stored(p, {{3, 2}}), doctest::Contains("there are 4 controls"), InputError);
+  p(0, 0) = 1e39;
+  CHECK_THROWS_WITH_AS(as_stored(p, {{0, 1}}), doctest::Contains("control 0 is too large"), InputError);
+}
