@@ -26,7 +26,11 @@ struct Contact {
 /// The first time at which the pair is within `proximity.threshold(d0)`, or nothing if it never is. Conservative: a
 /// contact is never missed and the time is never later than the true one; a report is at most 10 % of the threshold too
 /// wide. Distances are those of the clamped primitives (edges and vertices of a triangle included).
-std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity);
+///
+/// A pair that touches at the start is a contact at 0 unless a plane shows that it parts or slides. A pair that moves
+/// as a whole (no displacement relative to its first vertex) is never a contact.
+/// @param latest contacts after this time are not looked for; those up to it come out the same for any value.
+std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest = 1);
 
 /// Time at which the pair first is within `separation` (>= 0), never later than the true time; 0 if it starts so;
 /// infinity (`never`) if it never does.

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "stiv/detection/bvh.hpp"
+#include "stiv/detection/event.hpp"
+#include "stiv/detection/proximity.hpp"
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
+using Candidate = PrimitivePair;
+
+/// A linear step of a surface, checked.
+struct Step {
+  const Positions& start;
+  const Positions& end;
+  Proximity proximity;
+};
+
+/// Which vertices a step moves, (N).
+std::vector<unsigned char> moved_vertices(const Step& step);
+
+/// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
+/// chunk depend on the step alone. A source may leave out pairs that stay apart by more than the separation, pairs
+/// that share a vertex or do not move and pairs of bodies that do not meet; it need leave out none of them.
+class CandidateSource {
+ public:
+  /// Takes some of a chunk's candidates; may overwrite them, the source does not look at them again.
+  using Sink = std::function<void(std::span<Candidate>)>;
+
+  virtual ~CandidateSource() = default;
+  virtual void update(const Step& step, const Execution& execution) = 0;
+  virtual Index chunk_count(EventKind kind) const = 0;
+  virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;
+};
+
+std::unique_ptr<CandidateSource> make_brute_force(const Surface& surface);
+std::unique_ptr<CandidateSource> make_bvh_source(const Surface& surface);
+
+}  // namespace stiv

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/detection/narrow_phase.hpp"
+
+#include "detection/conservative_advancement.hpp"
+
+namespace stiv {
+
+namespace {
+
+/// Unit direction of contact. Where the nearest points (all but) coincide, their difference is noise: then the normal
+/// of the face or of both edges, or else the last plane that separated the pair.
+Vector3 contact_direction(const RelativeMotion& motion, const Approach& approach) {
+  const Witness& nearest = approach.witness;
+  constexpr double noise = 1024;
+  if (nearest.distance > noise * motion.rounding) return nearest.separation / nearest.distance;
+  bool interior = true;
+  for (const double weight : nearest.weights) interior = interior && weight != 0;
+  const Vector3 normal = geometric_normal(motion, approach.time);
+  if (interior && !normal.isZero(0)) {
+    const Vector3& side = approach.last_normal;
+    return normal.dot(side) < 0 ? Vector3(-normal) : normal;
+  }
+  return approach.last_normal;
+}
+
+Contact contact_of(const RelativeMotion& motion, const Approach& approach, double start_distance) {
+  Contact contact{approach.time, approach.witness.weights, contact_direction(motion, approach), start_distance};
+  Vector3 relative = Vector3::Zero();
+  for (std::size_t k = 1; k < 4; ++k) relative += contact.weights[k] * motion.step[k];
+  const double approach_speed = -contact.normal.dot(relative);
+  if (approach_speed > 0) return contact;
+  // From a touching start nothing tells the sides apart but the motion. Elsewhere the sides are known, and a pair that
+  // parts at the time where the search gave up has no direction to be pushed in.
+  const bool touched_at_start = approach.last_normal.isZero(0) && start_distance <= 4 * motion.rounding;
+  if (touched_at_start)
+    contact.normal = approach_speed < 0 ? Vector3(-contact.normal) : Vector3(-relative.stableNormalized());
+  else if (approach_speed < 0)
+    contact.normal.setZero();
+  return contact;
+}
+
+}  // namespace
+
+std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) {
+  const RelativeMotion relative(kind, motion);
+  if (relative.rests()) return std::nullopt;
+  const Witness at_start = witness(kind, relative.start);
+  const double threshold = proximity.threshold(at_start.distance);
+  double time = 0;
+  if (at_start.distance <= threshold + 4 * relative.rounding) {
+    time = parting_time(relative, threshold);
+    if (time >= 1) return std::nullopt;
+    if (time == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
+  }
+  const std::optional<Approach> approach = advance(relative, threshold, time, latest);
+  if (!approach) return std::nullopt;
+  return contact_of(relative, *approach, at_start.distance);
+}
+
+double time_of_impact(EventKind kind, const PairMotion& motion, double separation) {
+  const RelativeMotion relative(kind, motion);
+  if (witness(kind, relative.start).distance <= separation + 4 * relative.rounding) return 0;
+  if (relative.rests()) return never;
+  const std::optional<Approach> approach = advance(relative, separation, 0, 1);
+  return approach ? approach->time : never;
+}
+
+}  // namespace stiv

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "detection/candidates.hpp"
+
+namespace stiv {
+
+/// What is done with candidates, whichever broad phase they come from: pairs that cannot matter are left out, then
+/// those that one fixed plane shows apart, and the narrow phase decides the rest.
+class PairTest {
+ public:
+  PairTest(const Surface& surface, const Step& step);
+
+  /// Moves the candidates that need the narrow phase to the front and returns them.
+  std::span<Candidate> reduce(EventKind kind, std::span<Candidate> candidates) const;
+
+  /// The event of a pair up to time `latest`.
+  std::optional<Event> event(EventKind kind, const Candidate& candidate, double latest) const;
+
+ private:
+  using Vertices = std::array<Index, 4>;
+
+  Vertices vertices(EventKind kind, const Candidate& candidate) const;
+  bool matters(EventKind kind, const Vertices& v) const;
+  /// Does the plane of the face (or of both edges) at the start separate the pair during the whole step?
+  bool plane_separates(EventKind kind, const Vertices& v) const;
+
+  const Surface& surface_;
+  const Step& step_;
+  std::vector<unsigned char> moved_;
+};
+
+}  // namespace stiv

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "detection/scenes.hpp"
+#include "stiv/detection/detector.hpp"
+#include "stiv/detection/distance.hpp"
+#include "stiv/detection/narrow_phase.hpp"
+#include "stiv/error.hpp"
+
+using namespace stiv;
+
+namespace {
+
+bool same_bits(const Events& a, const Events& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const bool same = a[k].kind == b[k].kind && a[k].vertices == b[k].vertices && a[k].time == b[k].time &&
+                      a[k].weights == b[k].weights && a[k].normal == b[k].normal &&
+                      a[k].start_distance == b[k].start_distance;
+    if (!same) return false;
+  }
+  return true;
+}
+
+Events find(const MovingScene& scene, BroadPhase broad_phase, int threads, double separation) {
+  Execution execution(threads);
+  return Detector(scene.surface, {broad_phase}).find(scene.start, scene.end, {separation, 0.5}, execution);
+}
+
+/// A triangle with a vertex above it that falls through, and a loose edge beside it.
+MovingScene falling_vertex() {
+  SurfaceDefinition definition;
+  definition.vertex_count = 4;
+  definition.triangles.resize(1, 3);
+  definition.triangles << 0, 1, 2;
+  MovingScene scene;
+  scene.surface = std::make_shared<const Surface>(definition);
+  scene.start.resize(4, 3);
+  scene.start << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.25, 1;
+  scene.end = scene.start;
+  scene.end(3, 2) = -1;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("detector: a loose vertex that falls through a face is one event") {
+  const MovingScene scene = falling_vertex();
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+    const Events events = find(scene, broad_phase, 1, 0);
+    REQUIRE(events.size() == 1);
+    CHECK(events[0].kind == EventKind::vertex_face);
+    CHECK(events[0].vertices == std::array<Index, 4>{3, 0, 1, 2});
+    CHECK(events[0].time == doctest::Approx(0.5).epsilon(1e-12));
+    CHECK(events[0].normal.isApprox(Vector3::UnitZ()));
+    CHECK(events[0].start_distance == 1);
+  }
+}
+
+TEST_CASE("detector: the trees find what brute force finds, bit by bit, for any number of threads") {
+  for (const unsigned seed : {1U, 2U, 3U})
+    for (const double separation : {0.0, 0.01}) {
+      const MovingScene scene = stirred_sheets(12, 3, 0.08, seed);
+      const Events expected = find(scene, BroadPhase::brute_force, 1, separation);
+      REQUIRE(expected.size() > 100);
+      for (const int threads : {1, 2, 3}) CHECK(same_bits(find(scene, BroadPhase::bvh, threads, separation), expected));
+    }
+}
+
+TEST_CASE("detector: trees that are kept find the same as new ones") {
+  const MovingScene scene = stirred_sheets(10, 3, 0.08, 4);
+  const MovingScene other = stirred_sheets(10, 3, 0.3, 5);
+  Execution execution(1);
+  Detector detector(scene.surface);
+  detector.find(other.start, other.end, {0.02, 0.5}, execution);
+  const Events again = detector.find(scene.start, scene.end, {0.01, 0.5}, execution);
+  CHECK(same_bits(again, find(scene, BroadPhase::bvh, 1, 0.01)));
+  CHECK(execution.counters.detections == 2);
+}
+
+TEST_CASE("detector: events are sorted, share no vertex and are unique") {
+  const MovingScene scene = stirred_sheets(12, 3, 0.1, 6);
+  const Events events = find(scene, BroadPhase::bvh, 2, 0.01);
+  for (std::size_t k = 0; k + 1 < events.size(); ++k)
+    CHECK(std::pair(events[k].kind, events[k].vertices) < std::pair(events[k + 1].kind, events[k + 1].vertices));
+  for (const Event& event : events) {
+    std::array<Index, 4> v = event.vertices;
+    std::sort(v.begin(), v.end());
+    CHECK(std::adjacent_find(v.begin(), v.end()) == v.end());
+  }
+}
+
+TEST_CASE("detector: the earliest time is that of the earliest event") {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const MovingScene scene = stirred_sheets(12, 3, 0.05, seed);
+    double expected = never;
+    for (const Event& event : find(scene, BroadPhase::brute_force, 1, 0.01)) expected = std::min(expected, event.time);
+    for (const int threads : {1, 2}) {
+      Execution execution(threads);
+      CHECK(Detector(scene.surface).earliest_time(scene.start, scene.end, {0.01, 0.5}, execution) == expected);
+    }
+  }
+  MovingScene still = stirred_sheets(5, 2, 0, 1);
+  Execution execution(1);
+  CHECK(Detector(still.surface).earliest_time(still.start, still.end, {0.01, 0.5}, execution) == never);
+}
+
+TEST_CASE("detector: common motion gives no event, and events do not change under it") {
+  MovingScene scene = stirred_sheets(12, 3, 0.08, 8);
+  const Vector3 shift(1.5, -2.25, 0.75);
+  MovingScene carried = scene;
+  carried.end = scene.start.rowwise() + shift.transpose();
+  CHECK(find(carried, BroadPhase::bvh, 1, 0.05).empty());
+  CHECK(find(carried, BroadPhase::brute_force, 1, 0.05).empty());
+
+  const Events resting = find(scene, BroadPhase::bvh, 1, 0.01);
+  scene.end.rowwise() += shift.transpose();
+  const Events moving = find(scene, BroadPhase::bvh, 1, 0.01);
+  REQUIRE(moving.size() == resting.size());
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    CHECK(moving[k].vertices == resting[k].vertices);
+    CHECK(moving[k].time == doctest::Approx(resting[k].time).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("detector: pairs of which nothing moves, and bodies that do not meet, are left out") {
+  MovingScene scene = stirred_sheets(8, 2, 0.2, 9);
+  const Positions still = scene.end;
+  Execution execution(1);
+  Detector detector(scene.surface);
+  CHECK(detector.find(still, still, {0.01, 0.5}, execution).empty());
+  CHECK(execution.counters.candidate_pairs == 0);
+
+  SurfaceDefinition definition;
+  definition.vertex_count = scene.surface->vertex_count();
+  definition.triangles = scene.surface->triangles();
+  for (Index k = 0; k < definition.vertex_count; ++k) definition.vertex_body.push_back(scene.surface->body_of(k));
+  definition.bodies = {{"a", Mobility::rigid}, {"b", Mobility::rigid}};
+  scene.surface = std::make_shared<const Surface>(definition);
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+    const Events events = find(scene, broad_phase, 1, 0.01);
+    CHECK(events.size() > 10);
+    for (const Event& event : events)
+      CHECK(scene.surface->body_of(event.vertices[0]) != scene.surface->body_of(event.vertices[3]));
+  }
+  definition.ignored = {{0, 1}};
+  scene.surface = std::make_shared<const Surface>(definition);
+  CHECK(find(scene, BroadPhase::bvh, 1, 0.01).empty());
+}
+
+TEST_CASE("detector: empty surfaces and bad input") {
+  SurfaceDefinition definition;
+  definition.triangles.resize(0, 3);
+  const auto empty = std::make_shared<const Surface>(definition);
+  Execution execution(1);
+  CHECK(Detector(empty).find(Positions(0, 3), Positions(0, 3), {}, execution).empty());
+
+  MovingScene scene = falling_vertex();
+  Detector detector(scene.surface);
+  CHECK_THROWS_AS(detector.find(scene.start, scene.end, {-1, 0.5}, execution), InputError);
+  CHECK_THROWS_AS(detector.find(scene.start, scene.end, {0, 1}, execution), InputError);
+  CHECK_THROWS_AS(detector.find(scene.start, Positions(3, 3), {}, execution), InputError);
+  scene.end(2, 1) = std::nan("");
+  CHECK_THROWS_WITH_AS(detector.find(scene.start, scene.end, {}, execution), doctest::Contains("vertex 2"), InputError);
+}
+
+TEST_CASE("detector: coordinates beyond single precision") {
+  MovingScene scene = falling_vertex();
+  scene.start *= 1e60;
+  scene.end *= 1e60;
+  CHECK(find(scene, BroadPhase::bvh, 1, 0).size() == 1);
+}
