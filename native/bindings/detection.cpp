@@ -1,8 +1,114 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <atomic>
+
+#include "events.hpp"
 #include "module.hpp"
+#include "stiv/detection/detector.hpp"
+#include "stiv/detection/narrow_phase.hpp"
+#include "stiv/error.hpp"
+
+namespace py = pybind11;
 
 namespace stiv::bindings {
 
-void bind_detection(pybind11::module_&) {}
+namespace {
+
+/// (M, 12): the coordinates of four vertices a row.
+using Quadruples = Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>;
+
+PairMotion motion_at(const Quadruples& start, const Quadruples& end, Index row) {
+  PairMotion motion;
+  for (std::size_t k = 0; k < 4; ++k) {
+    motion.start[k] = start.row(row).segment<3>(3 * static_cast<Index>(k));
+    motion.end[k] = end.row(row).segment<3>(3 * static_cast<Index>(k));
+  }
+  return motion;
+}
+
+Eigen::VectorXd times_of_impact(EventKind kind, const Quadruples& start, const Quadruples& end, double separation,
+                                int threads) {
+  Eigen::VectorXd times(start.rows());
+  const Execution execution(threads);
+  execution.for_chunks(static_cast<Index>(start.rows()), 256, [&](Index begin, Index last, Index) {
+    for (Index row = begin; row < last; ++row)
+      times[row] = time_of_impact(kind, motion_at(start, end, row), separation);
+  });
+  return times;
+}
+
+/// A detector that refuses to be used by two threads at once.
+class GuardedDetector {
+ public:
+  GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, int threads)
+      : detector_(std::move(surface), {broad_phase}), threads_(threads) {}
+
+  Events find(const Positions& start, const Positions& end, double separation, double keep) {
+    const Use use(busy_);
+    Execution execution(threads_);
+    return detector_.find(start, end, {separation, keep}, execution);
+  }
+
+  double earliest_time(const Positions& start, const Positions& end, double separation, double keep) {
+    const Use use(busy_);
+    Execution execution(threads_);
+    return detector_.earliest_time(start, end, {separation, keep}, execution);
+  }
+
+ private:
+  struct Use {
+    explicit Use(std::atomic<bool>& flag) : busy(flag) {
+      if (busy.exchange(true)) throw InputError("this Detector is in use by another thread; make one for each");
+    }
+    ~Use() { busy = false; }
+    std::atomic<bool>& busy;
+  };
+
+  Detector detector_;
+  int threads_;
+  std::atomic<bool> busy_{false};
+};
+
+}  // namespace
+
+py::tuple arrays_of(const Events& events) {
+  const auto count = static_cast<py::ssize_t>(events.size());
+  py::array_t<std::uint8_t> kind(count);
+  py::array_t<Index> vertices({count, py::ssize_t{4}});
+  py::array_t<double> time(count), weights({count, py::ssize_t{4}}), normal({count, py::ssize_t{3}}), distance(count);
+  for (py::ssize_t row = 0; row < count; ++row) {
+    const Event& event = events[static_cast<std::size_t>(row)];
+    kind.mutable_at(row) = static_cast<std::uint8_t>(event.kind);
+    time.mutable_at(row) = event.time;
+    distance.mutable_at(row) = event.start_distance;
+    std::copy(event.vertices.begin(), event.vertices.end(), vertices.mutable_data(row, 0));
+    std::copy(event.weights.begin(), event.weights.end(), weights.mutable_data(row, 0));
+    std::copy(event.normal.data(), event.normal.data() + 3, normal.mutable_data(row, 0));
+  }
+  return py::make_tuple(kind, vertices, time, weights, normal, distance);
+}
+
+void bind_detection(py::module_& module) {
+  using Release = py::call_guard<py::gil_scoped_release>;
+  py::enum_<EventKind>(module, "EventKind").value("vf", EventKind::vertex_face).value("ee", EventKind::edge_edge);
+  py::enum_<BroadPhase>(module, "BroadPhase")
+      .value("bvh", BroadPhase::bvh)
+      .value("brute_force", BroadPhase::brute_force);
+  module.def("times_of_impact", &times_of_impact, Release());
+  py::class_<GuardedDetector>(module, "Detector")
+      .def(py::init<std::shared_ptr<Surface>, BroadPhase, int>())
+      .def("find",
+           [](GuardedDetector& detector, const Positions& start, const Positions& end, double separation, double keep) {
+             const Events events = [&] {
+               const py::gil_scoped_release release;
+               return detector.find(start, end, separation, keep);
+             }();
+             return arrays_of(events);
+           })
+      .def("earliest_time", &GuardedDetector::earliest_time, Release());
+}
 
 }  // namespace stiv::bindings

@@ -1,8 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/surface.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
 #include "module.hpp"
+#include "stiv/error.hpp"
+
+namespace py = pybind11;
 
 namespace stiv::bindings {
 
-void bind_surface(pybind11::module_&) {}
+namespace {
+
+Mobility mobility_named(const std::string& name) {
+  if (name == "fixed") return Mobility::fixed;
+  if (name == "rigid") return Mobility::rigid;
+  if (name == "deformable") return Mobility::deformable;
+  throw InputError("mobility is \"fixed\", \"rigid\" or \"deformable\", not \"" + name + "\"");
+}
+
+std::shared_ptr<Surface> make_surface(Index vertex_count, Triangles triangles, Edges loose_edges,
+                                      std::vector<Index> vertex_body,
+                                      const std::vector<std::pair<std::string, std::string>>& bodies,
+                                      std::vector<std::pair<Index, Index>> ignored) {
+  SurfaceDefinition definition{vertex_count, std::move(triangles), std::move(loose_edges), std::move(vertex_body),
+                               {},           std::move(ignored)};
+  for (const auto& [name, mobility] : bodies) definition.bodies.push_back({name, mobility_named(mobility)});
+  return std::make_shared<Surface>(std::move(definition));
+}
+
+}  // namespace
+
+void bind_surface(py::module_& module) {
+  py::class_<Surface, std::shared_ptr<Surface>>(module, "Surface")
+      .def(py::init(&make_surface), py::arg("vertex_count"), py::arg("triangles"), py::arg("loose_edges"),
+           py::arg("vertex_body"), py::arg("bodies"), py::arg("ignored"))
+      .def_property_readonly("edges", &Surface::edges)
+      .def("describe_vertex", &Surface::describe_vertex)
+      .def("describe_triangle", &Surface::describe_triangle)
+      .def("vertex_areas", &Surface::vertex_areas);
+}
 
 }  // namespace stiv::bindings

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finding interference along linear steps."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stiv import _native
+from stiv._native import InputError
+from stiv.arrays import Floats, Indices, as_count, as_floats, as_indices, as_number
+from stiv.surface import Surface, as_surface
+
+KINDS: Mapping[str, _native.EventKind] = {"vf": _native.EventKind.vf, "ee": _native.EventKind.ee}
+BROAD_PHASES: Mapping[str, _native.BroadPhase] = {
+    "bvh": _native.BroadPhase.bvh,
+    "brute_force": _native.BroadPhase.brute_force,
+}
+NARROW_PHASES: Mapping[str, None] = {"conservative": None}
+
+Choice = TypeVar("Choice")
+
+
+@dataclass(frozen=True)
+class Events:
+    """Interference events as arrays, sorted by kind and vertices.
+
+    With the weights w of an event, sum w = 0 and sum w_k x_k(time) is the separation vector, from the second to the
+    first side.
+    """
+
+    kind: NDArray[np.uint8]
+    """(K,) 0 where a vertex meets a face (vertices v, a, b, c), 1 where two edges meet (a0, a1, b0, b1)."""
+    vertices: Indices
+    """(K, 4)"""
+    time: Floats
+    """(K,) in [0, 1]"""
+    weights: Floats
+    """(K, 4): (1, -a, -b, -c) or (1-s, s, -(1-u), -u)"""
+    normal: Floats
+    """(K, 3) unit; normal . (relative displacement) <= 0; zero where none can be told"""
+    start_distance: Floats
+    """(K,) distance of the two primitives at the start of the step"""
+
+    def __len__(self) -> int:
+        """Return the number of events."""
+        return len(self.kind)
+
+    @property
+    def kind_names(self) -> NDArray[np.str_]:
+        """(K,) "vf" or "ee"."""
+        return np.array(list(KINDS))[self.kind]
+
+
+def _choose(choices: Mapping[str, Choice], value: str, name: str) -> Choice:
+    if value not in choices:
+        raise InputError(f"{name}: there is no {value!r}, only " + ", ".join(map(repr, choices)))
+    return choices[value]
+
+
+def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: float = 0.0, *, threads: int = 0) -> Floats:
+    """Return when each of M pairs first comes within `separation`, (M,) float64: in [0, 1], inf where it never does.
+
+    kind        "vf": vertex, then the three of a face; "ee": two of one edge, then two of the other
+    start, end  (M, 4, 3): the four vertices before and after a linear motion
+    separation  at least 0, in the units of the positions; distances are those of the whole primitives
+    threads     0: one for each processor
+
+    Conservative: never later than the true time, 0 where a pair starts within the separation.
+    Raises InputError naming the row for wrong shapes and numbers that are not finite.
+    """
+    event_kind = _choose(KINDS, kind, "kind")
+    first = as_floats(start, "start", (None, 4, 3))
+    last = as_floats(end, "end", (len(first), 4, 3))
+    return _native.times_of_impact(
+        event_kind,
+        first.reshape(-1, 12),
+        last.reshape(-1, 12),
+        as_number(separation, "separation", 0),
+        as_count(threads, "threads"),
+    )
+
+
+class Detector:
+    """Finds interference along steps of one surface; keeps its trees between calls.
+
+    surface       Surface, or triangles (F, 3) over as many vertices as the first step has
+    broad_phase   "bvh": trees; "brute_force": all pairs, the oracle
+    narrow_phase  "conservative": advancement by separating planes, never late
+    threads       0: one for each processor; results are the same for any number
+
+    Left out are pairs that share a vertex, pairs of which no vertex moves, and pairs of bodies that do not meet.
+    """
+
+    def __init__(
+        self,
+        surface: Surface | ArrayLike,
+        broad_phase: str = "bvh",
+        narrow_phase: str = "conservative",
+        threads: int = 0,
+    ) -> None:
+        """Check the arguments; trees are built at the first step."""
+        broad = _choose(BROAD_PHASES, broad_phase, "broad_phase")
+        _choose(NARROW_PHASES, narrow_phase, "narrow_phase")
+        self._broad_phase, self._threads = broad, as_count(threads, "threads")
+        self._surface = surface if isinstance(surface, Surface) else as_indices(surface, "triangles", (None, 3))
+        self._native: _native.Detector | None = None
+
+    def find(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> Events:
+        """Return all events of the step from `start` to `end`, (N, 3) each.
+
+        A pair that starts at distance d0 interferes when it comes within min(separation, keep d0).
+        """
+        first, last = self._positions(start, end)
+        return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, keep)))
+
+    def earliest_time(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> float:
+        """Return the time of the earliest event, inf if there is none; cheaper than `find`."""
+        first, last = self._positions(start, end)
+        return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, keep))
+
+    def _positions(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
+        rows = self._surface.vertex_count if isinstance(self._surface, Surface) else None
+        first = as_floats(start, "start", (rows, 3))
+        return first, as_floats(end, "end", (len(first), 3))
+
+    def _ready(self, vertex_count: int) -> _native.Detector:
+        if self._native is None:
+            self._surface = as_surface(self._surface, vertex_count)
+            self._native = _native.Detector(self._surface.native, self._broad_phase, self._threads)
+        return self._native
+
+
+def _proximity(separation: float, keep: float) -> tuple[float, float]:
+    return as_number(separation, "separation", 0), as_number(keep, "keep", 0)
+
+
+def find_interference(
+    triangles: Surface | ArrayLike,
+    start: ArrayLike,
+    end: ArrayLike,
+    separation: float = 0.0,
+    broad_phase: str = "bvh",
+    narrow_phase: str = "conservative",
+    threads: int = 0,
+) -> Events:
+    """Return all events of one step; see Detector, which keeps its trees for the next.
+
+    triangles   (F, 3), or a Surface; vertices of no triangle take part as points
+    start, end  (N, 3) positions
+    """
+    first = as_floats(start, "start", (None, 3))
+    surface = as_surface(triangles, len(first))
+    return Detector(surface, broad_phase, narrow_phase, threads).find(first, end, separation)
