@@ -16,10 +16,11 @@ namespace stiv {
 /// points. Exact in the range of orientation_3d.
 bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const Positions& q);
 
-/// Pairs of triangle indices, smaller first, sorted.
-using TrianglePairs = std::vector<std::pair<Index, Index>>;
+/// Pairs of indices, sorted.
+using IndexPairs = std::vector<std::pair<Index, Index>>;
 
-/// Exact static test of a whole surface; keeps its tree between calls. Pairs of bodies that do not meet are left out.
+/// Exact static test of a whole surface; keeps its trees between calls. Pairs of bodies that do not meet are left out.
+/// Positions are finite. Results do not depend on the number of threads.
 class IntersectionTest {
  public:
   explicit IntersectionTest(std::shared_ptr<const Surface> surface);
@@ -27,14 +28,17 @@ class IntersectionTest {
   IntersectionTest(IntersectionTest&&) noexcept;
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
 
-  /// All pairs that intersect at positions q, (N, 3).
-  TrianglePairs find(const Positions& q, Execution& execution);
+  /// All pairs of triangles (smaller index first) that intersect at positions q, (N, 3).
+  IndexPairs find(const Positions& q, Execution& execution);
 
-  /// Loose edges against triangles: pairs (loose edge, triangle) that meet.
-  TrianglePairs find_loose_edges(const Positions& q, Execution& execution);
+  /// Pairs (loose edge, triangle) that meet off the vertices they share.
+  IndexPairs find_loose_edges(const Positions& q, Execution& execution);
 
-  /// True if there is none of either kind; ends at the first. `moved` (N, may be empty: all) marks vertices that differ
-  /// from a state known to be free: pairs of unmoved triangles are not looked at.
+  /// Pairs (vertex of no edge at all, triangle) that meet.
+  IndexPairs find_loose_vertices(const Positions& q, Execution& execution);
+
+  /// True if there is none of any kind; ends at the first. `moved` (N, may be empty: all) marks vertices that differ
+  /// from a state known to be free: pairs of which no vertex is marked are not looked at.
   bool is_free(const Positions& q, const std::vector<unsigned char>& moved, Execution& execution);
 
  private:

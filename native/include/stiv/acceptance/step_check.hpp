@@ -6,8 +6,8 @@
 
 namespace stiv {
 
-/// Is the linear step start -> end free, and its end free of intersections? Conservative continuous check of the path,
-/// then the exact static test: the two conditions of an accepted state. [DESIGN 4]
+/// Is the linear step start -> end free, and its end free of intersections, given that its start is? Conservative
+/// continuous check of the path, then the exact static test: the two conditions of an accepted state. [DESIGN 4]
 bool is_step_free(Detector& detector, IntersectionTest& intersections, const Positions& start, const Positions& end,
                   Proximity proximity, Execution& execution);
 

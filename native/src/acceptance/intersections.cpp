@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/acceptance/intersections.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#include "acceptance/primitives.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr Index blocks_per_chunk = 16;
+
+GroupTable meeting_bodies(const Surface& surface) {
+  const auto count = static_cast<Index>(surface.bodies().size());
+  std::vector<unsigned char> meets;
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b < count; ++b) meets.push_back(surface.bodies_meet(a, b));
+  return {count, std::move(meets)};
+}
+
+/// Pairs of two kinds of primitives, or of one with itself, that intersect.
+class Search {
+ public:
+  Search(const Primitives& first, const Primitives& second, const GroupTable& bodies, const Positions& q)
+      : first_(first), second_(second), bodies_(bodies), q_(q) {}
+
+  IndexPairs all(const Execution& execution) const {
+    std::vector<IndexPairs> found(static_cast<std::size_t>(Execution::chunk_count(blocks(), blocks_per_chunk)));
+    execution.for_chunks(blocks(), blocks_per_chunk, [&](Index begin, Index end, Index chunk) {
+      scan(begin, end, [&](const PrimitivePair& pair) {
+        found[static_cast<std::size_t>(chunk)].emplace_back(pair.first, pair.second);
+        return true;
+      });
+    });
+    return sorted(found);
+  }
+
+  bool any(const Execution& execution) const {
+    std::atomic<bool> found{false};
+    execution.for_chunks(blocks(), blocks_per_chunk, [&](Index begin, Index end, Index) {
+      if (found.load(std::memory_order_relaxed)) return;
+      scan(begin, end, [&](const PrimitivePair&) {
+        found.store(true, std::memory_order_relaxed);
+        return false;
+      });
+    });
+    return found;
+  }
+
+ private:
+  Index blocks() const { return second_.empty() ? 0 : first_.tree().block_count(); }
+
+  /// Calls `report(pair)` for what intersects, until it returns false.
+  template <class Report>
+  void scan(Index begin, Index end, const Report& report) const {
+    PairBuffer candidates;
+    for (Index block = begin; block < end; ++block) {
+      candidates.count = 0;
+      first_.tree().overlaps_of_block(block, second_.tree(), bodies_, candidates);
+      for (std::size_t k = 0; k < candidates.count; ++k) {
+        const PrimitivePair& pair = candidates.pairs[k];
+        if (triangles_intersect(first_.corners(pair.first), second_.corners(pair.second), q_) && !report(pair)) return;
+      }
+    }
+  }
+
+  IndexPairs sorted(const std::vector<IndexPairs>& parts) const {
+    IndexPairs pairs;
+    for (const IndexPairs& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+    if (&first_ == &second_)
+      for (auto& [a, b] : pairs)
+        if (b < a) std::swap(a, b);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  }
+
+  const Primitives &first_, &second_;
+  const GroupTable& bodies_;
+  const Positions& q_;
+};
+
+}  // namespace
+
+class IntersectionTest::Implementation {
+ public:
+  explicit Implementation(const Surface& surface)
+      : triangles_(surface, triangle_corners(surface)),
+        loose_edges_(surface, loose_edge_corners(surface)),
+        loose_vertices_(surface, loose_vertex_corners(surface)),
+        bodies_(meeting_bodies(surface)) {}
+
+  IndexPairs find(const Positions& q, const Execution& execution) { return find(triangles_, q, execution); }
+  IndexPairs find_loose_edges(const Positions& q, const Execution& execution) {
+    return find(loose_edges_, q, execution);
+  }
+  IndexPairs find_loose_vertices(const Positions& q, const Execution& execution) {
+    IndexPairs pairs = find(loose_vertices_, q, execution);
+    for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
+    return pairs;
+  }
+
+  bool is_free(const Positions& q, const std::vector<unsigned char>& moved, const Execution& execution) {
+    const std::vector<Bounds> boxes = vertex_bounds(q);
+    for (Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_}) first->update(boxes, moved);
+    for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
+      if (Search(*first, triangles_, bodies_, q).any(execution)) return false;
+    return true;
+  }
+
+ private:
+  IndexPairs find(Primitives& first, const Positions& q, const Execution& execution) {
+    const std::vector<Bounds> boxes = vertex_bounds(q);
+    first.update(boxes, {});
+    if (&first != &triangles_) triangles_.update(boxes, {});
+    return Search(first, triangles_, bodies_, q).all(execution);
+  }
+
+  Primitives triangles_, loose_edges_, loose_vertices_;
+  GroupTable bodies_;
+};
+
+IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
+    : implementation_(std::make_unique<Implementation>(*surface)) {}
+IntersectionTest::~IntersectionTest() = default;
+IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
+IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
+
+IndexPairs IntersectionTest::find(const Positions& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find(q, execution);
+}
+
+IndexPairs IntersectionTest::find_loose_edges(const Positions& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_loose_edges(q, execution);
+}
+
+IndexPairs IntersectionTest::find_loose_vertices(const Positions& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_loose_vertices(q, execution);
+}
+
+bool IntersectionTest::is_free(const Positions& q, const std::vector<unsigned char>& moved, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->is_free(q, moved, execution);
+}
+
+}  // namespace stiv

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "stiv/detection/bvh.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// Corner indices of triangles; of edges and vertices too, as triangles without area: (a, b, b), (a, a, a).
+using CornerList = std::vector<std::array<Index, 3>>;
+
+CornerList triangle_corners(const Surface& surface);
+CornerList loose_edge_corners(const Surface& surface);
+/// Vertices of no triangle and no loose edge.
+CornerList loose_vertex_corners(const Surface& surface);
+
+/// Boxes of all vertices, (N).
+std::vector<Bounds> vertex_bounds(const Positions& q);
+
+/// Primitives of one kind with the tree over them, built when first needed and refitted from then on.
+class Primitives {
+ public:
+  Primitives(const Surface& surface, CornerList corners);
+
+  /// `moved` as in IntersectionTest::is_free.
+  void update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved);
+
+  bool empty() const { return corners_.empty(); }
+  const std::array<Index, 3>& corners(Index k) const { return corners_[static_cast<std::size_t>(k)]; }
+  const Bvh& tree() const { return *tree_; }
+
+ private:
+  CornerList corners_;
+  std::vector<Index> bodies_;
+  std::optional<Bvh> tree_;
+};
+
+}  // namespace stiv
