@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs an edit script on the open scene through the add-on's operators, which must be registered."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import bpy
+
+from stiv import InputError
+from stiv.blender.selecting import select
+from stiv.edit_scripts import EditScript, EditStep
+
+Report = dict[str, Any]
+
+
+def replay(script: EditScript, on_edit: Callable[[Report], None] = lambda report: None) -> list[Report]:
+    """Runs every edit of the script; `on_edit` is told of each one when it is done.
+
+    Of each edit: `number`, `operator`, `milliseconds` of the whole operator call, and what the operator says about it
+    (`status`, `rounds`, `events`, `patches`, ...). Raises InputError, naming the edit, for what cannot be selected and
+    for an edit that the operator refuses; the edits before it stay done. Ends in Object Mode.
+    """
+    reports: list[Report] = []
+    selected: EditStep | None = None
+    try:
+        for step in script.edits():
+            if step is not selected:
+                _prepare(step, script, len(reports))
+                selected = step
+            reports.append(_edit(step, len(reports)))
+            on_edit(reports[-1])
+    finally:
+        if bpy.context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+    return reports
+
+
+def _prepare(step: EditStep, script: EditScript, number: int) -> None:
+    try:
+        _apply_settings({**script.settings, **step.settings})
+        select(step)
+    except InputError as error:
+        raise InputError(f"edit {number} ({step.operator}): {error}") from error
+
+
+def _apply_settings(settings: Mapping[str, Any]) -> None:
+    """Gives the add-on's settings these values; the pivot is the median, as the format of scripts says."""
+    scene = bpy.context.scene
+    scene.tool_settings.transform_pivot_point = "MEDIAN_POINT"
+    for name, value in settings.items():
+        try:
+            if name == "roles":
+                _apply_roles(value)
+            else:
+                setattr(scene.stiv, name, value)
+        except (AttributeError, TypeError, ValueError) as error:
+            raise InputError(f'setting "{name}": {error}') from error
+
+
+def _apply_roles(roles: Mapping[str, str]) -> None:
+    for name, role in roles.items():
+        if name not in bpy.context.scene.objects:
+            raise InputError(f'setting "roles": there is no object "{name}" in the scene')
+        bpy.context.scene.objects[name].stiv.role = role
+
+
+def _edit(step: EditStep, number: int) -> Report:
+    begin = time.perf_counter()
+    try:
+        outcome = getattr(bpy.ops.stiv, step.operator)("EXEC_DEFAULT", **step.values)
+    except RuntimeError as error:  # how an operator's error report arrives
+        reason = str(error).strip().removeprefix("Error: ")
+        raise InputError(f"edit {number} ({step.operator}): {reason}") from error
+    milliseconds = 1000 * (time.perf_counter() - begin)
+    if outcome != {"FINISHED"}:
+        raise InputError(f"edit {number} ({step.operator}): the operator was cancelled")
+    said = json.loads(bpy.context.window_manager.stiv_last_edit)
+    return {"number": number, "operator": step.operator, "milliseconds": round(milliseconds, 3), **said}

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Puts the open scene into the mode and selection that a step of an edit script asks for."""
+
+from __future__ import annotations
+
+import bmesh
+import bpy
+import numpy as np
+
+from stiv import InputError
+from stiv.edit_scripts import EditStep
+
+
+def select(step: EditStep) -> None:
+    """Selects the step's objects, the first one active, and in Edit Mode its points. Raises InputError."""
+    layer = bpy.context.view_layer
+    missing = [name for name in step.objects if name not in layer.objects]
+    if missing:
+        raise InputError(f'there is no object "{missing[0]}" in the view layer')
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for obj in layer.objects:
+        obj.select_set(obj.name in step.objects)
+    layer.objects.active = layer.objects[step.objects[0]]
+    if step.mode == "EDIT":
+        _select_points(layer.objects.active, step)
+
+
+def _select_points(obj: bpy.types.Object, step: EditStep) -> None:
+    count = {"MESH": lambda: len(obj.data.vertices), "LATTICE": lambda: len(obj.data.points)}.get(obj.type)
+    if count is None:
+        raise InputError(f'object "{obj.name}" is neither a mesh nor a lattice and has no points to select')
+    chosen = np.zeros(count(), bool)
+    indices = np.arange(len(chosen)) if step.points is None else np.array(step.points, np.int64)
+    if len(indices) and indices.max() >= len(chosen):
+        raise InputError(f'object "{obj.name}" has {len(chosen)} points; there is no point {indices.max()}')
+    chosen[indices] = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    if obj.type == "LATTICE":
+        obj.data.points.foreach_set("select", chosen)
+    else:
+        _select_vertices(obj.data, chosen)
+
+
+def _select_vertices(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
+    bpy.context.tool_settings.mesh_select_mode = (True, False, False)
+    edited = bmesh.from_edit_mesh(mesh)
+    for vertex, select_it in zip(edited.verts, chosen, strict=True):
+        vertex.select = bool(select_it)
+    edited.select_flush_mode()
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Loads what needs Blender only when a .blend is at hand, with a clear error where it is missing."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+from stiv import InputError
+
+HOW_TO_GET_IT = (
+    "install Blender as a Python module with `pip install bpy` (4.2 to 5.0 for Python 3.11, 5.1 and later for 3.13), "
+    "or run stiv with the Python of a virtual environment that has it"
+)
+
+
+def require_blender(name: str, path: Path) -> ModuleType:
+    """The module `name` of stiv.blender, or `stiv_addon`. Raises InputError if Blender's module is not installed."""
+    if importlib.util.find_spec("bpy") is None:
+        raise InputError(f"{path}: a .blend needs Blender's Python module, which is not installed; {HOW_TO_GET_IT}")
+    return importlib.import_module(name)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parses the command line, runs the subcommand and turns what happened into an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import NoReturn
+
+from stiv import InputError
+from stiv.command_line import check, replay
+from stiv.command_line.exit_codes import ExitCode
+
+_SUBCOMMANDS = (check, replay)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Ends with the exit code for wrong usage, which argparse takes for 2."""
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        self.exit(ExitCode.USAGE, f"{self.prog}: {message}\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command with all its subcommands."""
+    top = _Parser(prog="stiv", description="Interference-aware geometric modeling.")
+    subcommands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
+    for subcommand in _SUBCOMMANDS:
+        subcommand.add_to(subcommands)
+    return top
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command with these arguments (default: the process's own) and returns its exit code."""
+    try:
+        chosen = parser().parse_args(arguments)
+        return int(chosen.run(chosen))
+    except SystemExit as end:  # of argparse: --help or wrong usage
+        return int(end.code or 0)
+    except InputError as error:
+        print(f"stiv: {error}", file=sys.stderr)
+        return ExitCode.BAD_INPUT
+    except KeyboardInterrupt:
+        print("stiv: cancelled", file=sys.stderr)
+        return ExitCode.CANCELLED
+    except Exception:
+        traceback.print_exc()
+        print("stiv: internal error; please report it with the lines above", file=sys.stderr)
+        return ExitCode.INTERNAL_ERROR
+
+
+def main() -> NoReturn:
+    """Runs the command and ends the process."""
+    code = run()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if "bpy" in sys.modules:
+        os._exit(code)  # Blender 4.2 and 4.5 as a module may crash or hang when the interpreter ends
+    sys.exit(code)

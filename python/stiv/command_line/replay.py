@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv replay`: run an edit script on a .blend through the add-on's operators."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiv import InputError
+from stiv.command_line.blender_module import require_blender
+from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.progress import progress_bar
+from stiv.edit_scripts import EditScript, read_edit_script
+
+if TYPE_CHECKING:
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+SCHEMA, VERSION = "stiv-replay", 1
+
+_DESCRIPTION = """\
+Opens a .blend (scripts in it are not run), runs the edits of a script one after another through the operators of the
+add-on, and saves the result. The format of scripts is described in docs/edit_scripts.md."""
+_EXAMPLES = """\
+examples:
+  stiv replay scene.blend edits.json -o edited.blend
+  stiv replay scene.blend edits.json -o edited.blend --report report.json --render picture.png
+
+exit codes: 0 done, 2 bad input (nothing is written), 1 wrong usage, 3 internal error, 5 cancelled"""
+
+
+def add_to(subcommands: Subparsers) -> None:
+    """Adds the subcommand to the parser."""
+    parser = subcommands.add_parser(
+        "replay",
+        help="run an edit script on a .blend",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene to start from")
+    parser.add_argument("edits", type=Path, metavar="EDITS.json", help="the edit script")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
+    parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
+    parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
+    parser.set_defaults(run=_run)
+
+
+def _run(arguments: argparse.Namespace) -> ExitCode:
+    for path in (arguments.output, arguments.report, arguments.render):
+        require_folder(path)
+    if not arguments.scene.is_file():
+        raise InputError(f"{arguments.scene}: there is no such file")
+    script = read_edit_script(arguments.edits)
+    files = require_blender("stiv.blender.blend_files", arguments.scene)
+    files.open_blend(arguments.scene)
+    edits = run_script(script, arguments.scene)
+    with written_atomically(arguments.output) as temporary:
+        files.save_blend(temporary)
+    if arguments.render is not None:
+        with written_atomically(arguments.render) as temporary:
+            files.render_picture(temporary)
+    if arguments.report is not None:
+        write_json(arguments.report, replay_report(arguments.scene, edits))
+    print(summary(edits))
+    return ExitCode.DONE
+
+
+def run_script(script: EditScript, scene: Path) -> list[dict[str, Any]]:
+    """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON."""
+    replaying = require_blender("stiv.blender.replaying", scene)
+    require_blender("stiv_addon", scene).register()
+    with progress_bar("edits", len(script)) as advance:
+        edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]))
+    return edits
+
+
+def replay_report(scene: Path, edits: list[dict[str, Any]]) -> dict[str, Any]:
+    """The report of a replay, ready for JSON."""
+    return {"schema": SCHEMA, "version": VERSION, "scene": scene.name, "edits": edits}
+
+
+def summary(edits: list[dict[str, Any]]) -> str:
+    """What was done, in one line."""
+    milliseconds = sum(edit["milliseconds"] for edit in edits)
+    rounds = sum(edit["rounds"] for edit in edits)
+    stopped = sum(edit["status"] == "blocked" for edit in edits)
+    return f"{len(edits)} edits, {rounds} rounds, {milliseconds / 1000:.1f} s; {stopped} edits blocked"

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edit scripts: what to select and which operator to run, step by step, as JSON. The format: docs/edit_scripts.md."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from stiv import InputError
+
+SCHEMA, VERSION = "stiv-edits", 1
+MAX_EDITS = 1_000_000
+MAX_BYTES = 64 * 2**20
+_VALUES = {"move": {"value": 3}, "scale": {"value": 3}, "rotate": {"angle": 1, "axis": 3}}
+_STEP_KEYS = {"operator", "mode", "objects", "points", "values", "repeat", "settings"}
+
+
+@dataclass(frozen=True)
+class EditStep:
+    """One operator call on a selection.
+
+    `points` are indices of cage vertices or lattice points in Edit Mode, None for all of them. `values` are the
+    operator's properties in world units and radians. `settings` are the add-on's settings for this step by name.
+    """
+
+    operator: str
+    mode: str
+    objects: tuple[str, ...]
+    values: Mapping[str, Any]
+    points: tuple[int, ...] | None = None
+    repeat: int = 1
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class EditScript:
+    """The steps of a script, with the settings that all of them start from."""
+
+    steps: tuple[EditStep, ...]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    description: str = ""
+
+    def edits(self) -> Iterator[EditStep]:
+        """Every single edit: each step as often as it repeats."""
+        for step in self.steps:
+            for _ in range(step.repeat):
+                yield step
+
+    def __len__(self) -> int:
+        """Number of edits, repeats counted."""
+        return sum(step.repeat for step in self.steps)
+
+
+def read_edit_script(path: Path | str) -> EditScript:
+    """The script in a file. Raises InputError naming file, step and field."""
+    path = Path(path)
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise InputError(f"{path}: larger than {MAX_BYTES // 2**20} MiB, which no edit script needs")
+        return parse_edit_script(json.loads(path.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: nested too deeply") from error
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: not JSON in UTF-8: {error}") from error
+
+
+def parse_edit_script(data: object) -> EditScript:
+    """The script in parsed JSON. Raises InputError naming step and field."""
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        raise InputError(f'not an edit script: the field "schema" is not "{SCHEMA}"')
+    if data.get("version") != VERSION:
+        raise InputError(f"version {data.get('version')!r} of the format is not known; this program reads {VERSION}")
+    steps = data.get("steps")
+    if not isinstance(steps, list):
+        raise InputError('the field "steps" is not a list')
+    script = EditScript(
+        tuple(_step(step, f"step {number}") for number, step in enumerate(steps)),
+        _mapping(data.get("settings", {}), "settings"),
+        str(data.get("description", "")),
+    )
+    if len(script) > MAX_EDITS:
+        raise InputError(f"{len(script)} edits in all; at most {MAX_EDITS} are run")
+    return script
+
+
+def _step(data: object, where: str) -> EditStep:
+    step = _mapping(data, where)
+    unknown = sorted(set(step) - _STEP_KEYS)
+    if unknown:
+        raise InputError(f'{where}: unknown field "{unknown[0]}"; there are {", ".join(sorted(_STEP_KEYS))}')
+    operator = step.get("operator")
+    if operator not in _VALUES:
+        raise InputError(f"{where}: operator {operator!r} is none of {', '.join(_VALUES)}")
+    mode = step.get("mode", "OBJECT")
+    if mode not in ("OBJECT", "EDIT"):
+        raise InputError(f'{where}: mode {mode!r} is neither "OBJECT" nor "EDIT"')
+    repeat = step.get("repeat", 1)
+    if not _is_index(repeat) or repeat < 1:
+        raise InputError(f"{where}: repeat {repeat!r} is not a whole number above 0")
+    return EditStep(
+        operator,
+        mode,
+        _objects(step.get("objects"), mode, where),
+        _values(step.get("values"), operator, where),
+        _points(step.get("points", "all"), mode, where),
+        repeat,
+        _mapping(step.get("settings", {}), f"{where}: settings"),
+    )
+
+
+def _objects(data: object, mode: str, where: str) -> tuple[str, ...]:
+    if not isinstance(data, list) or not data or not all(isinstance(name, str) for name in data):
+        raise InputError(f'{where}: "objects" is not a list of object names')
+    if mode == "EDIT" and len(data) != 1:
+        raise InputError(f"{where}: Edit Mode takes one object, not {len(data)}")
+    return tuple(data)
+
+
+def _points(data: object, mode: str, where: str) -> tuple[int, ...] | None:
+    if data == "all":
+        return None
+    if mode != "EDIT":
+        raise InputError(f'{where}: "points" are selected in Edit Mode only')
+    if not isinstance(data, list) or not all(_is_index(index) for index in data):
+        raise InputError(f'{where}: "points" is neither "all" nor a list of indices')
+    return tuple(data)
+
+
+def _values(data: object, operator: str, where: str) -> dict[str, Any]:
+    values = _mapping(data, f"{where}: values")
+    wanted = _VALUES[operator]
+    if set(values) != set(wanted):
+        raise InputError(f"{where}: {operator} takes the values {', '.join(wanted)}, not {', '.join(values) or 'none'}")
+    return {name: _numbers(values[name], count, f"{where}: {name}") for name, count in wanted.items()}
+
+
+def _numbers(data: object, count: int, where: str) -> float | tuple[float, ...]:
+    numbers = data if isinstance(data, list) else [data]
+    if len(numbers) != count or not all(_is_number(number) for number in numbers):
+        raise InputError(f"{where}: {count} finite number{'s' * (count > 1)} expected, not {data!r}")
+    return tuple(map(float, numbers)) if count > 1 else float(numbers[0])
+
+
+def _mapping(data: object, where: str) -> dict[str, Any]:
+    if not isinstance(data, dict):
+        raise InputError(f"{where}: not an object with named fields")
+    return data
+
+
+def _is_number(value: object) -> bool:
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300 and math.isfinite(value)
+    )
+
+
+def _is_index(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**31

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reading NPZ files, harmless and hostile."""
+
+import io
+import pickle
+import zipfile
+
+import numpy as np
+import pytest
+import stiv
+from stiv.mesh_files import read_mesh
+
+VERTICES = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
+TRIANGLES = np.array([[0, 1, 2], [0, 1, 3]])
+
+
+def with_member(path, name, data):
+    """An archive with good vertices and triangles, but `name` replaced by these bytes."""
+    with zipfile.ZipFile(path, "w") as archive:
+        for key, value in {"vertices": VERTICES, "triangles": TRIANGLES}.items():
+            stream = io.BytesIO()
+            np.save(stream, value)
+            archive.writestr(f"{key}.npy", data if key == name else stream.getvalue())
+
+
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_arrays_are_read(tmp_path, save):
+    path = tmp_path / "zwei Dreiecke ä.npz"
+    owners = {"object_names": np.array(["a", "b ü"]), "triangle_object": np.array([0, 1])}
+    save(path, vertices=np.asfortranarray(VERTICES), triangles=TRIANGLES.astype(np.uint16), **owners)
+    mesh = read_mesh(path)
+    assert np.array_equal(mesh.vertices, VERTICES) and np.array_equal(mesh.triangles, TRIANGLES)
+    assert mesh.object_names == ("a", "b ü") and mesh.triangle_object.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("arrays", "message"),
+    [
+        ({"vertices": VERTICES}, 'no array "triangles"'),
+        ({"vertices": VERTICES[:, :2], "triangles": TRIANGLES}, 'array "vertices": shape'),
+        ({"vertices": VERTICES, "triangles": TRIANGLES.astype(float)}, "numbers of type float64"),
+        ({"vertices": VERTICES, "triangles": TRIANGLES - 1}, "triangle 0: index out of range"),
+        ({"vertices": VERTICES + np.float32(np.inf), "triangles": TRIANGLES}, "vertex 0: coordinate is not finite"),
+        ({"vertices": VERTICES, "triangles": TRIANGLES, "triangle_object": np.array([0, 4])}, "do not fit"),
+    ],
+)
+def test_arrays_that_do_not_fit_are_named(tmp_path, arrays, message):
+    path = tmp_path / "bad.npz"
+    np.savez(path, **arrays)
+    with pytest.raises(stiv.InputError, match=message):
+        read_mesh(path)
+
+
+class Trap:
+    """Raises when it is unpickled."""
+
+    def __reduce__(self):
+        return (exec, ("raise SystemError('the trap went off')",))
+
+
+def test_pickles_are_never_loaded(tmp_path):
+    path = tmp_path / "trap.npz"
+    np.savez(path, vertices=np.array([[Trap()] * 3], object), triangles=TRIANGLES)
+    with pytest.raises(stiv.InputError, match="numbers of type object"):
+        read_mesh(path)
+    with_member(path, "vertices", pickle.dumps(Trap()))
+    with pytest.raises(stiv.InputError, match="not a NumPy array"):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize("shape", ["(1000000000000, 3)", "(10, 3)", "(-4, 3)"])
+def test_a_header_that_promises_too_much_is_refused(tmp_path, shape):
+    path = tmp_path / "bomb.npz"
+    text = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    with_member(path, "vertices", b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + bytes(96))
+    with pytest.raises(stiv.InputError, match=r'array "vertices": (its header promises|negative length)'):
+        read_mesh(path)
+
+
+def test_noise_is_refused(tmp_path):
+    path = tmp_path / "noise.npz"
+    path.write_bytes(np.random.default_rng(1).bytes(3000))
+    with pytest.raises(stiv.InputError, match="not a readable NPZ archive"):
+        read_mesh(path)
+
+
+def test_a_flipped_byte_is_an_error_or_harmless(tmp_path):
+    good = tmp_path / "good.npz"
+    np.savez_compressed(good, vertices=VERTICES, triangles=TRIANGLES)
+    data, path = good.read_bytes(), tmp_path / "flipped.npz"
+    for position in range(0, len(data), 7):
+        path.write_bytes(data[:position] + bytes([data[position] ^ 0xFF]) + data[position + 1 :])
+        try:
+            read_mesh(path)
+        except stiv.InputError as error:
+            assert "flipped.npz" in str(error)
