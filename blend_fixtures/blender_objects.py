@@ -124,6 +124,7 @@ def _set_render(scene: bpy.types.Scene, size: tuple[int, int]) -> None:
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.filepath = "//"
+    scene.render.image_settings.compression, scene.render.dither_intensity = 90, 0.0  # small pictures
     scene.view_settings.view_transform = "Standard"
     shading = scene.display.shading
     shading.light, shading.color_type = "STUDIO", "MATERIAL"

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs that are whole or not there."""
+
+import os
+
+import pytest
+import stiv
+from stiv.command_line.output_files import write_json, written_atomically
+
+
+def test_an_output_replaces_what_was_there(tmp_path):
+    path = tmp_path / "a ü.json"
+    path.write_text("old")
+    write_json(path, {"name": "ü"})
+    assert path.read_text(encoding="utf-8") == '{\n  "name": "ü"\n}\n'
+    assert os.listdir(tmp_path) == [path.name]
+
+
+def test_an_error_while_writing_leaves_what_was_there(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text("old")
+
+    def fail_half_way():
+        with written_atomically(path) as temporary:
+            temporary.write_text("half")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail_half_way()
+    assert path.read_text() == "old" and os.listdir(tmp_path) == ["a.json"]
+
+
+def test_a_place_that_cannot_be_written_is_named(tmp_path):
+    with pytest.raises(stiv.InputError, match=r"a\.json: cannot be written"):
+        write_json(tmp_path / "nowhere" / "a.json", {})
