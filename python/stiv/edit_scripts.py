@@ -143,7 +143,7 @@ def _values(data: object, operator: str, where: str) -> dict[str, Any]:
 
 
 def _numbers(data: object, count: int, where: str) -> float | tuple[float, ...]:
-    numbers = data if isinstance(data, list) else [data]
+    numbers: list[Any] = data if isinstance(data, list) else [data]
     if len(numbers) != count or not all(_is_number(number) for number in numbers):
         raise InputError(f"{where}: {count} finite number{'s' * (count > 1)} expected, not {data!r}")
     return tuple(map(float, numbers)) if count > 1 else float(numbers[0])

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.edit_scripts import EditStep
@@ -42,7 +43,7 @@ def _select_points(obj: bpy.types.Object, step: EditStep) -> None:
         _select_vertices(obj.data, chosen)
 
 
-def _select_vertices(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
+def _select_vertices(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
     bpy.context.tool_settings.mesh_select_mode = (True, False, False)
     edited = bmesh.from_edit_mesh(mesh)
     for vertex, select_it in zip(edited.verts, chosen, strict=True):
