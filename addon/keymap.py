@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keys of the operators. They can be changed in the preferences, and none is taken in Blender's default keymap."""
+
+import bpy
+
+# Shift+Alt with letters that Blender's default keymap leaves free in these modes; G and S with Shift+Alt are taken.
+KEYS = {"stiv.move": "M", "stiv.rotate": "R", "stiv.scale": "E", "stiv.check": "C"}
+# Keymaps of modes: those of the whole 3D view come later, and what a mode takes never reaches them.
+KEYMAPS = ("Object Mode", "Mesh", "Lattice")
+
+_added: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
+
+
+def register() -> None:
+    """Add the keys to the add-on keymaps; Blender without a window has none."""
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is None:
+        return
+    for name in KEYMAPS:
+        keymap = configuration.keymaps.new(name=name, space_type="EMPTY")
+        for operator, key in KEYS.items():
+            _added.append((keymap, keymap.keymap_items.new(operator, key, "PRESS", shift=True, alt=True)))
+
+
+def unregister() -> None:
+    """Take the keys away."""
+    for keymap, item in _added:
+        keymap.keymap_items.remove(item)
+    _added.clear()

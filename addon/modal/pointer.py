@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the pointer counts as being, with precision held or not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+PRECISION = 0.1  # of the motion counts while Shift is held
+
+
+@dataclass(frozen=True)
+class Pointer:
+    """The pointer since the start of a drag, in pixels of the region.
+
+    Attributes:
+        start: where the drag began.
+        last: where it was seen last.
+        effective: where it counts as being; lags behind `last` after precise motion.
+        centre: the pivot in the region, None when it has no place there.
+        turn: angle around the centre since the start, radians, counter-clockwise, over any number of turns.
+
+    """
+
+    start: tuple[float, float]
+    last: tuple[float, float]
+    effective: tuple[float, float]
+    centre: tuple[float, float] | None = None
+    turn: float = 0.0
+
+    @staticmethod
+    def at(mouse: tuple[float, float], centre: tuple[float, float] | None = None) -> Pointer:
+        """A pointer that has not moved."""
+        return Pointer(mouse, mouse, mouse, centre)
+
+    def moved(self, mouse: tuple[float, float], *, precise: bool = False) -> Pointer:
+        """After a motion to `mouse`."""
+        share = PRECISION if precise else 1.0
+        effective = (
+            self.effective[0] + share * (mouse[0] - self.last[0]),
+            self.effective[1] + share * (mouse[1] - self.last[1]),
+        )
+        turn = self.turn + share * self._turn_to(mouse)
+        return Pointer(self.start, mouse, effective, self.centre, turn)
+
+    def _turn_to(self, mouse: tuple[float, float]) -> float:
+        if self.centre is None:
+            return 0.0
+        before = (self.last[0] - self.centre[0], self.last[1] - self.centre[1])
+        after = (mouse[0] - self.centre[0], mouse[1] - self.centre[1])
+        cross = before[0] * after[1] - before[1] * after[0]
+        dot = before[0] * after[0] + before[1] * after[1]
+        return math.atan2(cross, dot)

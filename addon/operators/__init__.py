@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators, one a file."""
+
+from .check import STIV_OT_check
+from .move import STIV_OT_move
+from .rotate import STIV_OT_rotate
+from .scale import STIV_OT_scale
+
+TRANSFORMS = (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
+CLASSES = (*TRANSFORMS, STIV_OT_check)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Between Blender's window and the plain data of a drag: events in, header and status bar out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import bpy
+
+from ..modal.events import Event
+from ..modal.state import State
+from ..modal.texts import header_text, status_text
+from ..transform.frame import Frame
+
+MODIFIERS = ("shift", "ctrl", "alt", "oskey")
+
+
+def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Event:
+    """An event with the pointer in pixels of the region that the drag began in."""
+    corner = (region.x, region.y) if region is not None else (0, 0)
+    return Event(
+        type=event.type,
+        value=event.value,
+        mouse=(float(event.mouse_x - corner[0]), float(event.mouse_y - corner[1])),
+        modifiers=frozenset(name for name in MODIFIERS if getattr(event, name)),
+        text=event.unicode,
+    )
+
+
+def centre(frame: Frame) -> tuple[float, float] | None:
+    """Where the pivot is seen; the middle of the region for one behind the viewer."""
+    if frame.view is None:
+        return None
+    return frame.view.project(frame.pivot) or (frame.view.size[0] / 2.0, frame.view.size[1] / 2.0)
+
+
+def show(context: bpy.types.Context, state: State, value: str, verdict: str, notes: Sequence[str]) -> None:
+    """Write header and status bar, and have the views drawn again."""
+    text = header_text(state, value, verdict, notes)
+    for area in _views(context):
+        area.header_text_set(text)
+        area.tag_redraw()
+    if context.workspace is not None:
+        context.workspace.status_text_set(status_text(state))
+
+
+def clear(context: bpy.types.Context) -> None:
+    """Give header and status bar back."""
+    for area in _views(context):
+        area.header_text_set(None)
+        area.tag_redraw()
+    for workspace in bpy.data.workspaces:
+        workspace.status_text_set(None)
+
+
+def _views(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
+    """Every 3D view: the one of the drag may be another object by now, so none is remembered."""
+    for window in context.window_manager.windows:
+        yield from (area for area in window.screen.areas if area.type == "VIEW_3D")

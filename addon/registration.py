@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that the extension adds to Blender, in order, and takes away again in reverse."""
+
+import bpy
+
+from . import keymap, menus, operators, panel, properties
+
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *panel.CLASSES)
+
+
+def register() -> None:
+    """Add classes, settings, menu entries and keys. Needs no native module."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    properties.register()
+    menus.register()
+    keymap.register()
+
+
+def unregister() -> None:
+    """Take everything away again."""
+    keymap.unregister()
+    menus.unregister()
+    properties.unregister()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the properties of a scene to the plain settings of an edit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+DRAG_BUDGET = 0.1  # seconds that one solve may hold the interface
+
+
+def edit_settings(scene: Any, time_budget: float = 0.0) -> Any:
+    """`stiv.blender.EditSettings` of a scene; `time_budget` in seconds, 0 for none."""
+    from stiv.blender import EditSettings  # the add-on registers without the native module
+
+    chosen = scene.stiv
+    return EditSettings(
+        separation=chosen.separation,
+        responders=chosen.responders,
+        object_response=chosen.object_response,
+        roles={thing.name: thing.stiv.role for thing in scene.objects if thing.stiv.role != "auto"},
+        time_budget=time_budget,
+    )

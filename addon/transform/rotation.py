@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rotate: from the pointer's turn around the pivot, or a typed angle, to an axis and an angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..modal.state import State
+from .frame import Frame, about
+from .view import Vector
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A rotation by `angle` radians, counter-clockwise about the unit `axis` (3,) in world space."""
+
+    angle: float
+    axis: Vector
+
+    def matrix(self, frame: Frame) -> Vector:
+        """(4, 4) world matrix about the frame's pivot (Rodrigues' formula)."""
+        x, y, z = self.axis
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        linear = np.eye(3) + math.sin(self.angle) * cross + (1.0 - math.cos(self.angle)) * (cross @ cross)
+        return about(frame.pivot, linear)
+
+    def text(self) -> str:
+        """For the header."""
+        return f"Rotate {math.degrees(self.angle):.4g}°"
+
+
+def measure_rotation(state: State, frame: Frame) -> Rotation:
+    """What a drag asks for: about the locked axis, or the line of sight when none is locked. Typed angles: degrees."""
+    toward = np.array([0.0, 0.0, 1.0]) if frame.view is None else frame.view.toward_viewer(frame.pivot)
+    locked = state.constraint.axis
+    axis = toward if locked is None else frame.axes[:, locked]
+    if state.typed.active:
+        return Rotation(math.radians(state.typed.value or 0.0), axis)
+    # Seen from behind, an axis turns the other way round.
+    return Rotation(state.pointer.turn * (1.0 if axis @ toward >= 0.0 else -1.0), axis)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Move: from the pointer's motion, or a typed number, to a vector."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..modal.constraint import Constraint
+from ..modal.state import State
+from .frame import Frame
+from .view import Vector, View
+
+GRAZING = np.sin(np.radians(5.0))  # an axis or plane seen under a smaller angle cannot be pointed at
+HORIZON = 100.0  # a motion longer than so many times the motion in the view plane points beyond the horizon
+
+
+Ray = tuple[Vector, Vector]
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A translation by `vector`, (3,) in world units."""
+
+    vector: Vector
+
+    def matrix(self, frame: Frame) -> Vector:
+        """(4, 4) world matrix."""
+        matrix = np.eye(4)
+        matrix[:3, 3] = self.vector
+        return matrix
+
+    def text(self) -> str:
+        """For the header."""
+        x, y, z = self.vector
+        return f"Move X {x:.4g}  Y {y:.4g}  Z {z:.4g}  (distance {np.linalg.norm(self.vector):.4g})"
+
+
+def measure_translation(state: State, frame: Frame) -> Translation:
+    """What a drag asks for. A typed number counts along the locked axis, or X when none is locked."""
+    if state.typed.active:
+        return Translation((state.typed.value or 0.0) * frame.axes[:, state.constraint.axes[0]])
+    if frame.view is None:
+        return Translation(np.zeros(3))
+    return Translation(_dragged(state, frame, frame.view))
+
+
+def _dragged(state: State, frame: Frame, view: View) -> Vector:
+    start, end = state.pointer.start, state.pointer.effective
+    shift = view.beside(end, frame.pivot) - view.beside(start, frame.pivot)
+    if state.constraint.axis is None or not shift.any():
+        return shift
+    rays = view.ray(start, frame.pivot), view.ray(end, frame.pivot)
+    axis = frame.axes[:, state.constraint.axis]
+    exact = _on_locked(state.constraint, axis, frame.pivot, rays)
+    if exact is not None and _before_horizon(exact, shift, view, frame.pivot):
+        return exact
+    return _flattened(state.constraint, axis, shift, view, frame.pivot)
+
+
+def _on_locked(constraint: Constraint, axis: Vector, pivot: Vector, rays: tuple[Ray, Ray]) -> Vector | None:
+    """From where the first line of sight meets the locked plane or line to where the second does; None if grazing."""
+    meet = _meet_plane if constraint.plane else _meet_line
+    points = [meet(pivot, axis, origin, direction) for origin, direction in rays]
+    return None if points[0] is None or points[1] is None else points[1] - points[0]
+
+
+def _meet_plane(pivot: Vector, normal: Vector, origin: Vector, direction: Vector) -> Vector | None:
+    slope = direction @ normal
+    if abs(slope) < GRAZING:
+        return None
+    return origin + direction * ((pivot - origin) @ normal / slope)
+
+
+def _meet_line(pivot: Vector, axis: Vector, origin: Vector, direction: Vector) -> Vector | None:
+    """The point of the line nearest to the line of sight."""
+    across = axis - direction * (axis @ direction)
+    if np.linalg.norm(across) < GRAZING:
+        return None
+    return pivot + axis * ((origin - pivot) @ across / (across @ across))
+
+
+def _before_horizon(exact: Vector, shift: Vector, view: View, pivot: Vector) -> bool:
+    near = bool(np.linalg.norm(exact) <= HORIZON * np.linalg.norm(shift))
+    return near and view.project(pivot + exact) is not None
+
+
+def _flattened(constraint: Constraint, axis: Vector, shift: Vector, view: View, pivot: Vector) -> Vector:
+    """Grazing: a plane takes what of the motion lies in it; an axis comes nearer as the pointer goes down."""
+    if constraint.plane:
+        return shift - axis * (axis @ shift)
+    across = axis - (toward := view.toward_viewer(pivot)) * (axis @ toward)
+    if np.linalg.norm(across) >= GRAZING:
+        return axis * (shift @ across / (across @ across))
+    middle = view.size[0] / 2.0, view.size[1] / 2.0
+    up = view.beside((middle[0], middle[1] + 1.0), pivot) - view.beside(middle, pivot)
+    return axis * (shift @ up / np.linalg.norm(up)) * -np.sign(axis @ toward)

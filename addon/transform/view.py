@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A 3D view as mathematics: between pixels of its region and world positions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Pixel = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class View:
+    """A view in perspective or parallel projection.
+
+    Attributes:
+        projection: (4, 4) from homogeneous world coordinates to clip space (Blender's `perspective_matrix`).
+        size: width and height of the region in pixels.
+
+    """
+
+    projection: Vector
+    size: tuple[int, int]
+
+    def project(self, point: Vector) -> Pixel | None:
+        """The pixel where a world position is seen, None for one that is not in front of the viewer."""
+        clip = self._clip(point)
+        if clip[3] <= 0.0:
+            return None
+        x, y = clip[:2] / clip[3]
+        return float((x + 1.0) / 2.0 * self.size[0]), float((y + 1.0) / 2.0 * self.size[1])
+
+    def unproject(self, pixel: Pixel, depth: float) -> Vector:
+        """The world position at a pixel and a normalised depth in (-1, 1)."""
+        x, y = 2.0 * pixel[0] / self.size[0] - 1.0, 2.0 * pixel[1] / self.size[1] - 1.0
+        point = np.linalg.solve(self.projection, np.array([x, y, depth, 1.0]))
+        return np.asarray(point[:3] / point[3])
+
+    def beside(self, pixel: Pixel, reference: Vector) -> Vector:
+        """The world position at a pixel, as far away as `reference` (parallel to the view plane)."""
+        clip = self._clip(reference)
+        return self.unproject(pixel, float(clip[2] / clip[3]) if clip[3] > 0.0 else 0.0)
+
+    def ray(self, pixel: Pixel, reference: Vector) -> tuple[Vector, Vector]:
+        """The line of sight at a pixel: its point beside `reference`, and the unit direction away from the viewer."""
+        towards = self.unproject(pixel, 1.0) - self.unproject(pixel, -1.0)
+        return self.beside(pixel, reference), towards / np.linalg.norm(towards)
+
+    def toward_viewer(self, point: Vector) -> Vector:
+        """Unit direction from a world position to the viewer."""
+        pixel = self.project(point) or (self.size[0] / 2.0, self.size[1] / 2.0)
+        return -self.ray(pixel, point)[1]
+
+    def _clip(self, point: Vector) -> Vector:
+        return np.asarray(self.projection @ np.append(point, 1.0))

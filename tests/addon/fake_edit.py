@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A stand-in for `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+
+@dataclass
+class FakeEdit:
+    """`statuses`: what the next solves say; `failing`: name of a call -> exception that it raises."""
+
+    statuses: list[str] = field(default_factory=list)
+    failing: dict[str, Exception] = field(default_factory=dict)
+    calls: list[str] = field(default_factory=list)
+    accepted: float = 0.0
+    shown: float = 0.0
+    goals: list[float] = field(default_factory=list)
+
+    def drag(self, matrix: Any) -> Any:
+        self._called("drag")
+        return self._solve(matrix)
+
+    def apply(self, matrix: Any) -> Any:
+        self._called("apply")
+        return self._solve(matrix)
+
+    def settle(self) -> Any:
+        self._called("settle")
+        return SimpleNamespace(status="unchanged")
+
+    def write(self) -> Any:
+        self._called("write")
+        self.shown = self.accepted
+        return None
+
+    def restore(self) -> None:
+        self._called("restore")
+        self.accepted = self.shown = 0.0
+
+    def _called(self, name: str) -> None:
+        self.calls.append(name)
+        if name in self.failing:
+            raise self.failing[name]
+
+    def _solve(self, matrix: Any) -> Any:
+        self.goals.append(float(matrix))
+        self.accepted = min(float(matrix), 1.0)
+        return SimpleNamespace(status=self.statuses.pop(0) if self.statuses else "reached")

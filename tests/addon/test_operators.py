@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators in Blender: registration, and values through `execute` against a stand-in of the edit."""
+
+import sys
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import mathutils  # noqa: E402
+import stiv_addon  # noqa: E402
+from stiv_addon import availability, panel  # noqa: E402
+from stiv_addon.menus import MENUS  # noqa: E402
+from stiv_addon.operators import CLASSES  # noqa: E402
+
+
+class RecordingEdit:
+    """Stands for BlenderEdit: moves the active object as told, unless it should fail."""
+
+    begun: Any = None
+    failing: Exception | None = None
+
+    @classmethod
+    def begin(cls, context: Any, settings: Any, kind: str) -> "RecordingEdit":
+        edit = cls()
+        edit.kind, edit.settings, edit.matrix = kind, settings, None
+        edit.name = context.active_object.name
+        edit.before = context.active_object.matrix_world.copy()
+        RecordingEdit.begun = edit
+        return edit
+
+    def apply(self, matrix: Any) -> Any:
+        self.matrix = np.array(matrix)
+        if self.failing is not None:
+            raise self.failing
+        return SimpleNamespace(status="corrected", blocking=())
+
+    def write(self) -> Any:
+        thing = bpy.data.objects[self.name]
+        thing.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
+        return SimpleNamespace(passed=True, message="")
+
+    def restore(self) -> None:
+        bpy.data.objects[self.name].matrix_world = self.before
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+@pytest.fixture(autouse=True)
+def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """A cube, selected and active, and the stand-in."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
+    stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, EditSettings=SimpleNamespace, SceneChangedError=KeyError)
+    monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
+    monkeypatch.setattr(RecordingEdit, "failing", None)
+    monkeypatch.setattr(availability, "problem", lambda: "")
+    return bpy.context.active_object
+
+
+def test_move_takes_world_values(scene: Any) -> None:
+    assert bpy.ops.stiv.move(value=(0.5, 0.0, -1.0)) == {"FINISHED"}
+    np.testing.assert_allclose(scene.location, (1.5, 2.0, 2.0), atol=1e-6)
+    assert RecordingEdit.begun.kind == "move"
+
+
+def test_rotate_turns_about_the_cursor_when_the_scene_says_so() -> None:
+    bpy.context.scene.tool_settings.transform_pivot_point = "CURSOR"
+    assert bpy.ops.stiv.rotate(angle=np.pi / 2.0, axis=(0.0, 0.0, 5.0)) == {"FINISHED"}
+    np.testing.assert_allclose(bpy.context.active_object.location, (-2.0, 1.0, 3.0), atol=1e-6)
+
+
+def test_scale_uses_local_axes_when_told(scene: Any) -> None:
+    scene.rotation_euler.z = np.pi / 2.0
+    bpy.context.view_layer.update()
+    assert bpy.ops.stiv.scale(value=(2.0, 1.0, 1.0), orientation="LOCAL") == {"FINISHED"}
+    np.testing.assert_allclose(RecordingEdit.begun.matrix[:3, :3], np.diag([1.0, 2.0, 1.0]), atol=1e-6)
+    assert bpy.ops.stiv.scale(value=(2.0, 1.0, 1.0)) == {"FINISHED"}
+    np.testing.assert_allclose(RecordingEdit.begun.matrix[:3, :3], np.diag([2.0, 1.0, 1.0]), atol=1e-6)
+
+
+@pytest.mark.parametrize("failure", [ValueError("no"), RuntimeError("no"), KeyError("no")])
+def test_a_refusal_is_reported_and_changes_nothing(scene: Any, failure: Exception) -> None:
+    RecordingEdit.failing = failure
+    before = scene.matrix_world.copy()
+    with pytest.raises(RuntimeError, match="no"):  # what Blender makes of a reported error
+        bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
+    assert scene.matrix_world == before
+
+
+def test_an_axis_without_direction_is_refused_before_anything_begins() -> None:
+    RecordingEdit.begun = None
+    with pytest.raises(RuntimeError, match="axis of rotation"):
+        bpy.ops.stiv.rotate(angle=1.0, axis=(0.0, 0.0, 0.0))
+    assert RecordingEdit.begun is None
+
+
+def test_settings_and_roles_of_the_scene_are_passed_on(scene: Any) -> None:
+    bpy.context.scene.stiv.separation = 0.25
+    bpy.context.scene.stiv.object_response = "deform"
+    scene.stiv.role = "controls"
+    bpy.ops.stiv.move(value=(0.0, 0.0, 1.0))
+    settings = RecordingEdit.begun.settings
+    assert (settings.separation, settings.object_response, settings.roles) == (0.25, "deform", {scene.name: "controls"})
+    assert settings.time_budget == 0.0
+
+
+def test_median_of_selected_vertices_is_the_pivot_in_edit_mode(scene: Any) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.stiv.scale(value=(2.0, 2.0, 2.0))
+    np.testing.assert_allclose(RecordingEdit.begun.matrix @ [1.0, 2.0, 3.0, 1.0], [1.0, 2.0, 3.0, 1.0], atol=1e-5)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_selected_lattice_points_are_the_pivot_in_edit_mode() -> None:
+    bpy.ops.object.add(type="LATTICE", location=(5.0, 0.0, 0.0))
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.lattice.select_all(action="SELECT")
+    bpy.ops.stiv.scale(value=(3.0, 3.0, 3.0))
+    np.testing.assert_allclose(RecordingEdit.begun.matrix @ [5.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0], atol=1e-5)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_without_the_native_module_operators_say_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(availability, "problem", lambda: "the native module is missing")
+    assert not any(cls.poll(bpy.context) for cls in CLASSES)
+    with pytest.raises(RuntimeError, match="the native module is missing"):
+        bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
+
+
+def test_the_panel_says_why_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines: list[str] = []
+
+    class Layout:
+        alert = False
+
+        def box(self) -> "Layout":
+            return self
+
+        def column(self, align: bool = False) -> "Layout":
+            return self
+
+        def label(self, text: str, icon: str = "") -> None:
+            lines.append(text)
+
+    monkeypatch.setattr(
+        availability, "problem", lambda: "The native module of STIV is missing.\nInstall the extension."
+    )
+    panel.draw_problem(Layout())
+    assert "Install the extension." in lines
+
+
+@pytest.mark.parametrize("menu", MENUS)
+def test_registering_twice_leaves_nothing_behind(menu: str) -> None:
+    entries = len(getattr(bpy.types, menu).draw._draw_funcs)
+    stiv_addon.unregister()
+    assert not hasattr(bpy.types.Scene, "stiv") and not hasattr(bpy.types.Object, "stiv")
+    assert len(getattr(bpy.types, menu).draw._draw_funcs) == entries - 1
+    stiv_addon.register()
+    assert len(getattr(bpy.types, menu).draw._draw_funcs) == entries

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stiv_addon.modal.events import Event
+from stiv_addon.modal.typed_number import MAX_DIGITS, TypedNumber, typed_character
+
+
+def number(keys: str) -> TypedNumber:
+    typed = TypedNumber()
+    for key in keys:
+        typed = typed.typed(key)
+    return typed
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "text"),
+    [
+        ("", None, ""),
+        ("25", 25.0, "25"),
+        ("2.5", 2.5, "2.5"),
+        (".5", 0.5, ".5"),
+        ("2.", 2.0, "2."),
+        (".", None, "."),
+        ("-", None, "-"),
+        ("-3", -3.0, "-3"),
+        ("3-", -3.0, "-3"),
+        ("-3-", 3.0, "3"),
+        ("1.2.3", 1.23, "1.23"),
+        ("12\b", 1.0, "1"),
+        ("12\b\b", None, ""),
+        ("-1\b", None, "-"),
+        ("-1\b\b", None, ""),
+        ("\b", None, ""),
+    ],
+)
+def test_keys_give_the_number(keys: str, value: float | None, text: str) -> None:
+    typed = number(keys)
+    assert (typed.value, typed.text) == (value, text)
+    assert typed.active == bool(text)
+
+
+@given(st.text("0123456789.-\b", max_size=40))
+def test_any_keys_leave_a_number_that_python_reads_alike(keys: str) -> None:
+    typed = number(keys)
+    assert len(typed.digits) <= MAX_DIGITS
+    assert typed.value is None or typed.value == float(typed.text)
+
+
+@given(st.text("0123456789.-\b", max_size=40))
+def test_backspace_deletes_everything_in_the_end(keys: str) -> None:
+    assert not number(keys + "\b" * (MAX_DIGITS + 1)).active
+
+
+@pytest.mark.parametrize(
+    ("event", "character"),
+    [
+        (Event("FIVE", text="5"), "5"),
+        (Event("FIVE"), "5"),
+        (Event("NUMPAD_7"), "7"),
+        (Event("NUMPAD_PERIOD"), "."),
+        (Event("COMMA", text=","), "."),
+        (Event("MINUS"), "-"),
+        (Event("BACK_SPACE", text="\b"), "\b"),
+        (Event("ONE", text="&"), "1"),  # the digit row of a French keyboard
+        (Event("FIVE", modifiers=frozenset({"ctrl"}), text="5"), ""),
+        (Event("A", text="a"), ""),
+        (Event("A", text="12"), ""),
+    ],
+)
+def test_events_type_characters(event: Event, character: str) -> None:
+    assert typed_character(event) == character
