@@ -1,8 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/eigen.h>
+
 #include "module.hpp"
+#include "stiv/acceptance/step_check.hpp"
+
+namespace py = pybind11;
 
 namespace stiv::bindings {
 
-void bind_acceptance(pybind11::module_&) {}
+namespace {
+
+using SurfacePointer = std::shared_ptr<Surface>;
+
+Edges as_rows(const IndexPairs& pairs) {
+  Edges rows(static_cast<Index>(pairs.size()), 2);
+  for (std::size_t k = 0; k < pairs.size(); ++k) rows.row(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
+  return rows;
+}
+
+Edges find_intersections(const SurfacePointer& surface, const Positions& q, int threads) {
+  Execution execution(threads);
+  return as_rows(IntersectionTest(surface).find(q, execution));
+}
+
+std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const Positions& q, int threads) {
+  Execution execution(threads);
+  IntersectionTest test(surface);
+  return {as_rows(test.find_loose_edges(q, execution)), as_rows(test.find_loose_vertices(q, execution))};
+}
+
+bool step_is_free(const SurfacePointer& surface, const Positions& start, const Positions& end, double separation,
+                  int threads) {
+  Execution execution(threads);
+  IntersectionTest test(surface);
+  Detector detector(surface);
+  return test.is_free(start, {}, execution) && is_step_free(detector, test, start, end, {separation}, execution);
+}
+
+}  // namespace
+
+void bind_acceptance(py::module_& module) {
+  using Release = py::call_guard<py::gil_scoped_release>;
+  module.def("find_intersections", &find_intersections, Release());
+  module.def("find_loose_intersections", &find_loose_intersections, Release());
+  module.def("is_step_free", &step_is_free, Release());
+}
 
 }  // namespace stiv::bindings

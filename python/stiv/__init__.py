@@ -3,6 +3,7 @@
 
 from stiv._native import InputError, StartIntersectsError
 from stiv.detection import Detector, Events, find_interference, time_of_impact
+from stiv.intersections import find_intersections, find_loose_intersections, is_step_free
 from stiv.surface import Body, Surface
 
 __all__ = [
@@ -13,5 +14,8 @@ __all__ = [
     "StartIntersectsError",
     "Surface",
     "find_interference",
+    "find_intersections",
+    "find_loose_intersections",
+    "is_step_free",
     "time_of_impact",
 ]

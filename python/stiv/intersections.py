@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exact test for intersections of a surface at rest, and the test that a step must pass to be accepted."""
+
+from numpy.typing import ArrayLike
+
+from stiv import _native
+from stiv.arrays import Floats, Indices, as_count, as_floats, as_number
+from stiv.surface import Surface, as_surface
+
+
+def find_intersections(
+    vertices: ArrayLike, triangles: Surface | ArrayLike, *, all_bodies: bool = False, threads: int = 0
+) -> Indices:
+    """Return all pairs of triangles that intersect, (K, 2) int32: smaller index first, sorted.
+
+    vertices    (N, 3) positions
+    triangles   (F, 3) vertex indices, or a Surface
+    all_bodies  test every pair of a Surface, of bodies too that do not meet during edits (fixed ones, ignored pairs, a
+                rigid one with itself)
+    threads     0: one for each processor; the result is the same for any number
+
+    Two triangles intersect if they meet in a point off the vertex or edge that they share by index. Touching, coplanar
+    overlap, duplicates, coincident vertices of different index, and neighbours folded flat onto each other count;
+    triangles without area are segments or points. Exact for coordinates that are 0 or of magnitude 1e-85 to 1e100.
+    Raises InputError naming the row: a coordinate that is not finite, an index out of range, a wrong shape or dtype.
+    """
+    surface, q = _prepared(vertices, triangles, all_bodies)
+    return _native.find_intersections(surface.native, q, as_count(threads, "threads"))
+
+
+def find_loose_intersections(
+    vertices: ArrayLike, surface: Surface, *, all_bodies: bool = False, threads: int = 0
+) -> tuple[Indices, Indices]:
+    """Return what meets triangles without being part of one: pairs (loose edge, triangle), (vertex, triangle).
+
+    Each is (K, 2) int32, sorted; a vertex is one of no triangle and no loose edge. Arguments, exactness and errors as
+    of find_intersections.
+    """
+    whole, q = _prepared(vertices, surface, all_bodies)
+    return _native.find_loose_intersections(whole.native, q, as_count(threads, "threads"))
+
+
+def is_step_free(
+    triangles: Surface | ArrayLike, start: ArrayLike, end: ArrayLike, separation: float = 0.0, *, threads: int = 0
+) -> bool:
+    """Tell whether the linear step from `start` to `end` is free: its start, its whole path, and its end.
+
+    triangles   (F, 3) vertex indices, or a Surface
+    start, end  (N, 3) positions
+    separation  distance to keep, at least 0, in the units of the positions; pairs that start nearer than twice that
+                keep half their distance instead
+    threads     0: one for each processor
+
+    Start and end are tested exactly (find_intersections, loose edges and vertices included), the path conservatively:
+    True is certain, False may also mean that something comes within rounding of a contact.
+    Raises InputError as find_intersections does.
+    """
+    first = as_floats(start, "start", (None, 3))
+    surface = as_surface(triangles, len(first))
+    last = as_floats(end, "end", (len(first), 3))
+    distance = as_number(separation, "separation", 0)
+    return _native.is_step_free(surface.native, first, last, distance, as_count(threads, "threads"))
+
+
+def _prepared(vertices: ArrayLike, triangles: Surface | ArrayLike, all_bodies: bool) -> tuple[Surface, Floats]:
+    q = as_floats(vertices, "vertices", (None, 3))
+    surface = as_surface(triangles, len(q))
+    if all_bodies:
+        surface = Surface(surface.triangles, surface.vertex_count, surface.loose_edges)
+    return surface, q
