@@ -171,6 +171,13 @@ class Concatenation final : public Deformation {
     return vertices;
   }
 
+  std::vector<Index> rotation_rows() const override {
+    std::vector<Index> rows;
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+      for (const Index row : parts_[part].deformation->rotation_rows()) rows.push_back(control_starts_[part] + row);
+    return rows;
+  }
+
  private:
   void place(const Positions& piece, std::size_t part, Positions& whole) const {
     const std::vector<Index>& vertices = parts_[part].vertices;

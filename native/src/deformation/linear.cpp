@@ -27,7 +27,7 @@ Positions multiply(const WeightMatrix& matrix, const Controls& x) {
   return product;
 }
 
-class Linear final : public Deformation {
+class Linear final : public LinearDeformation {
  public:
   Linear(WeightMatrix matrix, Positions offset)
       : matrix_(std::move(matrix)), columns_(matrix_), offset_(std::move(offset)) {}
@@ -69,6 +69,9 @@ class Linear final : public Deformation {
     return make_linear_metric(columns_, options);
   }
 
+  const WeightMatrix& weights() const override { return matrix_; }
+  const Positions& offset() const override { return offset_; }
+
   std::vector<Index> support(Index control) const override {
     std::vector<Index> vertices;
     for (WeightColumns::InnerIterator entry(columns_, control); entry; ++entry)
@@ -92,7 +95,7 @@ void check_weights(const WeightMatrix& matrix) {
 
 }  // namespace
 
-std::shared_ptr<const Deformation> make_linear(WeightMatrix matrix, Positions offset) {
+std::shared_ptr<const LinearDeformation> make_linear(WeightMatrix matrix, Positions offset) {
   if (offset.rows() != 0 && offset.rows() != matrix.rows())
     throw InputError("linear deformation: offset has " + std::to_string(offset.rows()) + " rows, the weights have " +
                      std::to_string(matrix.rows()) + ": give one row for each vertex, or none");

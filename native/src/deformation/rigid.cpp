@@ -70,6 +70,8 @@ class Rigid final : public Deformation {
     return vertices;
   }
 
+  std::vector<Index> rotation_rows() const override { return {1}; }
+
  private:
   Positions from_centre_;  ///< r_i = rest_i - mean(rest), (n, 3)
 };

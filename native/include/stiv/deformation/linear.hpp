@@ -10,9 +10,16 @@ namespace stiv {
 /// Weights of controls in vertices, (n, m), the same for x, y and z.
 using WeightMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
 
+/// A deformation q = M p + c whose weights can be looked at.
+class LinearDeformation : public Deformation {
+ public:
+  virtual const WeightMatrix& weights() const = 0;  ///< M, (n, m)
+  virtual const Positions& offset() const = 0;      ///< c, (n, 3), or (0, 3) for none
+};
+
 /// q = M p + c. Every linear deformation (subdivision, lattice, their chains) becomes one of these.
 /// @param offset (n, 3), or (0, 3) for none
 /// @throws InputError naming the row: weights or offset not finite, shapes that do not fit.
-std::shared_ptr<const Deformation> make_linear(WeightMatrix matrix, Positions offset = Positions());
+std::shared_ptr<const LinearDeformation> make_linear(WeightMatrix matrix, Positions offset = Positions());
 
 }  // namespace stiv

@@ -15,7 +15,7 @@ enum class BoundarySmoothing {
 };
 
 struct SubdivisionOptions {
-  int levels = 1;             ///< 0..6; vertices an edge is cut into: 2^levels
+  int levels = 1;             ///< 0..6; an edge is cut into 2^levels, 0 leaves the cage as it is
   bool limit_surface = true;  ///< vertices on the limit surface, adaptive refinement to `quality`
   int quality = 3;            ///< 1..10, the modifier's own value; used with limit_surface
   bool simple = false;        ///< the modifier's "Simple" type: no smoothing
@@ -35,8 +35,17 @@ struct Cage {
 
 /// Weights of the cage's vertices in the vertices of the subdivided mesh, in the order Blender gives them:
 /// cage vertices, inner vertices of edges, inner vertices of faces. (BLENDER: OpenSubdiv Far; sharpness = 10 crease^2.)
-/// @throws InputError naming face or edge: fewer than 3 corners, index out of range, an edge missing from the list,
-///         crease out of [0, 1], levels or quality out of range.
+/// @throws InputError naming face or edge: fewer than 3 corners or one twice, index out of range, an edge missing from
+///         the list, crease out of [0, 1], levels or quality out of range.
 WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& options);
+
+/// Corner indices of quads, (Q, 4).
+using Quads = Eigen::Matrix<Index, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+/// The faces of the subdivided mesh, all quads, in the vertex order of `subdivision_weights` and with the orientation
+/// of the cage's faces; those of a cage face stand together.
+/// @param levels 1..6
+/// @throws InputError as `subdivision_weights`
+Quads subdivided_faces(const Cage& cage, int levels);
 
 }  // namespace stiv

@@ -1,0 +1,32 @@
+# The parts of OpenSubdiv that evaluate subdivision surfaces on the processor (far, with vtr and sdc below it), as a
+# static library without any visible symbol: Blender loads an OpenSubdiv of its own, which must not meet this one.
+# STIV_OPENSUBDIV_SOURCE is the folder of its source; tools/opensubdiv_source.sh gets it from Debian.
+
+if(NOT EXISTS "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/stencilTable.h")
+  message(FATAL_ERROR
+    "The source of OpenSubdiv is missing: there is no opensubdiv/far/stencilTable.h in STIV_OPENSUBDIV_SOURCE "
+    "(\"${STIV_OPENSUBDIV_SOURCE}\"). Get it and configure again with:\n"
+    "  tools/opensubdiv_source.sh build/opensubdiv\n"
+    "  cmake -DSTIV_OPENSUBDIV_SOURCE=${PROJECT_SOURCE_DIR}/build/opensubdiv ...")
+endif()
+
+file(GLOB opensubdiv_sources
+  "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/*.cpp"
+  "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/sdc/*.cpp"
+  "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/vtr/*.cpp")
+
+add_library(stiv_opensubdiv STATIC ${opensubdiv_sources})
+target_include_directories(stiv_opensubdiv SYSTEM PUBLIC "${STIV_OPENSUBDIV_SOURCE}")
+
+set_target_properties(stiv_opensubdiv PROPERTIES
+  CXX_STANDARD 14
+  POSITION_INDEPENDENT_CODE ON
+  CXX_VISIBILITY_PRESET hidden
+  VISIBILITY_INLINES_HIDDEN ON
+  EXPORT_COMPILE_COMMANDS OFF)
+# -w for these files only: their warnings are not ours to mend. Contraction is off as in our own code.
+target_compile_options(stiv_opensubdiv PRIVATE -w -ffp-contract=off)
+if(STIV_SANITIZE)
+  # It takes addresses of elements of empty vectors, harmlessly, which these checks end the program for.
+  target_compile_options(stiv_opensubdiv PRIVATE -fno-sanitize=undefined -U_GLIBCXX_ASSERTIONS)
+endif()

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/deformation/linear.hpp"
+
+namespace stiv {
+
+/// Builds a weight matrix row by row. Weights of the same control add up, in the order in which they come; what adds
+/// up to exactly 0 is left out.
+class WeightRows {
+ public:
+  WeightRows(Index row_count, Index control_count);
+
+  void add(Index control, double weight);
+  void end_row();
+
+  /// The matrix of the rows ended so far.
+  WeightMatrix matrix() const;
+
+ private:
+  std::vector<double> sum_;            ///< of the row being built, by control
+  std::vector<unsigned char> in_row_;  ///< by control: has it a sum in this row?
+  std::vector<Index> touched_;         ///< controls of this row
+  std::vector<Index> starts_{0}, controls_;
+  std::vector<double> weights_;
+};
+
+}  // namespace stiv
