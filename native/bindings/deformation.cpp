@@ -1,8 +1,188 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/deformation/deformation.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
 #include "module.hpp"
+#include "stiv/deformation/composition.hpp"
+#include "stiv/deformation/concatenation.hpp"
+#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/lattice.hpp"
+#include "stiv/deformation/rigid.hpp"
+#include "stiv/deformation/scaling.hpp"
+#include "stiv/deformation/subdivision.hpp"
+#include "stiv/error.hpp"
+
+namespace py = pybind11;
 
 namespace stiv::bindings {
 
-void bind_deformation(pybind11::module_&) {}
+namespace {
+
+/// Python knows no const: what it holds has no method that changes it.
+std::shared_ptr<Deformation> shared(const std::shared_ptr<const Deformation>& deformation) {
+  return std::const_pointer_cast<Deformation>(deformation);
+}
+
+template <class T>
+py::array_t<T> array_of(const T* data, Eigen::Index count) {
+  return py::array_t<T>(count, data);
+}
+
+/// (starts, controls, values, (n, m)): compressed rows.
+py::tuple rows_of(const WeightMatrix& matrix) {
+  return py::make_tuple(array_of(matrix.outerIndexPtr(), matrix.rows() + 1),
+                        array_of(matrix.innerIndexPtr(), matrix.nonZeros()),
+                        array_of(matrix.valuePtr(), matrix.nonZeros()), py::make_tuple(matrix.rows(), matrix.cols()));
+}
+
+SparseField all_rows(const Positions& values) {
+  SparseField field;
+  for (Index row = 0; row < values.rows(); ++row) {
+    field.index.push_back(row);
+    field.value.push_back(values.row(row));
+  }
+  return field;
+}
+
+Positions dense(const SparseField& field, Index count) {
+  Positions values = Positions::Zero(count, 3);
+  for (std::size_t k = 0; k < field.index.size(); ++k) values.row(field.index[k]) = field.value[k];
+  return values;
+}
+
+void check_rows(const Positions& values, Index count, const char* name) {
+  if (values.rows() != count)
+    throw InputError(std::string(name) + " has " + std::to_string(values.rows()) + " rows, expected " +
+                     std::to_string(count));
+}
+
+Positions pull_back(const Deformation& deformation, const Controls& p, const Positions& g) {
+  check_rows(p, deformation.control_count(), "controls");
+  check_rows(g, deformation.vertex_count(), "covector");
+  return dense(deformation.pull_back(p, all_rows(g)), deformation.control_count());
+}
+
+Positions push_forward(const Deformation& deformation, const Controls& p, const Controls& d) {
+  check_rows(p, deformation.control_count(), "controls");
+  return deformation.push_forward(p, d);
+}
+
+Positions apply_inverse_metric(const Deformation& deformation, const Controls& p, const Positions& g, double smoothness,
+                               const Eigen::VectorXd& weights) {
+  check_rows(p, deformation.control_count(), "controls");
+  check_rows(g, deformation.control_count(), "covector");
+  const auto metric = deformation.metric({smoothness, weights});
+  return dense(metric->apply_inverse(p, all_rows(g)), deformation.control_count());
+}
+
+std::vector<Index> support(const Deformation& deformation, Index control) {
+  if (control < 0 || control >= deformation.control_count())
+    throw InputError("control " + std::to_string(control) + " does not exist; there are " +
+                     std::to_string(deformation.control_count()));
+  return deformation.support(control);
+}
+
+/// Weights and offset of a linear deformation; None for others.
+py::object linear_parts(const std::shared_ptr<Deformation>& deformation) {
+  const auto* linear = dynamic_cast<const LinearDeformation*>(deformation.get());
+  if (linear == nullptr) return py::none();
+  return py::make_tuple(rows_of(linear->weights()), linear->offset());
+}
+
+const LinearDeformation& as_linear(const std::shared_ptr<Deformation>& deformation) {
+  const auto* linear = dynamic_cast<const LinearDeformation*>(deformation.get());
+  if (linear == nullptr) throw InputError("only linear deformations can be composed; concatenate others side by side");
+  return *linear;
+}
+
+LatticeInterpolation interpolation_of(const std::string& name) {
+  if (name == "linear") return LatticeInterpolation::linear;
+  if (name == "cardinal") return LatticeInterpolation::cardinal;
+  if (name == "catmull_rom") return LatticeInterpolation::catmull_rom;
+  if (name == "bspline") return LatticeInterpolation::bspline;
+  throw InputError("interpolation \"" + name + "\" is unknown; choose linear, cardinal, catmull_rom or bspline");
+}
+
+BoundarySmoothing boundary_of(const std::string& name) {
+  if (name == "all") return BoundarySmoothing::all;
+  if (name == "preserve_corners") return BoundarySmoothing::preserve_corners;
+  throw InputError("boundary \"" + name + "\" is unknown; choose all or preserve_corners");
+}
+
+Cage make_cage(Index vertex_count, const Edges& edges, std::vector<Index> corners, std::vector<Index> starts,
+               std::vector<float> edge_crease, std::vector<float> vertex_crease) {
+  return {vertex_count, edges, std::move(corners), std::move(starts), std::move(edge_crease), std::move(vertex_crease)};
+}
+
+std::shared_ptr<Deformation> concatenate(
+    const std::vector<std::pair<std::shared_ptr<Deformation>, std::vector<Index>>>& parts, Positions start) {
+  std::vector<DeformationPart> native;
+  for (const auto& [deformation, vertices] : parts) native.push_back({deformation, vertices});
+  return shared(make_concatenation(std::move(native), std::move(start)));
+}
+
+void bind_class(py::module_& module) {
+  py::class_<Deformation, std::shared_ptr<Deformation>>(
+      module, "Deformation",
+      "A map q = f(p) from controls p, (m, 3), to world positions q of a surface, (n, 3). Made by the functions of "
+      "this "
+      "package (identity, linear, rigid, ...); immutable, may be used from several threads.")
+      .def_property_readonly("control_count", &Deformation::control_count, "m, the number of control rows.")
+      .def_property_readonly("vertex_count", &Deformation::vertex_count, "n, the number of vertices that it places.")
+      .def_property_readonly("rotation_rows", &Deformation::rotation_rows,
+                             "Rows of the controls that are rotation vectors (radians) rather than points; a list.")
+      .def("surface", &Deformation::surface, py::arg("controls"), py::call_guard<py::gil_scoped_release>(),
+           "Positions f(p), (n, 3), at controls p, (m, 3).")
+      .def("pull_back", &pull_back, py::arg("controls"), py::arg("covector"), py::call_guard<py::gil_scoped_release>(),
+           "J(p)' g, (m, 3), of a covector g over vertices, (n, 3).")
+      .def("push_forward", &push_forward, py::arg("controls"), py::arg("motion"),
+           py::call_guard<py::gil_scoped_release>(),
+           "J(p) d, (n, 3): the surface's velocity under a motion d of the controls, (m, 3).")
+      .def("apply_inverse_metric", &apply_inverse_metric, py::arg("controls"), py::arg("covector"),
+           py::arg("smoothness") = 0.1, py::arg("weights") = Eigen::VectorXd(),
+           py::call_guard<py::gil_scoped_release>(),
+           "W^1/2 (J'J + damping)^-1 W^1/2 g, (m, 3), of a covector g over controls, (m, 3). `smoothness` > 0 is the "
+           "damping relative to the diagonal; `weights`, (m,), default 1, pin a control where 0.")
+      .def("support", &support, py::arg("control"), "Vertices that a control moves, ascending; a list.");
+}
+
+}  // namespace
+
+void bind_deformation(py::module_& module) {
+  bind_class(module);
+  module.def("identity", [](Index count) { return shared(make_identity(count)); });
+  module.def("linear", [](const std::vector<Index>& starts, const std::vector<Index>& controls,
+                          const std::vector<double>& values, Index control_count, Positions offset) {
+    return shared(make_linear(weights_from_rows(starts, controls, values, control_count), std::move(offset)));
+  });
+  module.def("linear_parts", &linear_parts);
+  module.def("rigid", [](const Positions& rest) { return shared(make_rigid(rest)); });
+  module.def("rigid_rest_controls", &rigid_rest_controls);
+  module.def("scaling", [](const Positions& rest, const Eigen::Matrix3d& rotation) {
+    return shared(make_scaling(rest, rotation));
+  });
+  module.def("scaling_rest_controls", &scaling_rest_controls);
+  module.def("concatenate", &concatenate);
+  module.def("compose", [](const std::shared_ptr<Deformation>& outer, const std::shared_ptr<Deformation>& inner) {
+    return shared(make_composition(as_linear(outer), as_linear(inner)));
+  });
+  py::class_<Cage>(module, "Cage").def(py::init(&make_cage));
+  module.def("subdivision_weights", [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple,
+                                       const std::string& boundary) {
+    return rows_of(subdivision_weights(cage, {levels, limit_surface, quality, simple, boundary_of(boundary)}));
+  });
+  module.def("subdivided_faces", &subdivided_faces);
+  module.def("lattice_weights",
+             [](const std::array<Index, 3>& resolution, const std::array<std::string, 3>& interpolation, Positions rest,
+                Eigen::VectorXd point_weights, const Positions& vertices, const Eigen::VectorXd& influence) {
+               LatticeDefinition lattice{resolution, {}, std::move(rest), std::move(point_weights)};
+               for (std::size_t axis = 0; axis < 3; ++axis)
+                 lattice.interpolation[axis] = interpolation_of(interpolation[axis]);
+               return rows_of(lattice_weights(lattice, vertices, influence));
+             });
+}
 
 }  // namespace stiv::bindings

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <vector>
 
 #include "stiv/deformation/deformation.hpp"
 
@@ -9,6 +10,12 @@ namespace stiv {
 
 /// Weights of controls in vertices, (n, m), the same for x, y and z.
 using WeightMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
+
+/// Weights from compressed rows: those of vertex i are values[starts[i]] to values[starts[i + 1] - 1], of the controls
+/// at the same places of `controls`, in any order; weights of one control in one row add up.
+/// @throws InputError naming the row: lists that do not fit, a control out of range.
+WeightMatrix weights_from_rows(const std::vector<Index>& starts, const std::vector<Index>& controls,
+                               const std::vector<double>& values, Index control_count);
 
 /// A deformation q = M p + c whose weights can be looked at.
 class LinearDeformation : public Deformation {
