@@ -42,7 +42,9 @@ def plant_session(threads: int) -> stiv.EditSession:
         surface.triangles(), vertex_body=np.repeat([0, 1], [len(moved), len(vase.vertices)]), bodies=bodies
     )
     frame = grid.placement.matrix()
-    deformation = stiv.concatenate([(stiv.lattice(shoots.vertices, grid.resolution, frame=frame), moved)], surface.vertices)
+    deformation = stiv.concatenate(
+        [(stiv.lattice(shoots.vertices, grid.resolution, frame=frame), moved)], surface.vertices
+    )
     points = stiv.lattice_rest_points(grid.resolution) @ frame[:3, :3].T + frame[:3, 3]
     return stiv.EditSession(topology, deformation, points, stiv.EditOptions(threads=threads))
 
