@@ -31,6 +31,14 @@ py::array_t<T> array_of(const T* data, Eigen::Index count) {
   return py::array_t<T>(count, data);
 }
 
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::vector<T> vector_of(const Array<T>& array) {
+  return std::vector<T>(array.data(), array.data() + array.size());
+}
+
 /// (starts, controls, values, (n, m)): compressed rows.
 py::tuple rows_of(const WeightMatrix& matrix) {
   return py::make_tuple(array_of(matrix.outerIndexPtr(), matrix.rows() + 1),
@@ -118,9 +126,9 @@ Cage make_cage(Index vertex_count, const Edges& edges, std::vector<Index> corner
 }
 
 std::shared_ptr<Deformation> concatenate(
-    const std::vector<std::pair<std::shared_ptr<Deformation>, std::vector<Index>>>& parts, Positions start) {
+    const std::vector<std::pair<std::shared_ptr<Deformation>, Array<Index>>>& parts, Positions start) {
   std::vector<DeformationPart> native;
-  for (const auto& [deformation, vertices] : parts) native.push_back({deformation, vertices});
+  for (const auto& [deformation, vertices] : parts) native.push_back({deformation, vector_of(vertices)});
   return shared(make_concatenation(std::move(native), std::move(start)));
 }
 
@@ -154,9 +162,11 @@ void bind_class(py::module_& module) {
 void bind_deformation(py::module_& module) {
   bind_class(module);
   module.def("identity", [](Index count) { return shared(make_identity(count)); });
-  module.def("linear", [](const std::vector<Index>& starts, const std::vector<Index>& controls,
-                          const std::vector<double>& values, Index control_count, Positions offset) {
-    return shared(make_linear(weights_from_rows(starts, controls, values, control_count), std::move(offset)));
+  module.def("linear", [](const Array<Index>& starts, const Array<Index>& controls, const Array<double>& values,
+                          Index control_count, Positions offset) {
+    return shared(
+        make_linear(weights_from_rows(vector_of(starts), vector_of(controls), vector_of(values), control_count),
+                    std::move(offset)));
   });
   module.def("linear_parts", &linear_parts);
   module.def("rigid", [](const Positions& rest) { return shared(make_rigid(rest)); });

@@ -2,20 +2,53 @@
 """Interference-aware geometric modeling: surfaces that do not go through each other."""
 
 from stiv._native import InputError, StartIntersectsError
+from stiv.deformation import (
+    Deformation,
+    compose,
+    concatenate,
+    identity,
+    linear,
+    linear_weights,
+    rigid,
+    rigid_rest_controls,
+    scaling,
+    scaling_rest_controls,
+)
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.intersections import find_intersections, find_loose_intersections, is_step_free
+from stiv.lattices import lattice, lattice_rest_points, lattice_weights
+from stiv.subdivision import Cage, catmull_clark, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
+from stiv.weights import Weights
 
 __all__ = [
     "Body",
+    "Cage",
+    "Deformation",
     "Detector",
     "Events",
     "InputError",
     "StartIntersectsError",
     "Surface",
+    "Weights",
+    "catmull_clark",
+    "compose",
+    "concatenate",
     "find_interference",
     "find_intersections",
     "find_loose_intersections",
+    "identity",
     "is_step_free",
+    "lattice",
+    "lattice_rest_points",
+    "lattice_weights",
+    "linear",
+    "linear_weights",
+    "rigid",
+    "rigid_rest_controls",
+    "scaling",
+    "scaling_rest_controls",
+    "subdivided_faces",
+    "subdivision_weights",
     "time_of_impact",
 ]

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Deformations: maps q = f(p) from controls, (m, 3), to the positions of a surface, (n, 3).
+
+Controls and positions are float64, in world space and in the caller's unit of length. What a row of controls means is
+the deformation's affair: a vertex, a cage vertex, a lattice point; for rigid bodies two rows, centre and rotation
+vector.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stiv import _native
+from stiv._native import Deformation, InputError
+from stiv.arrays import Floats, as_count, as_floats, as_indices
+from stiv.weights import Weights, as_weights
+
+__all__ = [
+    "Deformation",
+    "compose",
+    "concatenate",
+    "identity",
+    "linear",
+    "linear_weights",
+    "rigid",
+    "rigid_rest_controls",
+    "scaling",
+    "scaling_rest_controls",
+]
+
+
+def identity(vertex_count: int) -> Deformation:
+    """Return q = p: one control a vertex.
+
+    Raises InputError if `vertex_count` is negative.
+    """
+    return _native.identity(as_count(vertex_count, "vertex_count"))
+
+
+def linear(matrix: Any, offset: ArrayLike | None = None) -> Deformation:
+    """Return q = M p + c, with the same weights for x, y and z.
+
+    matrix  M, (n, m): Weights; or a sparse matrix of SciPy, or anything else with `indptr`, `indices`, `data` and
+            `shape` in the sense of its CSR format; or a tuple of these four; or a dense array. Weights of one control
+            in one row add up.
+    offset  c, (n, 3), length; None: zero
+
+    Raises InputError naming the row: lists that do not fit together, a control out of range, a number not finite.
+    """
+    weights = as_weights(matrix, "matrix")
+    rows = weights.shape[0]
+    shift = np.empty((0, 3)) if offset is None else as_floats(offset, "offset", (rows, 3))
+    return _native.linear(weights.indptr, weights.indices, weights.data, weights.shape[1], shift)
+
+
+def linear_weights(deformation: Deformation) -> tuple[Weights, Floats | None]:
+    """Return the weights (n, m) and the offset (n, 3), None where there is none, of a linear deformation.
+
+    Raises InputError if the deformation is not linear (see `linear`, `lattice`, `catmull_clark`, `compose`).
+    """
+    parts = _native.linear_parts(deformation)
+    if parts is None:
+        raise InputError("deformation: it is not linear, so it has no weights")
+    rows, offset = parts
+    return Weights(*rows), offset if len(offset) else None
+
+
+def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Deformation:
+    """Return the linear deformation q = outer(inner(...(p))).
+
+    The last one acts first: `compose(subdivision, lattice)` subdivides what the lattice deforms. Each has as many
+    controls as the next one has vertices. Weights stand for the linear deformation without offset that they describe.
+
+    Raises InputError if numbers do not fit or a deformation is not linear.
+    """
+    chain = [linear(part) if isinstance(part, Weights) else part for part in (outer, *inner)]
+    result = chain[-1]
+    for part in reversed(chain[:-1]):
+        result = _native.compose(part, result)
+    return result
+
+
+def rigid(vertices: ArrayLike) -> Deformation:
+    """Return the motion of a rigid body: q_i = centre + R r_i.
+
+    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the centre, and the rotation vector (axis times angle,
+    radians) that R belongs to. At `rigid_rest_controls(vertices)` nothing is moved.
+
+    vertices  (n, 3) world positions at rest, length
+
+    Raises InputError naming a vertex that is not finite.
+    """
+    return _native.rigid(as_floats(vertices, "vertices", (None, 3)))
+
+
+def rigid_rest_controls(vertices: ArrayLike) -> Floats:
+    """Return the controls, (2, 3), at which `rigid(vertices)` moves nothing: the mean of the vertices, and zero."""
+    return _native.rigid_rest_controls(as_floats(vertices, "vertices", (None, 3)))
+
+
+def scaling(vertices: ArrayLike, rotation: ArrayLike) -> Deformation:
+    """Return an object's scaling along its own axes: q_i = centre + R diag(s) R' r_i.
+
+    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the centre, and the scale factors s, 1 as it is. At
+    `scaling_rest_controls(vertices)` nothing is moved.
+
+    vertices  (n, 3) world positions at rest, length
+    rotation  R, (3, 3): its columns are the object's axes in world space, of length 1 and at right angles
+
+    Raises InputError naming a vertex that is not finite, or if `rotation` is not a rotation.
+    """
+    axes = as_floats(rotation, "rotation", (3, 3))
+    return _native.scaling(as_floats(vertices, "vertices", (None, 3)), axes)
+
+
+def scaling_rest_controls(vertices: ArrayLike) -> Floats:
+    """Return the controls, (2, 3), at which `scaling(vertices, ...)` moves nothing: the mean of the vertices, and 1."""
+    return _native.scaling_rest_controls(as_floats(vertices, "vertices", (None, 3)))
+
+
+def concatenate(parts: Sequence[tuple[Deformation, ArrayLike]], start: ArrayLike) -> Deformation:
+    """Return several deformations side by side on one surface.
+
+    Controls are stacked in the order of the parts; each part responds by its own metric.
+
+    parts  pairs of a deformation and the vertices (k,) of the whole surface that it moves, in its own order
+    start  (N, 3) positions of the whole surface, length; vertices of no part stay there
+
+    Raises InputError naming part and vertex: an index out of range, a vertex moved twice, a part whose number of
+    vertices does not fit its deformation.
+    """
+    whole = as_floats(start, "start", (None, 3))
+    native = [
+        (deformation, as_indices(vertices, f"parts[{k}], vertices", (None,), len(whole)))
+        for k, (deformation, vertices) in enumerate(parts)
+    ]
+    return _native.concatenate(native, whole)
