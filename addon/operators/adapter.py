@@ -14,6 +14,7 @@ from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..settings import DRAG_BUDGET, edit_settings
 from . import interface
+from .last_edit import describe
 from .messages import outcome_text, write_failure
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
@@ -50,6 +51,7 @@ class TransformOperator:
             edit = self._begin(context)
             result = edit.apply(matrix)
             report = edit.write()
+            context.window_manager.stiv_last_edit = describe(result, report)
         except Exception as error:  # nothing may be left half done, whatever went wrong
             return self._refuse(error, edit)
         self._tell(outcome_text(result), write_failure(report))

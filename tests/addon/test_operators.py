@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The operators in Blender: registration, and values through `execute` against a stand-in of the edit."""
 
+import json
 import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
@@ -37,7 +38,8 @@ class RecordingEdit:
         self.matrix = np.array(matrix)
         if self.failing is not None:
             raise self.failing
-        return SimpleNamespace(status="corrected", blocking=())
+        numbers = {"rounds": 3, "patches": 1, "energy": 0.5, "timings": {"total": 0.25}, "counters": {"rounds": 3}}
+        return SimpleNamespace(status="corrected", blocking=(), events=SimpleNamespace(kind=[0, 1]), **numbers)
 
     def write(self) -> Any:
         thing = bpy.data.objects[self.name]
@@ -71,6 +73,13 @@ def test_move_takes_world_values(scene: Any) -> None:
     assert bpy.ops.stiv.move(value=(0.5, 0.0, -1.0)) == {"FINISHED"}
     np.testing.assert_allclose(scene.location, (1.5, 2.0, 2.0), atol=1e-6)
     assert RecordingEdit.begun.kind == "move"
+
+
+def test_what_an_edit_did_can_be_read_by_scripts() -> None:
+    bpy.ops.stiv.move(value=(0.5, 0.0, -1.0))
+    said = json.loads(bpy.context.window_manager.stiv_last_edit)
+    assert (said["status"], said["rounds"], said["events"], said["patches"]) == ("corrected", 3, 2, 1)
+    assert said["timings"] == {"total": 0.25} and said["shown"] is True
 
 
 def test_rotate_turns_about_the_cursor_when_the_scene_says_so() -> None:

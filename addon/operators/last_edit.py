@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last edit did, in numbers, for scripts: the operator's return value has no room for it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+
+def describe(result: Any, report: Any) -> str:
+    """JSON of a `stiv.EditResult` and of the report on what was written."""
+    return json.dumps(
+        {
+            "status": result.status,
+            "rounds": int(result.rounds),
+            "events": len(result.events.kind),
+            "patches": int(result.patches),
+            "energy": float(result.energy),
+            "blocking": list(result.blocking),
+            "timings": {name: float(value) for name, value in result.timings.items()},
+            "counters": {name: int(value) for name, value in result.counters.items()},
+            "shown": bool(report.passed),
+        }
+    )
