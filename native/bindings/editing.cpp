@@ -1,8 +1,248 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/editing/session.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <exception>
+#include <string>
+
+#include "events.hpp"
 #include "module.hpp"
+#include "stiv/error.hpp"
+
+namespace py = pybind11;
 
 namespace stiv::bindings {
 
-void bind_editing(pybind11::module_&) {}
+namespace {
+
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+struct CancelToken {
+  std::atomic<bool> cancelled{false};
+};
+
+Controls controls_from(const DoubleArray& array, const char* what) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw InputError(std::string(what) + " must have shape (m, 3), not " +
+                     py::cast<std::string>(py::str(array.attr("shape"))));
+  return Eigen::Map<const Controls>(array.data(), array.shape(0), 3);
+}
+
+const char* name_of(EditStatus status) {
+  switch (status) {
+    case EditStatus::reached:
+      return "reached";
+    case EditStatus::corrected:
+      return "corrected";
+    case EditStatus::blocked:
+      return "blocked";
+    case EditStatus::budget:
+      return "budget";
+    case EditStatus::cancelled:
+      return "cancelled";
+    case EditStatus::unchanged:
+      return "unchanged";
+  }
+  return "";
+}
+
+py::dict dict_of(const Counters& counters) {
+  py::dict result;
+  result["sub_edits"] = counters.sub_edits;
+  result["rounds"] = counters.rounds;
+  result["detections"] = counters.detections;
+  result["candidate_pairs"] = counters.candidate_pairs;
+  result["pairs_tested"] = counters.pairs_tested;
+  result["events"] = counters.events;
+  result["acceptance_tries"] = counters.acceptance_tries;
+  return result;
+}
+
+py::dict dict_of(const Timings& timings) {
+  py::dict result;
+  result["deformation"] = timings.deformation;
+  result["detection"] = timings.detection;
+  result["volumes"] = timings.volumes;
+  result["response"] = timings.response;
+  result["acceptance"] = timings.acceptance;
+  result["total"] = timings.total;
+  return result;
+}
+
+py::dict dict_of(const EditResult& result) {
+  py::dict values;
+  values["status"] = name_of(result.status);
+  values["controls"] = result.controls;
+  values["surface"] = result.surface;
+  values["energy"] = result.energy;
+  values["fraction"] = result.fraction;
+  values["events"] = arrays_of(result.events);
+  values["patches"] = result.patches;
+  values["blocking"] = result.blocking;
+  values["counters"] = dict_of(result.counters);
+  values["timings"] = dict_of(result.timings);
+  return values;
+}
+
+/// Marks a session as in use for the length of a scope.
+class InUse {
+ public:
+  explicit InUse(std::atomic<bool>& flag) : flag_(flag) {
+    if (flag_.exchange(true)) throw InputError("the session is in use by another call; wait for it, or cancel it");
+  }
+  ~InUse() { flag_ = false; }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  std::atomic<bool>& flag_;
+};
+
+/// Calls Python's progress function from within the core. What it raises (an interrupt from the keyboard too) cancels
+/// the work and is kept, to be raised when the core has returned.
+class ProgressCall {
+ public:
+  ProgressCall(const py::object& function, Execution& execution) : function_(function), execution_(execution) {
+    execution_.set_progress([this](const char* phase, double fraction) { report(phase, fraction); });
+  }
+
+  void rethrow() const {
+    if (raised_) std::rethrow_exception(raised_);
+  }
+
+ private:
+  void report(const char* phase, double fraction) {
+    if (raised_) return;
+    const py::gil_scoped_acquire lock;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (!function_.is_none()) function_(phase, fraction);
+    } catch (const py::error_already_set&) {
+      raised_ = std::current_exception();
+      execution_.request_cancel();
+    }
+  }
+
+  const py::object& function_;
+  Execution& execution_;
+  std::exception_ptr raised_;
+};
+
+/// The session as Python sees it.
+class Session {
+ public:
+  Session(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+          const DoubleArray& controls, const EditOptions& options)
+      : threads_(options.threads),
+        session_(make(std::move(surface), std::move(deformation), controls_from(controls, "controls"), options)) {}
+
+  py::dict edit(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress) {
+    const Controls to = controls_from(goal, "goal");
+    return call(cancel, progress, [&](Execution& execution) { return session_.edit(to, execution); });
+  }
+
+  py::dict drag(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress) {
+    const Controls to = controls_from(goal, "goal");
+    return call(cancel, progress, [&](Execution& execution) { return session_.drag(to, execution); });
+  }
+
+  py::dict settle(const CancelToken* cancel, const py::object& progress) {
+    return call(cancel, progress, [&](Execution& execution) { return session_.settle(execution); });
+  }
+
+  void restore(const DoubleArray& controls) {
+    const Controls to = controls_from(controls, "controls");
+    const InUse in_use(in_use_);
+    const py::gil_scoped_release unlocked;
+    session_.restore(to);
+  }
+
+  Controls controls() {
+    const InUse in_use(in_use_);
+    return session_.controls();
+  }
+  Positions surface() {
+    const InUse in_use(in_use_);
+    return session_.surface();
+  }
+  double separation() const { return session_.separation(); }
+
+ private:
+  static EditSession make(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                          Controls controls, const EditOptions& options) {
+    const py::gil_scoped_release unlocked;
+    return EditSession(std::move(surface), std::move(deformation), std::move(controls), options);
+  }
+
+  template <class Work>
+  py::dict call(const CancelToken* cancel, const py::object& progress, const Work& work) {
+    const InUse in_use(in_use_);
+    Execution execution(threads_);
+    if (cancel != nullptr) execution.watch(&cancel->cancelled);
+    const ProgressCall progress_call(progress, execution);
+    EditResult result;
+    {
+      const py::gil_scoped_release unlocked;
+      result = work(execution);
+    }
+    progress_call.rethrow();
+    return dict_of(result);
+  }
+
+  int threads_;
+  EditSession session_;
+  std::atomic<bool> in_use_{false};
+};
+
+void bind_options(py::module_& module) {
+  py::class_<StorageFrame>(module, "StorageFrame")
+      .def(py::init([](Index first, Index count, const Eigen::Matrix4d& frame) {
+        return StorageFrame{first, count, frame};
+      }));
+  py::enum_<ConstraintKind>(module, "ConstraintKind")
+      .value("per_patch", ConstraintKind::per_patch)
+      .value("single", ConstraintKind::single);
+  py::class_<EditOptions>(module, "EditOptions")
+      .def(py::init<>())
+      .def_readwrite("separation", &EditOptions::separation)
+      .def_readwrite("keep", &EditOptions::keep)
+      .def_readwrite("smoothness", &EditOptions::smoothness)
+      .def_readwrite("weights", &EditOptions::weights)
+      .def_readwrite("constraints", &EditOptions::constraints)
+      .def_readwrite("broad_phase", &EditOptions::broad_phase)
+      .def_readwrite("max_sub_edits", &EditOptions::max_sub_edits)
+      .def_readwrite("max_rounds", &EditOptions::max_rounds)
+      .def_readwrite("accumulated_rounds", &EditOptions::accumulated_rounds)
+      .def_readwrite("pull_limit", &EditOptions::pull_limit)
+      .def_readwrite("single_precision", &EditOptions::single_precision)
+      .def_readwrite("storage", &EditOptions::storage)
+      .def_readwrite("time_budget", &EditOptions::time_budget)
+      .def_readwrite("threads", &EditOptions::threads);
+}
+
+}  // namespace
+
+void bind_editing(py::module_& module) {
+  bind_options(module);
+  py::class_<CancelToken>(module, "CancelToken", "Asks a solve to stop; may be used from any thread.")
+      .def(py::init<>())
+      .def("cancel", [](CancelToken& token) { token.cancelled = true; })
+      .def_property_readonly("cancelled", [](const CancelToken& token) { return token.cancelled.load(); });
+  const auto cancel = py::arg("cancel") = static_cast<CancelToken*>(nullptr);
+  const auto progress = py::arg("progress") = py::none();
+  py::class_<Session>(module, "EditSession")
+      .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<Deformation>, const DoubleArray&, const EditOptions&>())
+      .def("edit", &Session::edit, py::arg("goal"), cancel, progress)
+      .def("drag", &Session::drag, py::arg("goal"), cancel, progress)
+      .def("settle", &Session::settle, cancel, progress)
+      .def("restore", &Session::restore, py::arg("controls"))
+      .def_property_readonly("controls", &Session::controls)
+      .def_property_readonly("surface", &Session::surface)
+      .def_property_readonly("separation", &Session::separation);
+}
 
 }  // namespace stiv::bindings

@@ -15,6 +15,7 @@ from stiv.deformation import (
     scaling_rest_controls,
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
+from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.intersections import find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.subdivision import Cage, catmull_clark, subdivided_faces, subdivision_weights
@@ -24,16 +25,22 @@ from stiv.weights import Weights
 __all__ = [
     "Body",
     "Cage",
+    "CancelToken",
     "Deformation",
     "Detector",
+    "EditOptions",
+    "EditResult",
+    "EditSession",
     "Events",
     "InputError",
     "StartIntersectsError",
+    "StorageFrame",
     "Surface",
     "Weights",
     "catmull_clark",
     "compose",
     "concatenate",
+    "edit",
     "find_interference",
     "find_intersections",
     "find_loose_intersections",

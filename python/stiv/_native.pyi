@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Types of the compiled module; what it does is documented by the modules of the package that use it.
 import enum
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,3 +104,41 @@ def lattice_weights(
     vertices: _Floats,
     influence: _Floats,
 ) -> _Rows: ...
+class ConstraintKind(enum.Enum):
+    per_patch = 0
+    single = 1
+
+class StorageFrame:
+    def __init__(self, first: int, count: int, frame: _Floats) -> None: ...
+
+class EditOptions:
+    def __init__(self) -> None: ...
+
+class CancelToken:
+    """Asks a solve to stop; may be used from any thread."""
+
+    def __init__(self) -> None: ...
+    def cancel(self) -> None: ...
+    @property
+    def cancelled(self) -> bool: ...
+
+class EditSession:
+    def __init__(
+        self, surface: Surface, deformation: Deformation, controls: _Floats, options: EditOptions
+    ) -> None: ...
+    def edit(
+        self, goal: _Floats, cancel: CancelToken | None, progress: Callable[[str, float], None] | None
+    ) -> dict[str, Any]: ...
+    def drag(
+        self, goal: _Floats, cancel: CancelToken | None, progress: Callable[[str, float], None] | None
+    ) -> dict[str, Any]: ...
+    def settle(
+        self, cancel: CancelToken | None, progress: Callable[[str, float], None] | None
+    ) -> dict[str, Any]: ...
+    def restore(self, controls: _Floats) -> None: ...
+    @property
+    def controls(self) -> _Floats: ...
+    @property
+    def surface(self) -> _Floats: ...
+    @property
+    def separation(self) -> float: ...

@@ -18,6 +18,36 @@ bool normal_is_usable(const Event& event, const Positions& displacement) {
   return event.normal.dot(relative) < -least_cosine * relative.norm();
 }
 
+/// A contact nearer than this share to a vertex or edge of its face, or to an end of its edge, is a contact with that
+/// vertex or edge: inside a flat wall its normal points anywhere, though the faces beside it tell the way out. So does
+/// the normal of edges that are parallel but for this sine. A box that lies on a wall would be pushed along it by both.
+constexpr double least_share = 1e-6;
+constexpr double least_sine = 1e-3;
+
+bool normal_is_steady(const Event& event, const Positions& start, const Positions& end) {
+  for (const double weight : event.weights)
+    if (std::abs(weight) < least_share) return false;
+  if (event.kind == EventKind::vertex_face) return true;
+  const auto at = [&](int k) -> Vector3 {
+    const Index vertex = event.vertices[k];
+    return start.row(vertex) + event.time * (end.row(vertex) - start.row(vertex));
+  };
+  const Vector3 first = at(1) - at(0), second = at(3) - at(2);
+  return first.cross(second).norm() > least_sine * first.norm() * second.norm();
+}
+
+/// The events that a response is built on: usable and steady ones; usable ones if none is steady.
+std::vector<Index> telling_events(const Events& events, const Positions& start, const Positions& end) {
+  const Positions displacement = end - start;
+  std::vector<Index> usable, steady;
+  for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
+    if (!normal_is_usable(events[k], displacement)) continue;
+    usable.push_back(k);
+    if (normal_is_steady(events[k], start, end)) steady.push_back(k);
+  }
+  return steady.empty() ? usable : steady;
+}
+
 /// The vertex among corners [begin, end) in whose barycentric cell the contact lies; the first of equals.
 Index heaviest_vertex(const Event& event, int begin, int end) {
   int heaviest = begin;
@@ -28,11 +58,10 @@ Index heaviest_vertex(const Event& event, int begin, int end) {
 
 }  // namespace
 
-std::vector<Region> earliest_regions(const Events& events, const Positions& displacement) {
+std::vector<Region> earliest_regions(const Events& events, const Positions& start, const Positions& end) {
   std::vector<Region> regions;
-  for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
+  for (const Index k : telling_events(events, start, end)) {
     const Event& event = events[k];
-    if (!normal_is_usable(event, displacement)) continue;
     const int split = first_side_size(event.kind);
     regions.push_back({heaviest_vertex(event, 0, split), k});
     regions.push_back({heaviest_vertex(event, split, 4), k});

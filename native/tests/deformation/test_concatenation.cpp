@@ -80,3 +80,10 @@ TEST_CASE("concatenation: bad input is named") {
   CHECK_THROWS_AS(make_concatenation({{nullptr, {}}}, start), InputError);
   CHECK(make_concatenation({}, start)->surface(Controls(0, 3)) == start);
 }
+
+TEST_CASE("concatenation: rotation rows of rigid parts are shifted to their place among the stacked controls") {
+  const Positions rest = Positions::Random(3, 3);
+  const auto whole = make_concatenation(
+      {{make_identity(1), {0}}, {make_rigid(rest), {1, 2, 3}}, {make_rigid(rest), {4, 5, 6}}}, Positions::Zero(7, 3));
+  CHECK(whole->rotation_rows() == std::vector<Index>{2, 4});
+}

@@ -17,16 +17,19 @@ Event vertex_on_face(double time) {
   return event;
 }
 
-Positions downward(Index falling) {
-  Positions displacement = Positions::Zero(5, 3);
-  displacement(falling, 2) = -1;
-  return displacement;
+/// Regions of events in which vertex 0 falls on a face whose corners stand still.
+std::vector<Region> regions_of(const Events& events, double fall = 1) {
+  Positions start(4, 3);
+  start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  Positions end = start;
+  end(0, 2) -= fall;
+  return earliest_regions(events, start, end);
 }
 
 }  // namespace
 
 TEST_CASE("region: an event falls into the cells of the heaviest vertex of either side") {
-  const auto regions = earliest_regions({vertex_on_face(0.5)}, downward(0));
+  const auto regions = regions_of({vertex_on_face(0.5)});
   REQUIRE(regions.size() == 2);
   CHECK(regions[0].vertex == 0);
   CHECK(regions[1].vertex == 2);
@@ -34,7 +37,7 @@ TEST_CASE("region: an event falls into the cells of the heaviest vertex of eithe
   Event edges = vertex_on_face(0.5);
   edges.kind = EventKind::edge_edge;
   edges.weights = {0.4, 0.6, -0.7, -0.3};
-  const auto of_edges = earliest_regions({edges}, downward(0));
+  const auto of_edges = regions_of({edges});
   REQUIRE(of_edges.size() == 2);
   CHECK(of_edges[0].vertex == 1);
   CHECK(of_edges[1].vertex == 2);
@@ -42,7 +45,7 @@ TEST_CASE("region: an event falls into the cells of the heaviest vertex of eithe
 
 TEST_CASE("region: the earliest event is kept, of equal ones the first") {
   Events events{vertex_on_face(0.7), vertex_on_face(0.3), vertex_on_face(0.3)};
-  for (const Region& region : earliest_regions(events, downward(0))) CHECK(region.event == 1);
+  for (const Region& region : regions_of(events)) CHECK(region.event == 1);
 }
 
 TEST_CASE("region: an unusable normal gives way to a later usable one, and none is left when all are") {
@@ -50,9 +53,30 @@ TEST_CASE("region: an unusable normal gives way to a later usable one, and none 
   sliding.normal = Vector3::UnitX();
   Event unknown = vertex_on_face(0.2);
   unknown.normal = Vector3::Zero();
-  const auto regions = earliest_regions({sliding, unknown, vertex_on_face(0.9)}, downward(0));
+  const auto regions = regions_of({sliding, unknown, vertex_on_face(0.9)});
   REQUIRE(regions.size() == 2);
   CHECK(regions[0].event == 2);
-  CHECK(earliest_regions({sliding, unknown}, downward(0)).empty());
-  CHECK(earliest_regions({vertex_on_face(0.5)}, Positions::Zero(5, 3)).empty());
+  CHECK(regions_of({sliding, unknown}).empty());
+  CHECK(regions_of({vertex_on_face(0.5)}, 0).empty());
+}
+
+TEST_CASE("region: edges that are nearly parallel or meet at an end count only without others") {
+  Positions start(8, 3);
+  start << 0, 0, 1, 1, 1e-5, 1, 0, 0, 0, 1, 0, 0, 0.5, 0.5, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  Positions end = start;
+  for (const Index falling : {0, 1, 4}) end(falling, 2) = -1;
+  Event parallel;
+  parallel.kind = EventKind::edge_edge;
+  parallel.vertices = {0, 1, 2, 3};
+  parallel.time = 0.2;
+  parallel.weights = {0.6, 0.4, -0.6, -0.4};
+  parallel.normal = Vector3::UnitZ();
+  Event face = vertex_on_face(0.5);
+  face.vertices = {4, 5, 6, 7};
+  CHECK(earliest_regions({parallel}, start, end).size() == 2);
+  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 4);
+  end(1, 1) = start(1, 1) = 1;
+  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 0);
+  parallel.weights = {1, 0, -0.6, -0.4};
+  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 4);
 }

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The seven families of edits on which the response is measured, each as surface, deformation, start and goal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+import stiv
+
+from .cages import bent_sheet
+from .primitives import box, grid, icosphere, triangulated
+from .sweeps import tube
+from .walls import wavy_wall
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One edit: controls (m, 3) that give the surface at the start, and the goal (m, 3) for them."""
+
+    name: str
+    surface: stiv.Surface
+    deformation: stiv.Deformation
+    controls: Array
+    goal: Array
+    options: dict[str, object] = field(default_factory=dict)  #: of stiv.EditOptions, where not the default
+
+
+def _surface(shapes: Sequence[Shape], mobilities: Sequence[str]) -> stiv.Surface:
+    """Shapes side by side, each a body of its own."""
+    whole = joined(shapes)
+    bodies = [stiv.Body(f"{mobility} {number}", mobility) for number, mobility in enumerate(mobilities)]
+    owner = np.repeat(np.arange(len(shapes)), [len(shape.vertices) for shape in shapes])
+    return stiv.Surface(whole.triangles(), vertex_count=len(whole.vertices), vertex_body=owner, bodies=bodies)
+
+
+def _against_obstacle(
+    name: str, mover: Shape, mobility: str, obstacle: Shape, deformation: stiv.Deformation, controls: Array, goal: Array
+) -> Edit:
+    """A mover under `deformation` and an obstacle that stays where it is."""
+    start = joined([mover, obstacle]).vertices
+    whole = stiv.concatenate([(deformation, np.arange(len(mover.vertices)))], start)
+    return Edit(name, _surface([mover, obstacle], [mobility, "fixed"]), whole, controls, goal)
+
+
+def _free_vertices(name: str, shapes: Sequence[Shape], offsets: Sequence[Sequence[float]]) -> Edit:
+    """Every vertex is a control; shape by shape the goal is a translation."""
+    start = joined(shapes).vertices
+    motion = np.concatenate([np.tile(o, (len(s.vertices), 1)) for s, o in zip(shapes, offsets, strict=True)])
+    surface = _surface(shapes, ["deformable"] * len(shapes))
+    return Edit(name, surface, stiv.identity(len(start)), start, start + motion)
+
+
+def spheres(depth: float, levels: int = 3) -> Edit:
+    """A sphere moved by `depth` into, and from 4.3 on through, another one that gives way too; 0.2 apart."""
+    ball = icosphere(levels)
+    other = ball.turned((0.4, 1.1, 2.3)).moved((2.2, 0.1, 0.07))
+    return _free_vertices(f"spheres {depth:g}", [ball, other], [(depth, 0, 0), (0, 0, 0)])
+
+
+def sheets(depth: float, cells: int = 15) -> Edit:
+    """A small rippled sheet moved down by `depth` through a larger one 0.2 below it."""
+    lower = triangulated(grid(cells, cells))
+    upper = lower.scaled((0.6, 0.6, 1)).turned((0, 0, 0.2)).moved((0.03, 0.02, 0.2))
+    ripple = np.zeros_like(upper.vertices)
+    ripple[:, 2] = 0.05 * np.sin(5 * upper.vertices[:, 0])
+    return _free_vertices(f"sheets {depth:g}", [lower, upper.moved(ripple)], [(0, 0, 0), (0, 0, -depth)])
+
+
+def fold(angle: float = 1.35 * np.pi) -> Edit:
+    """A sheet bent by 0.8 pi, to be bent by `angle`: beyond about pi it goes through itself."""
+    start, goal = bent_sheet(0.8 * np.pi), bent_sheet(angle)
+    surface = _surface([start], ["deformable"])
+    return Edit(f"fold {angle / np.pi:g} pi", surface, stiv.identity(len(start.vertices)), start.vertices, goal.vertices)
+
+
+def _catmull_clark(shape: Shape) -> tuple[Array, Shape]:
+    """One step on a closed mesh of quads: weights (n', n) and the finer mesh. [Catmull and Clark 1978]"""
+    quads = np.array(shape.faces)
+    count = len(shape.vertices)
+    sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    edge_of_side = edge_of_side.reshape(quads.shape)
+    corners = np.eye(count)
+    faces = corners[quads].mean(axis=1)
+    middles = corners[edges].mean(axis=1)
+    around = np.zeros((len(edges), count))  # the two faces of each edge
+    np.add.at(around, edge_of_side.ravel(), np.repeat(faces, 4, axis=0))
+    of_faces, of_edges = np.zeros((count, count)), np.zeros((count, count))
+    np.add.at(of_faces, quads.ravel(), np.repeat(faces, 4, axis=0))
+    np.add.at(of_edges, edges.ravel(), np.repeat(middles, 2, axis=0))
+    valence = np.bincount(edges.ravel())[:, None]
+    vertices = (of_faces / valence + 2 * of_edges / valence + (valence - 3) * corners) / valence
+    weights = np.concatenate([vertices, middles / 2 + around / 4, faces])
+    edge, face = count + edge_of_side, count + len(edges) + np.arange(len(quads))
+    finer = [
+        (q[k], e[k], f, e[k - 1]) for q, e, f in zip(quads.tolist(), edge.tolist(), face.tolist(), strict=True) for k in range(4)
+    ]
+    return weights, Shape(weights @ shape.vertices, tuple(finer))
+
+
+def subdivision(depth: float, levels: int = 3) -> Edit:
+    """A subdivided box under its cage of 26 points, moved down by `depth` into a wavy sheet."""
+    cage = box(2).moved((0, 0, 1.25))
+    weights, fine = np.eye(len(cage.vertices)), cage
+    for _ in range(levels):
+        step, fine = _catmull_clark(fine)
+        weights = step @ weights
+    goal = cage.vertices + (0.1, 0, -depth)
+    wall = triangulated(wavy_wall()).moved((0, 0, -0.02))
+    name = f"subdivision {depth:g}"
+    return _against_obstacle(name, fine, "deformable", wall, stiv.linear(weights), cage.vertices, goal)
+
+
+def _bspline_weights(points: Array, low: Array, high: Array, counts: tuple[int, int, int]) -> tuple[Array, Array]:
+    """Tri-cubic uniform B-spline weights (n, m) over a box, and the rest positions (m, 3) that reproduce space."""
+    spans = np.array(counts) - 3
+    place = (points - low) / (high - low) * spans
+    cell = np.minimum(place.astype(int), spans - 1)
+    u = place - cell
+    cubic = np.stack([(1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1, u**3]) / 6
+    weights = np.zeros((len(points), *counts))
+    rows = np.arange(len(points))
+    for i, j, k in np.ndindex(4, 4, 4):
+        weights[rows, cell[:, 0] + i, cell[:, 1] + j, cell[:, 2] + k] = cubic[i, :, 0] * cubic[j, :, 1] * cubic[k, :, 2]
+    index = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
+    return weights.reshape(len(points), -1), low + (index - 1) / spans * (high - low)
+
+
+def _bunch(count: int) -> Shape:
+    """Shoots that lean outward, standing on a circle of three radii."""
+    shoots = []
+    for number in range(count):
+        angle = 2 * np.pi * number / count
+        height = np.linspace(0, 2, 24)
+        out = (0.12 + 0.11 * (number % 3)) * (1 + 0.35 * height)
+        path = np.stack([out * np.cos(angle), out * np.sin(angle), height], axis=1)
+        shoots.append(tube(path, np.full(24, 0.03), 6))
+    return joined(shoots)
+
+
+def _open_vase(rings: int = 26, sides: int = 28) -> Shape:
+    """A surface of revolution without thickness, its neck narrower than the bunch."""
+    height = np.linspace(-1.2, 1.2, rings)
+    radius = 0.42 + 0.18 * np.cos(1.3 * height + 2.2) ** 2
+    angle = 2 * np.pi * np.arange(sides) / sides
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+    vertices = (radius[:, None, None] * circle + height[:, None, None] * [0, 0, 1]).reshape(-1, 3)
+    faces = [
+        (i * sides + j, i * sides + (j + 1) % sides, (i + 1) * sides + (j + 1) % sides, (i + 1) * sides + j)
+        for i in range(rings - 1)
+        for j in range(sides)
+    ]
+    return Shape(vertices, tuple(faces))
+
+
+def vase(depth: float, count: int = 12) -> Edit:
+    """Shoots in a tri-cubic lattice lowered by `depth` into a vase that is too narrow for them."""
+    bunch = _bunch(count).moved((0, 0, 1.28))
+    low, high = bunch.vertices.min(axis=0) - 0.01, bunch.vertices.max(axis=0) + 0.01
+    weights, lattice = _bspline_weights(bunch.vertices, low, high, (6, 6, 8))
+    goal = lattice + (0, 0, -depth)
+    return _against_obstacle(
+        f"vase {depth:g}", bunch, "deformable", _open_vase(), stiv.linear(weights), lattice, goal
+    )
+
+
+def rigid(depth: float, size: float = 1.0) -> Edit:
+    """A rigid tilted ellipsoid moved down by `depth` against a flat wall, 0.6 below it, and aside."""
+    body = icosphere(2).scaled((0.8, 0.4, 0.25)).turned((0, 0.4, 0.3)).scaled(size).moved((0, 0, size))
+    wall = triangulated(grid(19, 19, 4 * size, 4 * size))
+    start = np.stack([body.vertices.mean(axis=0), np.zeros(3)])
+    goal = start + np.array([[0.3, 0, -depth], [0, 0, 0]]) * size
+    return _against_obstacle(f"rigid {depth:g}", body, "rigid", wall, stiv.rigid(body.vertices), start, goal)
+
+
+def _trefoil(rings: int, sides: int) -> Shape:
+    """A closed tube along a trefoil knot; its frames return to themselves after one round."""
+    t = 2 * np.pi * np.arange(rings) / rings
+    path = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], axis=1)
+    tangent = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    across = np.cross(tangent, [0.0, 0.0, 1.0])  # nowhere along the axis on this knot
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    other = np.cross(tangent, across)
+    angle = 2 * np.pi * np.arange(sides) / sides
+    turned = np.cos(angle)[None, :, None] * across[:, None] + np.sin(angle)[None, :, None] * other[:, None]
+    faces = []
+    for i, j in np.ndindex(rings, sides):
+        ahead, beside = (i + 1) % rings, (j + 1) % sides
+        faces.append((i * sides + j, i * sides + beside, ahead * sides + beside, ahead * sides + j))
+    return Shape((path[:, None] + 0.55 * turned).reshape(-1, 3), tuple(faces))
+
+
+def _laplacian_map(shape: Shape, handles: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Weights (n, m) of soft handles and offset (n, 3) of Laplacian editing, by a dense solve. [App. B, Eq. 4]"""
+    count = len(shape.vertices)
+    triangles = shape.triangles()
+    adjacent = np.zeros((count, count))
+    for k in range(3):
+        adjacent[triangles[:, k], triangles[:, k - 1]] = adjacent[triangles[:, k - 1], triangles[:, k]] = 1
+    laplacian = np.eye(count) - adjacent / adjacent.sum(axis=1)[:, None]
+    select = np.zeros((len(handles), count))
+    select[np.arange(len(handles)), handles] = 1
+    normal = laplacian.T @ laplacian + select.T @ select
+    solved = np.linalg.solve(normal, np.hstack([select.T, laplacian.T @ (laplacian @ shape.vertices)]))
+    return solved[:, : len(handles)], solved[:, len(handles) :]
+
+
+def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
+    """A knotted tube under Laplacian editing: its foot is held, its top lifted by `lift`."""
+    shape = _trefoil(rings, sides)
+    y = shape.vertices[:, 1]
+    foot, top = np.flatnonzero(y < np.quantile(y, 0.12)), np.flatnonzero(y > np.quantile(y, 0.9))
+    handles = np.concatenate([foot, top])
+    weights, offset = _laplacian_map(shape, handles)
+    goal = shape.vertices[handles].copy()
+    goal[len(foot) :, 1] += lift
+    free = np.concatenate([np.zeros(len(foot)), np.ones(len(top))])
+    surface = _surface([Shape(shape.vertices, shape.faces)], ["deformable"])
+    deformation = stiv.linear(weights, offset)
+    return Edit(f"knot {lift:g}", surface, deformation, shape.vertices[handles], goal, {"weights": free})
+
+
+def all_edits() -> list[Edit]:
+    """Fourteen edits of the seven families, shallow ones and ones that go fully through."""
+    return [
+        *(spheres(depth) for depth in (0.5, 1.5, 4.6)),
+        *(sheets(depth) for depth in (0.4, 1.0)),
+        fold(),
+        *(subdivision(depth) for depth in (0.6, 1.2)),
+        *(vase(depth) for depth in (0.8, 1.5)),
+        *(rigid(depth) for depth in (1.0, 1.6)),
+        *(knot(lift) for lift in (0.5, 1.0)),
+    ]

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stiv/acceptance/intersections.hpp"
+#include "stiv/deformation/deformation.hpp"
+#include "stiv/detection/detector.hpp"
+#include "stiv/editing/options.hpp"
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// Controls and the surface that they give, in world coordinates.
+struct State {
+  Controls controls;
+  Positions surface;
+};
+
+/// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 10)
+double energy(const Positions& a, const Positions& b);
+
+/// What all edits of a session have in common: validated input, what was made of it once, and the questions that the
+/// loop asks. It holds no accepted state.
+class Problem {
+ public:
+  /// @throws InputError for shapes and values that do not fit
+  Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+          const Controls& controls, EditOptions options);
+
+  const Surface& surface() const { return *surface_; }
+  const Deformation& deformation() const { return *deformation_; }
+  const Metric& metric() const { return *metric_; }
+  const EditOptions& options() const { return options_; }
+  const std::vector<Index>& rotation_rows() const { return rotation_rows_; }
+  Proximity proximity() const { return {options_.separation, options_.keep}; }
+  double diagonal() const { return diagonal_; }
+  bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
+
+  /// @throws InputError naming object and control if shape or values do not fit; `what` is "controls" or "goal"
+  void check_controls(const Controls& controls, const char* what) const;
+  /// @throws StartIntersectsError
+  void check_start(const Positions& q, Execution& execution);
+
+  Controls stored(const Controls& controls) const;
+  Positions surface_at(const Controls& controls, Execution& execution) const;
+
+  /// Events on the way from one surface to the other, and the earliest time of any.
+  Events find_events(const Positions& from, const Positions& to, Execution& execution);
+  double earliest_time(const Positions& from, const Positions& to, Execution& execution);
+  /// Exact static test; `from` is known to be free.
+  bool is_free(const Positions& from, const Positions& to, Execution& execution);
+
+ private:
+  Positions centred(const Positions& q) const { return q.rowwise() - centre_; }
+
+  std::shared_ptr<const Surface> surface_;
+  std::shared_ptr<const Deformation> deformation_;
+  EditOptions options_;
+  std::vector<Index> rotation_rows_;
+  std::unique_ptr<Metric> metric_;
+  Detector detector_;
+  IntersectionTest intersections_;
+  Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
+  double diagonal_ = 0;
+};
+
+}  // namespace stiv

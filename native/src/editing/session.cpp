@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/editing/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "editing/pull.hpp"
+#include "editing/report.hpp"
+#include "stiv/editing/goal.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr int most_pulls = 40;  // of a settlement
+constexpr int most_pulls_of_drag = 12;
+
+}  // namespace
+
+class EditSession::Implementation {
+ public:
+  Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                 Controls controls, EditOptions options)
+      : problem_(std::move(surface), std::move(deformation), controls, std::move(options)) {
+    restore(controls);
+  }
+
+  void restore(const Controls& controls) {
+    const FloatingPointScope floating_point;
+    problem_.check_controls(controls, "controls");
+    Execution execution(problem_.options().threads);
+    State state{controls, problem_.surface_at(controls, execution)};
+    if (!problem_.is_empty()) problem_.check_start(state.surface, execution);
+    goal_ = state;
+    accepted_ = std::move(state);
+    dragging_ = false;
+  }
+
+  EditResult edit(const Controls& goal, Execution& execution) {
+    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+      dragging_ = false;
+      solve_in_turns(problem_, accepted_, aim, report, execution);
+    });
+  }
+
+  EditResult drag(const Controls& goal, Execution& execution) {
+    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+      dragging_ = true;
+      const Controls increment = incremented(aim.controls);
+      if (problem_.stored(increment) != accepted_.controls)
+        solve_in_turns(problem_, accepted_, {increment, aim.surface, false}, report, execution);
+      pull_until_settled(problem_, accepted_, aim, pull_limit(), pulls_after(aim), report, execution);
+    });
+  }
+
+  EditResult settle(Execution& execution) {
+    const Controls goal = goal_.controls;
+    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+      pull_until_settled(problem_, accepted_, aim, dragging_ ? pull_limit() : unlimited, most_pulls, report, execution);
+    });
+  }
+
+  const Problem& problem() const { return problem_; }
+  const State& accepted() const { return accepted_; }
+
+ private:
+  double pull_limit() const { return problem_.options().pull_limit * problem_.diagonal(); }
+
+  /// Enough pulls to go back all the way that the increment came, and one more: a mouse that returns from deep inside
+  /// a wall takes the shape off it, and the pull has to put it back.
+  int pulls_after(const Aim& aim) const {
+    const double increment = (aim.surface - goal_.surface).rowwise().norm().maxCoeff();
+    return static_cast<int>(std::min<double>(most_pulls_of_drag, 1 + std::ceil(increment / pull_limit())));
+  }
+
+  /// The accepted controls moved as the goal moved since the last call; the goal itself if nothing is missing so far.
+  Controls incremented(const Controls& goal) const {
+    if (accepted_.controls == problem_.stored(goal_.controls)) return goal;
+    return moved_alike(accepted_.controls, goal_.controls, goal, problem_.rotation_rows());
+  }
+
+  /// Frame of every call: checks, the goal's surface, interruption, and the result. On anything but an end by itself or
+  /// by the time budget, session and goal are as they were before.
+  template <class Work>
+  EditResult carry_out(const Controls& goal, Execution& execution, const Work& work) {
+    const FloatingPointScope floating_point;
+    problem_.check_controls(goal, "goal");
+    const State before = accepted_, goal_before = goal_;
+    SolveReport report;
+    EditStatus status = EditStatus::unchanged;
+    State target{goal, before.surface};
+    {
+      const ScopedTimer timer(execution.timings.total);
+      if (problem_.options().time_budget > 0) execution.set_time_budget(problem_.options().time_budget);
+      try {
+        target.surface = problem_.surface_at(goal, execution);
+        problem_.surface().check_positions(target.surface);
+        if (!problem_.is_empty() && goal != accepted_.controls) work({goal, target.surface, false}, report);
+        status = status_of(problem_, before, accepted_, goal, report);
+        goal_ = target;
+      } catch (const Interrupted&) {
+        status = execution.cancel_requested() ? EditStatus::cancelled : EditStatus::budget;
+        if (status == EditStatus::cancelled)
+          accepted_ = before;
+        else
+          goal_ = target;
+      } catch (...) {
+        accepted_ = before;
+        throw;
+      }
+    }
+    EditResult result = make_result(problem_, accepted_, target.surface, std::move(report), status);
+    result.counters = execution.counters;
+    result.timings = execution.timings;
+    return result;
+  }
+
+  Problem problem_;
+  State accepted_;
+  State goal_;  ///< of the last call, as given
+  bool dragging_ = false;
+};
+
+EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                         Controls controls, EditOptions options)
+    : implementation_(std::make_unique<Implementation>(std::move(surface), std::move(deformation), std::move(controls),
+                                                       std::move(options))) {}
+EditSession::~EditSession() = default;
+EditSession::EditSession(EditSession&&) noexcept = default;
+EditSession& EditSession::operator=(EditSession&&) noexcept = default;
+
+EditResult EditSession::edit(const Controls& goal, Execution& execution) {
+  return implementation_->edit(goal, execution);
+}
+EditResult EditSession::drag(const Controls& goal, Execution& execution) {
+  return implementation_->drag(goal, execution);
+}
+EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
+void EditSession::restore(const Controls& controls) { implementation_->restore(controls); }
+
+const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
+const Positions& EditSession::surface() const { return implementation_->accepted().surface; }
+double EditSession::separation() const { return implementation_->problem().options().separation; }
+const Surface& EditSession::topology() const { return implementation_->problem().surface(); }
+
+}  // namespace stiv

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/solve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editing/acceptance_search.hpp"
+#include "editing/round_loop.hpp"
+#include "stiv/editing/goal.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr double least_gain = 1e-3;   // relative fall of E that makes another sub-edit worth while
+constexpr double largest_turn = 0.3;  // radians a step; the chord of an arc then leaves it by 1.1 % of the radius
+
+void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& acceptance) {
+  if (!outcome.events.empty()) {
+    report.events = std::move(outcome.events);
+    report.patches = outcome.patches;
+  }
+  if (acceptance.held) report.fraction = std::min(report.fraction, acceptance.fraction);
+  report.blocked = !outcome.clear || acceptance.held;
+}
+
+}  // namespace
+
+void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
+  double before = energy(accepted.surface, aim.surface);
+  for (int sub_edit = 0; sub_edit < problem.options().max_sub_edits; ++sub_edit) {
+    ++execution.counters.sub_edits;
+    RoundOutcome outcome = run_rounds(problem, accepted, aim.controls, execution);
+    // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
+    const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
+    const auto agreeable = [&](const State& state) {
+      return taken_anyway || energy(state.surface, aim.surface) < before;
+    };
+    Acceptance acceptance = accept_largest(problem, accepted, outcome, agreeable, execution);
+    record(report, outcome, acceptance);
+    if (acceptance.fraction == 0) return;
+    accepted = std::move(acceptance.state);
+    const double after = energy(accepted.surface, aim.surface);
+    if (!report.blocked || after > (1 - least_gain) * before) return;
+    before = after;
+  }
+}
+
+void solve_in_turns(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
+  const std::vector<Index>& rows = problem.rotation_rows();
+  const auto turn = [&] { return largest_rotation(accepted.controls, aim.controls, rows); };
+  const int steps = static_cast<int>(std::ceil(turn() / largest_turn));
+  for (int step = 1; step < steps; ++step) {
+    const double fraction = std::min(1.0, largest_turn / turn());
+    const Controls before = accepted.controls;
+    const Aim part{interpolate(before, aim.controls, fraction, rows), aim.surface, aim.must_improve};
+    solve(problem, accepted, part, report, execution);
+    if (accepted.controls == before) return;
+  }
+  const Controls last = interpolate(accepted.controls, aim.controls, std::min(1.0, largest_turn / turn()), rows);
+  solve(problem, accepted, {last, aim.surface, aim.must_improve}, report, execution);
+}
+
+}  // namespace stiv

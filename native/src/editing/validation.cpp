@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr std::size_t pairs_named = 3;
+
+void require(bool condition, const std::string& message) {
+  if (!condition) throw InputError(message);
+}
+
+void check_weights(const Eigen::VectorXd& weights, Index control_count) {
+  if (weights.size() == 0) return;
+  require(weights.size() == control_count, "weights has " + std::to_string(weights.size()) + " entries for " +
+                                               std::to_string(control_count) + " controls");
+  for (Index k = 0; k < weights.size(); ++k)
+    require(std::isfinite(weights[k]) && weights[k] >= 0,
+            "weights, control " + std::to_string(k) + ": must be finite and not negative");
+}
+
+void check_storage(const std::vector<StorageFrame>& frames, Index control_count) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const StorageFrame& storage = frames[k];
+    const std::string name = "storage frame " + std::to_string(k);
+    require(storage.first >= 0 && storage.count >= 0 && storage.count <= control_count - storage.first,
+            name + ": controls out of range 0.." + std::to_string(control_count - 1));
+    const auto linear = storage.frame.topLeftCorner<3, 3>();
+    require(storage.frame.allFinite() && std::abs(linear.determinant()) > 0 && linear.inverse().allFinite() &&
+                storage.frame.row(3) == Eigen::RowVector4d(0, 0, 0, 1),
+            name + ": the matrix is not affine and invertible; an object of zero scale cannot be edited");
+  }
+}
+
+}  // namespace
+
+void check_fit(const Surface& surface, const Deformation& deformation) {
+  require(surface.vertex_count() == deformation.vertex_count(),
+          "the deformation gives " + std::to_string(deformation.vertex_count()) + " vertices, the surface has " +
+              std::to_string(surface.vertex_count()));
+}
+
+void check_options(const EditOptions& options, Index control_count) {
+  require(options.keep > 0 && options.keep < 1, "keep must lie between 0 and 1");
+  require(std::isfinite(options.smoothness) && options.smoothness > 0, "smoothness must be positive");
+  require(options.max_sub_edits >= 1 && options.max_rounds >= 1 && options.accumulated_rounds >= 0,
+          "max_sub_edits and max_rounds must be at least 1, accumulated_rounds at least 0");
+  require(std::isfinite(options.pull_limit) && options.pull_limit > 0, "pull_limit must be positive");
+  require(std::isfinite(options.time_budget) && options.time_budget >= 0, "time_budget must not be negative");
+  check_weights(options.weights, control_count);
+  check_storage(options.storage, control_count);
+}
+
+std::string describe_control(const Surface& surface, const Deformation& deformation, Index control) {
+  const std::vector<Index> support = deformation.support(control);
+  const std::string name = "control " + std::to_string(control);
+  if (support.empty()) return name;
+  return "object \"" + surface.bodies()[surface.body_of(support.front())].name + "\", " + name;
+}
+
+std::string describe(const Surface& surface, const StartIntersections& found) {
+  std::ostringstream message;
+  message << "the start already intersects: " << found.faces.size() << " pairs of faces, "
+          << found.loose_edges.size() + found.loose_vertices.size() << " of a loose edge or vertex and a face";
+  const auto name_first = [&](const IndexPairs& pairs, const auto& describe_first) {
+    for (std::size_t k = 0; k < std::min(pairs.size(), pairs_named); ++k)
+      message << "; " << describe_first(pairs[k].first) << " with " << surface.describe_triangle(pairs[k].second);
+  };
+  name_first(found.faces, [&](Index face) { return surface.describe_triangle(face); });
+  name_first(found.loose_edges,
+             [&](Index edge) { return surface.describe_vertex(surface.loose_edges()(edge, 0)) + " (loose edge)"; });
+  name_first(found.loose_vertices, [&](Index vertex) { return surface.describe_vertex(vertex) + " (loose)"; });
+  message << ". Move them apart, repair them, or exclude these pairs of objects";
+  return message.str();
+}
+
+}  // namespace stiv
