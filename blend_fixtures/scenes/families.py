@@ -13,6 +13,7 @@ import stiv
 
 from .cages import bent_sheet
 from .primitives import box, grid, icosphere, triangulated
+from .shape import Shape, joined
 from .sweeps import tube
 from .walls import wavy_wall
 
