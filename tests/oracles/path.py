@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether anything comes into contact along a linear step: all pairs, no trees and no roots.
+
+Two convex sets are apart if some direction tells them apart. Seen along a fixed direction, the difference of two
+vertices in linear motion is linear in time, so that its values at the two ends of an interval bound all others: any
+direction that works at both ends proves the whole interval free. Which direction is tried decides the speed, not the
+answer. Where an interval shorter than RESOLUTION cannot be proven free, a contact is reported.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+RESOLUTION = 2.0**-26
+GUARD = 2.0**-45  # relative to the extent: more than 100 times what rounding can do to one height
+ROWS = 4096  # worked on at a time, which bounds the memory
+
+
+class Contacts(NamedTuple):
+    """Pairs that meet, or come nearer than can be told, sorted by kind and vertices."""
+
+    kind: list[str]
+    """ "vf" or "ee" """
+    vertices: Integers
+    """(K, 4): v, a, b, c of a vertex and a face; a0, a1, b0, b1 of two edges"""
+    time: Floats
+    """(K,) never later than the first contact, and at most RESOLUTION earlier than something unresolved"""
+
+
+def find_contacts(
+    triangles: ArrayLike,
+    start: ArrayLike,
+    end: ArrayLike,
+    separation: float = 0.0,
+    keep: float = 0.5,
+    *,
+    loose_edges: ArrayLike = (),
+    vertex_body: ArrayLike | None = None,
+    meets: ArrayLike | None = None,
+) -> Contacts:
+    """Return all pairs of a vertex and a face, or of two edges, that come too near along a linear step.
+
+    triangles    (F, 3), loose_edges (L, 2); pairs that share a vertex are left out
+    start, end   (N, 3)
+    separation   what is too near, for pairs that start farther away than separation / keep; for others, that fraction
+                 `keep` of their distance at the start
+    vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
+    """
+    first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
+    centre = (first.min(axis=0) + first.max(axis=0)) / 2 if len(first) else 0
+    first, last = first - centre, last - centre
+    extent = max(np.abs(first).max(initial=0), np.abs(last).max(initial=0))
+    guard = GUARD * extent
+    body = np.zeros(len(first), int) if vertex_body is None else np.asarray(vertex_body)
+    allowed = np.ones((body.max(initial=0) + 1,) * 2, bool) if meets is None else np.asarray(meets)
+    kinds: list[str] = []
+    vertices, times = [np.empty((0, 4), int)], [np.empty(0)]
+    for kind, pairs in _pairs_in_reach(np.asarray(triangles), loose_edges, first, last, separation + guard):
+        kept = pairs[allowed[body[pairs[:, 0]], body[pairs[:, 3]]]]
+        time = first_contacts(kind, first[kept], last[kept], separation, keep, guard)
+        met = np.isfinite(time)
+        kinds += [kind] * int(met.sum())
+        vertices.append(kept[met])
+        times.append(time[met])
+    return Contacts(kinds, np.concatenate(vertices), np.concatenate(times))
+
+
+def unique_edges(triangles: ArrayLike, loose_edges: ArrayLike = ()) -> Integers:
+    faces = np.asarray(triangles, int).reshape(-1, 3)
+    sides = [faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]], np.asarray(loose_edges, int).reshape(-1, 2)]
+    edges = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0)
+    return edges[edges[:, 0] != edges[:, 1]]
+
+
+def first_contacts(kind: str, start: Floats, end: Floats, separation: float, keep: float, guard: float) -> Floats:
+    """Return for pairs (M, 4, 3) the beginning of the first interval not proven free, inf where there is none."""
+    time = np.full(len(start), np.inf)
+    for begin in range(0, len(start), ROWS):
+        part = slice(begin, begin + ROWS)
+        first, last = _outline(kind, start[part]), _outline(kind, end[part])
+        time[part] = _march(first, last, guard + np.minimum(separation, keep * _distances(first)))
+    return time
+
+
+def _pairs_in_reach(
+    triangles: Integers, loose_edges: ArrayLike, start: Floats, end: Floats, clearance: float
+) -> Iterator[tuple[str, Integers]]:
+    """Yield pairs (K, 4) of primitives whose swept boxes come within the clearance, a few rows of them at a time."""
+    edges = unique_edges(triangles, loose_edges)
+    faces = triangles.reshape(-1, 3)
+    for kind, queries, others in (("vf", np.arange(len(start))[:, None], faces), ("ee", edges, edges)):
+        low, high = (_swept(queries, start, end, np.min), _swept(queries, start, end, np.max))
+        others_low, others_high = (_swept(others, start, end, np.min), _swept(others, start, end, np.max))
+        step = max(1, 4_000_000 // max(1, len(others)))
+        for begin in range(0, len(queries), step):
+            part = slice(begin, begin + step)
+            near = (low[part, None] - clearance <= others_high) & (high[part, None] + clearance >= others_low)
+            i, j = np.nonzero(near.all(axis=2))
+            i += begin
+            if kind == "ee":
+                i, j = i[i < j], j[i < j]
+            pairs = np.concatenate([queries[i], others[j]], axis=1)
+            width = queries.shape[1]
+            shares = (pairs[:, :width, None] == pairs[:, None, width:]).any(axis=(1, 2))
+            yield kind, pairs[~shares]
+
+
+def _swept(primitives: Integers, start: Floats, end: Floats, extreme: np.ufunc) -> Floats:
+    corners = np.concatenate([start[primitives], end[primitives]], axis=1)
+    return extreme(corners, axis=1) if corners.size else np.empty((0, 3))
+
+
+def _outline(kind: str, x: Floats) -> Floats:
+    """Return the differences of the two sides' vertices, (M, 3 or 4, 3), in order around their convex hull.
+
+    The two primitives meet where that triangle or parallelogram holds the origin; its distance is theirs.
+    """
+    if kind == "vf":
+        return x[:, :1] - x[:, 1:]
+    return x[:, [0, 0, 1, 1]] - x[:, [2, 3, 3, 2]]
+
+
+def _directions(outline: Floats) -> Floats:
+    """Return unit directions (M, D, 3), among them that from the origin to the nearest point of the outline's hull.
+
+    It is a corner, perpendicular to an edge, or perpendicular to the whole.
+    """
+    sides = np.roll(outline, -1, axis=1) - outline
+    length = np.maximum((sides**2).sum(axis=2, keepdims=True), np.finfo(float).tiny)
+    over_edges = outline - sides * ((outline * sides).sum(axis=2, keepdims=True) / length)
+    normal = np.cross(sides[:, :1], sides[:, 1:2])
+    found = np.concatenate([outline, over_edges, normal], axis=1)
+    return found / np.maximum(np.linalg.norm(found, axis=2, keepdims=True), np.finfo(float).tiny)
+
+
+def _distances(outline: Floats) -> Floats:
+    """Return the distance of the origin from the hull of each outline (M, m, 3)."""
+    heights = outline @ _directions(outline).transpose(0, 2, 1)
+    return np.maximum(np.maximum(heights.min(axis=1), -heights.max(axis=1)).max(axis=1), 0)
+
+
+def _proven_free(begin: Floats, end: Floats, clearance: Floats) -> NDArray[np.bool_]:
+    """Tell for which outlines (M, m, 3) in linear motion some fixed direction keeps them off the origin."""
+    directions = _directions((begin + end) / 2).transpose(0, 2, 1)
+    heights = np.concatenate([begin @ directions, end @ directions], axis=1)
+    apart = np.maximum(heights.min(axis=1), -heights.max(axis=1)).max(axis=1)
+    return apart > clearance
+
+
+def _march(start: Floats, end: Floats, clearance: Floats) -> Floats:
+    """Advance each pair from time 0 by intervals proven free: halved after a failure, doubled after a success."""
+    contact = np.full(len(start), np.inf)
+    row, time, width = np.arange(len(start)), np.zeros(len(start)), np.ones(len(start))
+    while len(row):
+        ends = [start[row] + t[:, None, None] * (end[row] - start[row]) for t in (time, time + width)]
+        free = _proven_free(ends[0], ends[1], clearance[row])
+        time = np.where(free, time + width, time)
+        width = np.where(free, np.minimum(2 * width, 1 - time), width / 2)
+        stuck = ~free & (width < RESOLUTION)
+        contact[row[stuck]] = time[stuck]
+        going_on = ~stuck & (time < 1)
+        row, time, width = row[going_on], time[going_on], width[going_on]
+    return contact
