@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Array types, and affine maps of points."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Indices = NDArray[np.int32]
+
+
+def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:
+    """A 4x4 matrix of Blender's, or anything like it, in double precision."""
+    return np.array([list(row) for row in matrix], dtype=np.float64)
+
+
+def transform_points(matrix: Floats, points: NDArray[Any]) -> Floats:
+    """Affine map, (4, 4), of points, (n, 3)."""
+    return np.asarray(points, np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:
+    """An attribute of every item of a Blender collection, (n, width), or (n,) when the width is 1."""
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(attribute, values)
+    return values if width == 1 else values.reshape(-1, width)
