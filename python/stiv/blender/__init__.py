@@ -1,2 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The one place that reads a Blender scene and writes controls back."""
+
+from stiv.blender.checking import SceneCheck, check_scene, read_surface
+from stiv.blender.edit import BlenderEdit
+from stiv.blender.errors import SceneChangedError
+from stiv.blender.settings import EditSettings
+from stiv.blender.verification import FacePair, WriteReport
+
+__all__ = [
+    "BlenderEdit",
+    "EditSettings",
+    "FacePair",
+    "SceneChangedError",
+    "SceneCheck",
+    "WriteReport",
+    "check_scene",
+    "read_surface",
+]

@@ -24,6 +24,6 @@ def transform_points(matrix: Floats, points: NDArray[Any]) -> Floats:
 
 def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:
     """An attribute of every item of a Blender collection, (n, width), or (n,) when the width is 1."""
-    values = np.empty(len(collection) * width, dtype)
+    values: NDArray[Any] = np.empty(len(collection) * width, dtype)
     collection.foreach_get(attribute, values)
     return values if width == 1 else values.reshape(-1, width)

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, Singles, as_matrix, transform_points
-from stiv.blender.mesh_reading import evaluated_mesh, read_loose_edges, read_positions, read_triangles
+from stiv.blender.mesh_reading import evaluated_mesh, read_edges, read_loose_numbers, read_positions, read_triangles
 from stiv.blender.references import ObjectReference
 
 SURFACE_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"})
@@ -27,6 +27,7 @@ class VisibleMesh:
         triangles: Blender's triangulation, (f, 3).
         faces: the face each triangle belongs to, (f,).
         loose_edges: edges of no face, (l, 2).
+        loose_numbers: their numbers among all edges, (l,).
     """
 
     owner: ObjectReference
@@ -36,6 +37,7 @@ class VisibleMesh:
     triangles: Indices
     faces: Indices
     loose_edges: Indices
+    loose_numbers: Indices
 
     @property
     def is_instance(self) -> bool:
@@ -55,19 +57,6 @@ class EvaluatedScene:
     hidden: int
 
 
-def read_scene(context: bpy.types.Context, accept: Callable[[str], bool] = lambda name: True) -> EvaluatedScene:
-    """Read every visible mesh whose owner's name is accepted.
-
-    Curves, text, surfaces, metaballs and instances come as the meshes they show. Local view is respected where the
-    context has a 3D view. Raises InputError naming object and vertex when a coordinate is not finite.
-    """
-    meshes = []
-    for instance, owner in _visible_instances(context):
-        if accept(owner.name):
-            meshes.append(_read_mesh(instance, owner))
-    return EvaluatedScene(tuple(meshes), _hidden_count(context))
-
-
 @dataclass(frozen=True)
 class Placed:
     """Positions alone of one visible mesh, for reading back."""
@@ -81,51 +70,61 @@ class Placed:
         return transform_points(self.matrix, self.local)
 
 
-def read_placed(context: bpy.types.Context, accept: Callable[[str], bool] = lambda name: True) -> list[Placed]:
-    """Positions of what `read_scene` reads, in the same order: much cheaper than all of it."""
+def read_scene(context: bpy.types.Context, accept: Callable[[str], bool] = lambda name: True) -> EvaluatedScene:
+    """Read every visible mesh whose owner's name is accepted.
+
+    Curves, text, surfaces, metaballs and instances come as the meshes they show. Local view is respected where the
+    context has a 3D view. Raises InputError naming object and vertex when a coordinate is not finite.
+    """
+    shown: dict[int, bool] = {}
+
+    def is_shown(owner: bpy.types.Object) -> bool:
+        if owner.session_uid not in shown:
+            shown[owner.session_uid] = accept(owner.name) and is_visible(context, owner)
+        return shown[owner.session_uid]
+
+    meshes = [_read_mesh(instance, owner) for instance, owner in _mesh_instances(context, is_shown)]
+    return EvaluatedScene(tuple(meshes), _hidden_count(context))
+
+
+def read_placed(context: bpy.types.Context, owners: frozenset[int]) -> list[Placed]:
+    """Positions of what these owners (session numbers) show, in the order of `read_scene`; much cheaper than all."""
     placed = []
-    for instance, owner in _visible_instances(context):
-        if accept(owner.name):
-            with evaluated_mesh(instance.object) as mesh:
-                placed.append(Placed(owner, read_positions(mesh), as_matrix(instance.matrix_world)))
+    for instance, owner in _mesh_instances(context, lambda ob: ob.session_uid in owners):
+        with evaluated_mesh(instance.object) as mesh:
+            placed.append(Placed(owner, read_positions(mesh), as_matrix(instance.matrix_world)))
     return placed
-
-
-def local_view(context: bpy.types.Context) -> bpy.types.SpaceView3D | None:
-    """The 3D view that decides what is visible, if the context has one in local view."""
-    space = context.space_data
-    if isinstance(space, bpy.types.SpaceView3D) and space.local_view is not None:
-        return space
-    return None
 
 
 def is_visible(context: bpy.types.Context, ob: bpy.types.Object) -> bool:
     """Is the object visible in the context's view layer and, where there is one, local view?"""
-    return bool(ob.visible_get(view_layer=context.view_layer, viewport=local_view(context)))
+    return bool(ob.visible_get(view_layer=context.view_layer, viewport=_local_view(context)))
 
 
-def _visible_instances(
-    context: bpy.types.Context,
+def _local_view(context: bpy.types.Context) -> bpy.types.SpaceView3D | None:
+    space = context.space_data
+    return space if isinstance(space, bpy.types.SpaceView3D) and space.local_view is not None else None
+
+
+def _mesh_instances(
+    context: bpy.types.Context, is_shown: Callable[[bpy.types.Object], bool]
 ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, ObjectReference]]:
-    visible: dict[int, tuple[bool, ObjectReference]] = {}
     for instance in context.evaluated_depsgraph_get().object_instances:
         if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
             continue
         owner = instance.parent.original if instance.is_instance else instance.object.original
-        uid = owner.session_uid
-        if uid not in visible:
-            visible[uid] = (is_visible(context, owner), ObjectReference.of(owner))
-        if visible[uid][0]:
-            yield instance, visible[uid][1]
+        if is_shown(owner):
+            yield instance, ObjectReference.of(owner)
 
 
 def _read_mesh(instance: bpy.types.DepsgraphObjectInstance, owner: ObjectReference) -> VisibleMesh:
     source = instance.instance_object.original.name if instance.is_instance else owner.name
     with evaluated_mesh(instance.object) as mesh:
         triangles, faces = read_triangles(mesh)
+        loose = read_loose_numbers(mesh)
         found = VisibleMesh(
             owner, source, read_positions(mesh), as_matrix(instance.matrix_world), triangles, faces,
-            read_loose_edges(mesh),
+            read_edges(mesh)[loose], loose,
         )  # fmt: skip
     _check_finite(found)
     return found

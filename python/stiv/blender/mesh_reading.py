@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arrays out of Blender's mesh data."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import bpy
 import numpy as np
@@ -48,10 +49,10 @@ def read_edges(mesh: bpy.types.Mesh) -> Indices:
     return read_collection(mesh.edges, "vertices", 2, np.int32)
 
 
-def read_loose_edges(mesh: bpy.types.Mesh) -> Indices:
-    """Edges of no face, (l, 2)."""
+def read_loose_numbers(mesh: bpy.types.Mesh) -> Indices:
+    """Numbers of the edges of no face, (l,)."""
     loose = read_collection(mesh.edges, "is_loose", 1, np.bool_)
-    return read_edges(mesh)[loose]
+    return np.flatnonzero(loose).astype(np.int32)
 
 
 def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
@@ -71,7 +72,7 @@ def read_creases(mesh: bpy.types.Mesh) -> tuple[Singles | None, Singles | None]:
     return values("crease_edge"), values("crease_vert")
 
 
-def read_group_weights(vertices: bpy.types.MeshVertices | bpy.types.LatticePoints, group: int) -> Singles:
+def read_group_weights(vertices: Collection[Any], group: int) -> Singles:
     """Weights of a vertex group by its index, (n,); 0 where a vertex is not in it."""
     weights = np.zeros(len(vertices), np.float32)
     for index, vertex in enumerate(vertices):

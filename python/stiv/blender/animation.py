@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which properties of a data-block are animated or driven."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import bpy
+
+
+def controlled_paths(data: bpy.types.ID) -> set[str]:
+    """Data paths of all curves and drivers that act on a data-block; muted ones left out."""
+    animation = getattr(data, "animation_data", None)
+    if animation is None:
+        return set()
+    paths = {driver.data_path for driver in animation.drivers if not driver.mute}
+    for action in _actions(animation):
+        paths.update(curve.data_path for curve in _curves(action) if not curve.mute)
+    return paths
+
+
+def _actions(animation: bpy.types.AnimData) -> Iterator[bpy.types.Action]:
+    if animation.action is not None:
+        yield animation.action
+    if animation.use_nla:
+        for track in animation.nla_tracks:
+            for strip in track.strips:
+                if not (track.mute or strip.mute) and strip.action is not None:
+                    yield strip.action
+
+
+def _curves(action: Any) -> Iterator[Any]:
+    """Curves of an action: by layers where Blender has them (4.4 and later), else its plain list."""
+    if not hasattr(action, "layers"):
+        yield from action.fcurves
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            for bag in strip.channelbags:
+                yield from bag.fcurves

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the points of one lattice do to the evaluated mesh of one object."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv.blender.arrays import Floats, as_matrix, transform_points
+from stiv.blender.cage import read_cage
+from stiv.blender.lattice_points import is_undeformed, read_points, read_rest_points
+from stiv.blender.mesh_reading import evaluated_mesh, read_group_weights
+from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
+from stiv.blender.references import ObjectReference
+from stiv.blender.subdividing import subdivide
+
+
+def bent_mesh(ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types.Context) -> stiv.Deformation:
+    """From world positions of the lattice's points to those of the object's evaluated mesh.
+
+    Stages before the lattice are followed at their present values. Raises InputError naming object and modifier.
+    """
+    if ob.mode == "EDIT":
+        ob.update_from_editmode()
+    stages = read_stack(ob, context.scene)
+    place = [getattr(stage, "lattice", None) for stage in stages].index(lattice)
+    rest = transform_points(as_matrix(ob.matrix_world), read_cage(ob))
+    for stage in stages[:place]:
+        rest = _followed(ob, stage, rest, context).surface(_present_controls(stage, rest))
+    bending = stages[place]
+    assert isinstance(bending, Bending)
+    result = _lattice(ob, bending, rest, context)
+    for stage in stages[place + 1 :]:
+        if isinstance(stage, Subdivision):
+            result = stiv.compose(subdivide(ob.data, stage), result)
+        else:
+            _check_undeformed(ob, stage)
+    return result
+
+
+def stacked(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
+    """Linear deformations with the same controls, their surfaces one after the other."""
+    if len(deformations) == 1:
+        return deformations[0]
+    parts = [stiv.linear_weights(deformation) for deformation in deformations]
+    weights = [part[0] for part in parts]
+    ends = np.cumsum([0, *(len(each.data) for each in weights)])
+    starts = [np.asarray(each.indptr[:-1]) + end for each, end in zip(weights, ends, strict=False)]
+    shape = (sum(each.shape[0] for each in weights), weights[0].shape[1])
+    offsets = [
+        np.zeros((each.shape[0], 3)) if offset is None else offset
+        for each, (_, offset) in zip(weights, parts, strict=True)
+    ]
+    whole = stiv.Weights(
+        np.append(np.concatenate(starts), ends[-1]),
+        np.concatenate([each.indices for each in weights]),
+        np.concatenate([each.data for each in weights]),
+        shape,
+    )
+    return stiv.linear(whole, np.concatenate(offsets))
+
+
+def _check_undeformed(ob: bpy.types.Object, stage: Bending) -> None:
+    if not is_undeformed(stage.lattice.find().data):
+        raise refuse(ob, stage.modifier, "is a deformed lattice after the one that moves")
+
+
+def _followed(ob: bpy.types.Object, stage: Stage, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
+    if isinstance(stage, Subdivision):
+        return subdivide(ob.data, stage)
+    return _lattice(ob, stage, rest, context)
+
+
+def _present_controls(stage: Stage, rest: Floats) -> Floats:
+    if isinstance(stage, Subdivision):
+        return rest
+    lattice = stage.lattice.find()
+    return transform_points(as_matrix(lattice.matrix_world), read_points(lattice.data))
+
+
+def _lattice(ob: bpy.types.Object, stage: Bending, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
+    lattice = stage.lattice.find()
+    data = lattice.data
+    return stiv.lattice(
+        rest,
+        (data.points_u, data.points_v, data.points_w),
+        frame=as_matrix(lattice.matrix_world),
+        interpolation=[_interpolation(data, axis) for axis in "uvw"],
+        influence=stage.strength * _group_weights(ob, stage, len(rest), context),
+        rest=read_rest_points(data),
+        point_weights=_point_weights(lattice),
+    )
+
+
+def _interpolation(lattice: bpy.types.Lattice, axis: str) -> str:
+    name: str = getattr(lattice, f"interpolation_type_{axis}")
+    return name.removeprefix("KEY_").lower()
+
+
+def _point_weights(lattice: bpy.types.Object) -> Any:
+    group = lattice.vertex_groups.get(lattice.data.vertex_group)
+    return None if group is None else read_group_weights(lattice.data.points, group.index)
+
+
+def _group_weights(ob: bpy.types.Object, stage: Bending, count: int, context: bpy.types.Context) -> Floats:
+    """Weights of the modifier's vertex group for each vertex that the lattice sees, (n,)."""
+    if stage.vertex_group is None:
+        return np.ones(count)
+    if count == len(ob.data.vertices):
+        weights = read_group_weights(ob.data.vertices, stage.vertex_group)
+    else:
+        with evaluated_mesh(ob.evaluated_get(context.evaluated_depsgraph_get())) as mesh:
+            weights = read_group_weights(mesh.vertices, stage.vertex_group)
+    return np.asarray(1.0 - weights if stage.inverted else weights, np.float64)

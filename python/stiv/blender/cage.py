@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The vertices of a mesh as controls: the cage below its modifiers."""
+
+from dataclasses import dataclass
+
+import bmesh
+import bpy
+import numpy as np
+
+import stiv
+from stiv.blender.arrays import Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.errors import SceneChangedError
+from stiv.blender.lattice_points import is_undeformed
+from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
+from stiv.blender.movability import check_data
+from stiv.blender.parts import Part
+from stiv.blender.points import PointGoal, point_weights, stored
+from stiv.blender.references import ObjectReference
+from stiv.blender.roles import Mover
+from stiv.blender.settings import EditSettings
+from stiv.blender.subdividing import subdivide
+
+
+def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, settings: EditSettings) -> Part:
+    """The cage of a mesh object as a part. Raises InputError where it cannot be changed or followed."""
+    ob = mover.reference.find()
+    check_data(ob)
+    if ob.mode == "EDIT":
+        ob.update_from_editmode()
+    frame, local = as_matrix(ob.matrix_world), read_cage(ob)
+    deformation = _deformation(ob, read_stack(ob, scene), len(local))
+    selected = _selected(ob, mover)
+    role = settings.role(ob.name)
+    others = 1.0 if role == "controls" and not mover.selected else settings.weight(False)
+    return Part(
+        (ob.name,), "cage", surfaces, deformation, transform_points(frame, local),
+        point_weights(selected, settings.weight(True), others), frame, PointGoal(selected),
+        CageWriter(mover.reference, ob.mode, frame, local),
+    )  # fmt: skip
+
+
+def read_cage(ob: bpy.types.Object) -> Singles:
+    """Local positions of the cage, (m, 3); in Edit Mode as of the last `update_from_editmode`."""
+    keys = ob.data.shape_keys
+    points = ob.data.vertices if keys is None or ob.mode == "EDIT" else keys.key_blocks[0].data
+    return read_collection(points, "co", 3, np.float32)
+
+
+def _deformation(ob: bpy.types.Object, stages: list[Stage], count: int) -> stiv.Deformation:
+    result = stiv.identity(count)
+    for stage in stages:
+        if isinstance(stage, Bending) and not is_undeformed(stage.lattice.find().data):
+            raise refuse(
+                ob, stage.modifier,
+                f'lattice "{stage.lattice.name}" is deformed, and the cage below it cannot be followed; '
+                "select the lattice instead",
+            )  # fmt: skip
+        if isinstance(stage, Subdivision):
+            result = subdivide(ob.data, stage)
+    return result
+
+
+def _selected(ob: bpy.types.Object, mover: Mover) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    count = len(ob.data.vertices)
+    if ob.mode == "EDIT":
+        selected: np.ndarray[tuple[int], np.dtype[np.bool_]] = read_collection(ob.data.vertices, "select", 1, np.bool_)
+        return selected
+    return np.full(count, mover.selected)
+
+
+@dataclass(frozen=True)
+class CageWriter:
+    """Writes cage vertices. `original` are the local positions at the start, (m, 3)."""
+
+    reference: ObjectReference
+    mode: str
+    frame: Floats
+    original: Singles
+
+    def write(self, controls: Floats) -> None:
+        """Write world positions, (m, 3)."""
+        self._write_local(stored(self.frame, controls))
+
+    def restore(self) -> None:
+        """Write the original positions."""
+        self._write_local(self.original)
+
+    def _write_local(self, local: Singles) -> None:
+        ob = self.reference.find_in_mode(self.mode)
+        if len(local) != _vertex_count(ob):
+            raise SceneChangedError(f'object "{ob.name}" has got another number of vertices')
+        if self.mode == "EDIT":
+            _write_edit_mesh(ob.data, local)
+        else:
+            _write_mesh(ob.data, local)
+
+
+def _vertex_count(ob: bpy.types.Object) -> int:
+    return len(bmesh.from_edit_mesh(ob.data).verts) if ob.mode == "EDIT" else len(ob.data.vertices)
+
+
+def _write_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:
+    """With shape keys (a Basis alone), the keys are what Blender evaluates; mesh and key are kept the same."""
+    mesh.vertices.foreach_set("co", local.ravel())
+    if mesh.shape_keys is not None:
+        mesh.shape_keys.key_blocks[0].data.foreach_set("co", local.ravel())
+    mesh.update()
+
+
+def _write_edit_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:
+    """`foreach_set` does not reach the edit mesh, so each vertex is set by itself."""
+    edit_mesh = bmesh.from_edit_mesh(mesh)
+    for vertex, position in zip(edit_mesh.verts, local.tolist(), strict=True):
+        vertex.co = position
+    edit_mesh.normal_update()
+    bmesh.update_edit_mesh(mesh, loop_triangles=True, destructive=False)

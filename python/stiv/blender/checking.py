@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exact test of a whole scene, as Blender evaluates it."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import bpy
+
+import stiv
+from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.settings import EditSettings
+from stiv.blender.verification import FacePair
+
+
+@dataclass(frozen=True)
+class SceneCheck:
+    """What was found. `pairs` is empty for a scene free of intersections.
+
+    Attributes:
+        pairs: faces that meet; a loose edge or vertex that meets a face comes with that face as the second.
+        triangles: how many were tested.
+        hidden: objects with a surface that are hidden or excluded, and were not.
+    """
+
+    pairs: tuple[FacePair, ...]
+    triangles: int
+    hidden: int
+
+
+def read_surface(context: bpy.types.Context, objects: Collection[str] | None = None) -> Assembly:
+    """All visible meshes, or those of the objects named, as one surface in world space; every body deformable.
+
+    Raises InputError naming object and vertex when a coordinate is not finite.
+    """
+    scene = read_scene(context, lambda name: objects is None or name in objects)
+    return assemble(scene.meshes, ["deformable"] * len(scene.meshes))
+
+
+def check_scene(
+    context: bpy.types.Context, settings: EditSettings | None = None, objects: Collection[str] | None = None
+) -> SceneCheck:
+    """Find every intersection of the visible scene, among obstacles and within objects too.
+
+    settings: objects in the role "ignored" and ignored pairs are left out. objects: names to be limited to.
+    """
+    settings = settings or EditSettings()
+    scene = read_scene(context, lambda name: settings.role(name) != "ignored" and (objects is None or name in objects))
+    assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
+    return SceneCheck(find_pairs(assembly, settings.threads), len(assembly.surface.triangles), scene.hidden)
+
+
+def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
+    """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
+    surface, q = assembly.surface, assembly.positions
+    faces = stiv.find_intersections(q, surface, threads=threads)
+    edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
+    return (
+        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
+        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
+        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
+    )

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which objects an object's modifiers and constraints look at."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+
+
+@dataclass(frozen=True)
+class Dependency:
+    """`user` looks at object `used` through a modifier or constraint, named as in messages."""
+
+    user: str
+    used: str
+    through: str
+
+
+def is_active(modifier: bpy.types.Modifier, ob: bpy.types.Object) -> bool:
+    """Does the modifier act in the viewport, in the object's mode?"""
+    return bool(modifier.show_viewport and (ob.mode != "EDIT" or modifier.show_in_editmode))
+
+
+def dependencies(ob: bpy.types.Object) -> Iterator[Dependency]:
+    """What the active modifiers and constraints of an object look at, the object itself left out."""
+    for modifier in ob.modifiers:
+        if is_active(modifier, ob):
+            yield from _named(ob, f'modifier "{modifier.name}"', _looked_at(modifier))
+    for constraint in ob.constraints:
+        if not constraint.mute:
+            yield from _named(ob, f'constraint "{constraint.name}"', _looked_at(constraint))
+
+
+def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[Dependency]:
+    for other in used:
+        if other != ob:
+            yield Dependency(ob.name, other.name, through)
+
+
+def _looked_at(owner: Any) -> Iterator[bpy.types.Object]:
+    values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
+    if isinstance(owner, bpy.types.NodesModifier):
+        values += list(owner.values())
+        values += _in_nodes(owner.node_group, set())
+    if isinstance(owner, bpy.types.ArmatureConstraint):
+        values += [target.target for target in owner.targets]
+    for value in values:
+        if isinstance(value, bpy.types.Object):
+            yield value
+        elif isinstance(value, bpy.types.Collection):
+            yield from value.all_objects
+
+
+def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:
+    """Objects and collections chosen inside a node tree and the groups in it."""
+    if tree is None or tree.name in seen:
+        return []
+    seen.add(tree.name)
+    values = []
+    for node in tree.nodes:
+        values += [socket.default_value for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION")]
+        values += _in_nodes(getattr(node, "node_tree", None), seen)
+    return values

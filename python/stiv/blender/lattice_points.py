@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The points of a lattice as controls of every visible mesh that it deforms."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv import InputError
+from stiv.blender.arrays import Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.errors import SceneChangedError
+from stiv.blender.movability import check_data
+from stiv.blender.parts import Part
+from stiv.blender.points import PointGoal, point_weights, stored
+from stiv.blender.references import ObjectReference
+from stiv.blender.roles import Mover
+from stiv.blender.settings import EditSettings
+
+
+def is_undeformed(lattice: bpy.types.Lattice) -> bool:
+    """Are all points at rest, to the last bit? Such a lattice changes nothing."""
+    return bool(np.array_equal(read_points(lattice), read_rest_points(lattice)))
+
+
+def read_points(lattice: bpy.types.Lattice) -> Singles:
+    """Deformed points, (m, 3), in the lattice's frame."""
+    return read_collection(lattice.points, "co_deform", 3, np.float32)
+
+
+def read_rest_points(lattice: bpy.types.Lattice) -> Singles:
+    """Points at rest, (m, 3), in the lattice's frame."""
+    return read_collection(lattice.points, "co", 3, np.float32)
+
+
+def lattice_part(
+    mover: Mover, surfaces: tuple[int, ...], deformation: stiv.Deformation, settings: EditSettings
+) -> Part:
+    """A lattice as a part; `deformation` is that of all meshes it deforms, side by side."""
+    ob = mover.reference.find()
+    frame, local = as_matrix(ob.matrix_world), read_points(ob.data)
+    selected = _selected(ob, mover)
+    explicit = settings.role(ob.name) == "controls" and not mover.selected
+    weights = point_weights(selected, settings.weight(True), 1.0 if explicit else settings.weight(False))
+    return Part(
+        (ob.name,), "lattice", surfaces, deformation, transform_points(frame, local), weights, frame,
+        PointGoal(selected), LatticeWriter(mover.reference, ob.mode, frame, local),
+    )  # fmt: skip
+
+
+def check_lattice(ob: bpy.types.Object) -> None:
+    """Refuse a lattice whose points cannot be written, or would not show. Raises InputError."""
+    check_data(ob)
+    if ob.data.shape_keys is not None:
+        raise InputError(f'object "{ob.name}": its shape keys hide changes of the lattice; apply or remove them')
+    for modifier in ob.modifiers:
+        if modifier.show_viewport:
+            raise InputError(
+                f'object "{ob.name}", modifier "{modifier.name}": deforms the lattice; apply it or disable it'
+            )
+
+
+def _selected(ob: bpy.types.Object, mover: Mover) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    if ob.mode == "EDIT":
+        return np.array([point.select for point in ob.data.points], np.bool_)
+    return np.full(len(ob.data.points), mover.selected)
+
+
+@dataclass(frozen=True)
+class LatticeWriter:
+    """Writes lattice points; in Edit Mode Blender passes them on to the lattice being edited."""
+
+    reference: ObjectReference
+    mode: str
+    frame: Floats
+    original: Singles
+
+    def write(self, controls: Floats) -> None:
+        """Write world positions, (m, 3)."""
+        self._write_local(stored(self.frame, controls))
+
+    def restore(self) -> None:
+        """Write the original positions."""
+        self._write_local(self.original)
+
+    def _write_local(self, local: Singles) -> None:
+        lattice = self.reference.find_in_mode(self.mode).data
+        if len(lattice.points) != len(local):
+            raise SceneChangedError(f'object "{self.reference.name}" has got another number of points')
+        lattice.points.foreach_set("co_deform", local.ravel())
+        lattice.update_tag()

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One thing with controls: how its surface follows from them, what the goal asks of them, and how they are written."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import stiv
+from stiv.blender.arrays import Floats
+
+
+class Writer(Protocol):
+    """Puts controls into Blender."""
+
+    def write(self, controls: Floats) -> None:
+        """Write controls, (m, 3). Raises SceneChangedError when the object is gone or was changed."""
+
+    def restore(self) -> None:
+        """Put back what was there at the start, bit by bit."""
+
+
+class GoalRule(Protocol):
+    """What a transformation of the selection asks of controls."""
+
+    def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
+        """Goal of the controls, (m, 3), for an absolute world transform, (4, 4), since the start.
+
+        `controls` are those of the start, `last` the goal before this one: rotations may go on beyond a half turn.
+        """
+
+
+@dataclass(frozen=True)
+class Part:
+    """One cage, lattice or group of rigid objects.
+
+    Attributes:
+        names: the objects that are written.
+        role: "cage", "lattice" or "rigid".
+        surfaces: positions, in the list of visible meshes, of what the controls move, in the deformation's order.
+        deformation: from the controls to the world positions of all these meshes.
+        controls: (m, 3) at the start.
+        weights: (m,) response of each control.
+        frame: (4, 4) in which the controls are stored in single precision; None for placements.
+        rule: what the goal asks of the controls.
+        writer: how the controls come into Blender.
+    """
+
+    names: tuple[str, ...]
+    role: str
+    surfaces: tuple[int, ...]
+    deformation: stiv.Deformation
+    controls: Floats
+    weights: Floats
+    frame: Floats | None
+    rule: GoalRule
+    writer: Writer

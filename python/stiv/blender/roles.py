@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Who moves, in which way, and who only gives way."""
+
+from dataclasses import dataclass
+
+import bpy
+
+from stiv import InputError
+from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
+from stiv.blender.references import ObjectReference
+from stiv.blender.settings import EditSettings
+
+EDITABLE_TYPES = ("MESH", "LATTICE")
+
+
+@dataclass(frozen=True)
+class Mover:
+    """An object with controls: role "cage", "lattice" or "rigid"; `selected` if the goal moves it."""
+
+    reference: ObjectReference
+    role: str
+    selected: bool
+
+
+def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Mover]:
+    """All objects with controls, in the order of the view layer.
+
+    Raises InputError for a mode that is not supported, unknown names, and when nothing is selected that may move.
+    """
+    _check_names(context, settings)
+    objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
+    selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
+    movers = [mover for ob in objects if (mover := _mover(ob, ob in selected, settings)) is not None]
+    if not any(mover.selected for mover in movers):
+        raise InputError("nothing is selected that may move; select a mesh, a lattice or an object with a surface")
+    return movers
+
+
+def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:
+    known = set(context.scene.objects.keys())
+    for name in [*settings.roles, *(name for pair in settings.ignored_pairs for name in pair)]:
+        if name not in known:
+            raise InputError(f'settings name object "{name}", which the scene does not have')
+
+
+def _in_edit_mode(context: bpy.types.Context, objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
+    if context.mode not in ("EDIT_MESH", "EDIT_LATTICE"):
+        mode = context.mode.replace("_", " ").title()
+        raise InputError(f"mode {mode} is not supported; go to Object Mode, or Edit Mode of a mesh or lattice")
+    return [ob for ob in objects if ob.mode == "EDIT"]
+
+
+def _selected(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
+    return [ob for ob in objects if ob.select_get()]
+
+
+def _mover(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Mover | None:
+    role = settings.role(ob.name)
+    if role in ("obstacle", "ignored") or (role == "auto" and not selected):
+        return None
+    if ob.mode == "EDIT":
+        role = "controls"
+    elif role == "auto":
+        role = "controls" if settings.object_response == "deform" and ob.type in EDITABLE_TYPES else "rigid"
+    if role == "rigid":
+        return Mover(ObjectReference.of(ob), "rigid", selected) if _has_surface(ob) else None
+    if ob.type not in EDITABLE_TYPES:
+        raise InputError(f'object "{ob.name}": a {ob.type.lower()} has no controls; let it respond rigidly')
+    return Mover(ObjectReference.of(ob), "cage" if ob.type == "MESH" else "lattice", selected)
+
+
+def _has_surface(ob: bpy.types.Object) -> bool:
+    """Can the object or what hangs on it have a surface? Lattices are kept, to be refused or moved with their mesh."""
+    family = [ob, *ob.children_recursive]
+    return any(each.type in SURFACE_TYPES or each.type == "LATTICE" or each.instance_type != "NONE" for each in family)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A path from rest to an affine transform, along which a typed value is approached."""
+
+import numpy as np
+
+from stiv.blender.arrays import Floats, transform_points
+from stiv.blender.placement import nearest_rotation, rotation_matrix, rotation_vector
+
+
+def transform_at(matrix: Floats, fraction: float) -> Floats:
+    """The transform, (4, 4), a fraction of the way from rest: points on arcs about the transform's fixed point.
+
+    The linear part is split into rotation and stretch (polar); the fixed point, nearest to the origin, solves
+    (1 - A) x = b in the sense of least squares, and what is left of b is a translation.
+    """
+    if fraction >= 1:
+        return matrix
+    linear, shift = matrix[:3, :3], matrix[:3, 3]
+    rotation = nearest_rotation(linear)
+    stretch = rotation.T @ linear
+    part = np.eye(4)
+    stretched = np.eye(3) + fraction * (stretch - np.eye(3))
+    part[:3, :3] = rotation_matrix(fraction * rotation_vector(rotation)) @ stretched
+    fixed = np.linalg.pinv(np.eye(3) - linear, rcond=1e-9) @ shift
+    left = shift - (fixed - linear @ fixed)
+    part[:3, 3] = fixed - part[:3, :3] @ fixed + fraction * left
+    return part
+
+
+def increments(matrix: Floats, points: Floats, longest: float, most: int) -> int:
+    """In how many steps to go, so that no point, (n, 3), moves farther than `longest` in one; at most `most`."""
+    if len(points) == 0 or longest <= 0:
+        return 1
+    farthest = float(np.abs(transform_points(matrix, points) - points).max())
+    turn = float(np.linalg.norm(rotation_vector(nearest_rotation(matrix[:3, :3]))))
+    return int(np.clip(np.ceil(max(farthest / longest, turn / 0.1)), 1, most))
