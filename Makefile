@@ -5,7 +5,7 @@ PYTHON := $(shell tools/choose_python.sh)
 BLENDERS := $(shell $(PYTHON) tools/blender_versions.py)
 DEMO_BLENDER := $(shell $(PYTHON) tools/blender_versions.py --demo)
 
-NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f 2>/dev/null)
+NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f)
 PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready
@@ -69,8 +69,8 @@ build/venv/lint: tools/requirements/lint.txt build/venv/ready
 	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/lint.txt
 	touch $@
 
-$(OPENSUBDIV): $(wildcard tools/opensubdiv_source.sh) | build/debian
-	$(if $<,$< $@,mkdir -p $@)
+$(OPENSUBDIV): tools/opensubdiv_source.sh | build/debian
+	tools/opensubdiv_source.sh $@
 	touch $@
 
 $(WHEEL): $(NATIVE_SOURCES) $(PYTHON_SOURCES) build/venv/ready $(OPENSUBDIV)

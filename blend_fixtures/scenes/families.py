@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
-
 import stiv
+from numpy.typing import NDArray
 
 from .cages import bent_sheet
 from .primitives import box, grid, icosphere, triangulated
@@ -77,7 +76,9 @@ def fold(angle: float = 1.35 * np.pi) -> Edit:
     """A sheet bent by 0.8 pi, to be bent by `angle`: beyond about pi it goes through itself."""
     start, goal = bent_sheet(0.8 * np.pi), bent_sheet(angle)
     surface = _surface([start], ["deformable"])
-    return Edit(f"fold {angle / np.pi:g} pi", surface, stiv.identity(len(start.vertices)), start.vertices, goal.vertices)
+    return Edit(
+        f"fold {angle / np.pi:g} pi", surface, stiv.identity(len(start.vertices)), start.vertices, goal.vertices
+    )
 
 
 def _catmull_clark(shape: Shape) -> tuple[Array, Shape]:
@@ -100,7 +101,9 @@ def _catmull_clark(shape: Shape) -> tuple[Array, Shape]:
     weights = np.concatenate([vertices, middles / 2 + around / 4, faces])
     edge, face = count + edge_of_side, count + len(edges) + np.arange(len(quads))
     finer = [
-        (q[k], e[k], f, e[k - 1]) for q, e, f in zip(quads.tolist(), edge.tolist(), face.tolist(), strict=True) for k in range(4)
+        (q[k], e[k], f, e[k - 1])
+        for q, e, f in zip(quads.tolist(), edge.tolist(), face.tolist(), strict=True)
+        for k in range(4)
     ]
     return weights, Shape(weights @ shape.vertices, tuple(finer))
 
@@ -166,9 +169,7 @@ def vase(depth: float, count: int = 12) -> Edit:
     low, high = bunch.vertices.min(axis=0) - 0.01, bunch.vertices.max(axis=0) + 0.01
     weights, lattice = _bspline_weights(bunch.vertices, low, high, (6, 6, 8))
     goal = lattice + (0, 0, -depth)
-    return _against_obstacle(
-        f"vase {depth:g}", bunch, "deformable", _open_vase(), stiv.linear(weights), lattice, goal
-    )
+    return _against_obstacle(f"vase {depth:g}", bunch, "deformable", _open_vase(), stiv.linear(weights), lattice, goal)
 
 
 def rigid(depth: float, size: float = 1.0) -> Edit:

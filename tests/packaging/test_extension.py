@@ -18,8 +18,8 @@ INSTALL_SCRIPT = Path(__file__).with_name("install_extension.py")
 @pytest.fixture(scope="module")
 def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
     wheels = sorted((ROOT / "build/wheel").glob("*.whl"))
-    if not wheels or not (ROOT / "addon/blender_manifest.toml").exists():
-        pytest.skip("needs a wheel in build/wheel and the add-on")
+    if not wheels:
+        pytest.skip("no wheel in build/wheel")
     from tools import build_extension
 
     return build_extension.build(wheels, tmp_path_factory.mktemp("dist"))

@@ -28,6 +28,7 @@ def test_wheel_holds_every_module_of_the_package(installed_files: set[str]) -> N
 
 def test_wheel_holds_the_addon_as_a_package(installed_files: set[str]) -> None:
     sources = {f"stiv_addon/{path.relative_to(ROOT / 'addon').as_posix()}" for path in (ROOT / "addon").rglob("*.py")}
+    assert sources
     assert sources <= installed_files
 
 
@@ -46,5 +47,6 @@ def test_source_archive_holds_what_a_build_needs(tmp_path: Path, monkeypatch: py
         "LICENSE",
         "native/CMakeLists.txt",
         "python/stiv/__init__.py",
+        "addon/__init__.py",
     }
     assert not any(name.startswith(("build/", "dist/")) or name.endswith(".so") for name in names)
