@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import stiv
-
 from blend_fixtures.scenes.motion import Step
 from blend_fixtures.scenes.plant_in_vase import plant_in_vase
 from blend_fixtures.scenes.shape import joined

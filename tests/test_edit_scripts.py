@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import pytest
+
 import stiv
 from stiv.edit_scripts import parse_edit_script, read_edit_script
 

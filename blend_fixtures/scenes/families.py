@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import stiv
 from numpy.typing import NDArray
+
+import stiv
 
 from .cages import bent_sheet
 from .primitives import box, grid, icosphere, triangulated

@@ -5,12 +5,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-import stiv
 from acceptance import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from oracles import exact
+
+import stiv
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -3,11 +3,12 @@
 
 import numpy as np
 import pytest
-import stiv
 from acceptance import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import exact, path
+
+import stiv
 
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 

@@ -2,6 +2,7 @@
 import itertools
 
 import pytest
+
 from stiv_addon.modal.constraint import Constraint
 
 LOCKS = [Constraint(axis, plane) for axis in range(3) for plane in (False, True)]

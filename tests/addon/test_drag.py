@@ -3,11 +3,12 @@ import pytest
 from fake_edit import FakeEdit
 from hypothesis import given
 from hypothesis import strategies as st
+from test_state import EVENTS
+
 from stiv_addon.modal.drag import Drag, Progress
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State
-from test_state import EVENTS
 
 
 def new_drag(edit: FakeEdit) -> Drag:

@@ -13,6 +13,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 import mathutils  # noqa: E402
+
 import stiv_addon  # noqa: E402
 from stiv_addon import availability, panel  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
+
 from stiv_addon.transform.pivot import pivot_of
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [5.0, 3.0, 1.0]])

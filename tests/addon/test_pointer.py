@@ -4,6 +4,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stiv_addon.modal.pointer import PRECISION, Pointer
 
 PIXELS = st.tuples(st.integers(-4000, 4000), st.integers(-4000, 4000))

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from views import VIEWS, looking
+
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State
@@ -12,7 +14,6 @@ from stiv_addon.modal.typed_number import TypedNumber
 from stiv_addon.transform.frame import Frame
 from stiv_addon.transform.rotation import Rotation, measure_rotation
 from stiv_addon.transform.view import View
-from views import VIEWS, looking
 
 PIVOT = np.array([0.2, 0.1, -0.3])
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
+
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State

@@ -2,6 +2,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.pointer import Pointer

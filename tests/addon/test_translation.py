@@ -3,6 +3,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from views import VIEWS, looking
+
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State
@@ -10,7 +12,6 @@ from stiv_addon.modal.typed_number import TypedNumber
 from stiv_addon.transform.frame import Frame, orthonormal
 from stiv_addon.transform.translation import measure_translation
 from stiv_addon.transform.view import View
-from views import VIEWS, looking
 
 PIVOT = np.array([0.2, 0.1, -0.3])
 TILTED = orthonormal(np.array([[1.0, -0.5, 0.2], [0.4, 1.0, 0.1], [-0.3, 0.2, 1.0]]))

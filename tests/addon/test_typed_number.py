@@ -2,6 +2,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.typed_number import MAX_DIGITS, TypedNumber, typed_character
 

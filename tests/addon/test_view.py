@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
-from stiv_addon.transform.view import View
 from views import SIZE, VIEWS, looking
+
+from stiv_addon.transform.view import View
 
 POINT = np.array([0.3, -0.4, 0.5])
 

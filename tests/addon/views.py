@@ -2,6 +2,7 @@
 """Views for the tests of the transform mathematics, built from eye and target."""
 
 import numpy as np
+
 from stiv_addon.transform.view import View
 
 SIZE = (800, 600)

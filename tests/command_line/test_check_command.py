@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+
 from stiv.command_line import check, program
 
 APART = "o below\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no above\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n"

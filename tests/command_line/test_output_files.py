@@ -4,6 +4,7 @@
 import os
 
 import pytest
+
 import stiv
 from stiv.command_line.output_files import write_json, written_atomically
 

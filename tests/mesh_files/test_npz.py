@@ -7,6 +7,7 @@ import zipfile
 
 import numpy as np
 import pytest
+
 import stiv
 from stiv.mesh_files import read_mesh
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 import stiv
 from stiv.mesh_files import read_mesh
 

@@ -5,6 +5,7 @@ import struct
 
 import numpy as np
 import pytest
+
 import stiv
 from stiv.mesh_files import read_mesh
 

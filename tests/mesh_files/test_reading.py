@@ -2,6 +2,7 @@
 """Choosing the reader."""
 
 import pytest
+
 import stiv
 from stiv.mesh_files import read_mesh
 
