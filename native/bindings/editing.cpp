@@ -77,6 +77,7 @@ py::dict dict_of(const EditResult& result) {
   py::dict values;
   values["status"] = name_of(result.status);
   values["controls"] = result.controls;
+  values["path"] = result.path;
   values["surface"] = result.surface;
   values["energy"] = result.energy;
   values["fraction"] = result.fraction;

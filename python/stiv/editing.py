@@ -75,6 +75,9 @@ class EditResult:
     blocking: tuple[str, ...]  #: names of the bodies in contact when blocked
     timings: dict[str, float]  #: seconds by step of the pipeline, and "total"
     counters: dict[str, int]  #: what was done, independent of the machine
+    #: controls accepted on the way, the last of them `controls`: between two of them the surface moves on straight
+    #: lines and meets nothing
+    path: list[NDArray[np.float64]] = field(default_factory=list)
 
 
 def _native_value(name: str, value: Any) -> Any:

@@ -32,6 +32,7 @@ EditResult make_result(const Problem& problem, const State& accepted, const Posi
   if (status == EditStatus::blocked) result.blocking = bodies_in_contact(problem.surface(), report.events);
   result.events = std::move(report.events);
   result.patches = report.patches;
+  result.path = std::move(report.path);
   return result;
 }
 

@@ -103,10 +103,12 @@ class EditSession::Implementation {
         goal_ = target;
       } catch (const Interrupted&) {
         status = execution.cancel_requested() ? EditStatus::cancelled : EditStatus::budget;
-        if (status == EditStatus::cancelled)
+        if (status == EditStatus::cancelled) {
           accepted_ = before;
-        else
+          report.path.clear();
+        } else {
           goal_ = target;
+        }
       } catch (...) {
         accepted_ = before;
         throw;

@@ -40,6 +40,7 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
     record(report, outcome, acceptance);
     if (acceptance.fraction == 0) return;
     accepted = std::move(acceptance.state);
+    report.path.push_back(accepted.controls);
     const double after = energy(accepted.surface, aim.surface);
     if (!report.blocked || after > (1 - least_gain) * before) return;
     before = after;

@@ -18,6 +18,7 @@ struct SolveReport {
   double fraction = 1;   ///< least fraction of a step that was accepted
   Events events;         ///< of the last round that had any
   Index patches = 0;
+  std::vector<Controls> path;  ///< accepted controls, in order
 };
 
 /// The loop of an edit: sub-edits of rounds and acceptance, until the response settles or nothing is gained. `accepted`

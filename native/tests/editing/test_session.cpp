@@ -216,3 +216,4 @@ TEST_CASE("session: a scale by a power of two changes no bit") {
     CHECK(second.controls == scale * first.controls);
   }
 }
+

@@ -24,6 +24,8 @@ enum class EditStatus {
 struct EditResult {
   EditStatus status = EditStatus::unchanged;
   Controls controls;            ///< accepted controls, as stored, (m, 3)
+  std::vector<Controls> path;   ///< controls accepted on the way, the last of them `controls`; between two of them the
+                                ///< surface moves on straight lines and meets nothing
   Positions surface;            ///< f(controls), (N, 3), world
   double energy = 0;            ///< 1/2 |f(controls) - f(goal)|^2
   double fraction = 1;          ///< least fraction of a step that acceptance allowed
