@@ -46,8 +46,8 @@ lint: build/venv/lint ## Check format, style and types
 extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as an extension
 	build/venv/bin/python tools/build_extension.py build/wheel/*.whl
 
-bench: build/venv-blender ## Run the benchmarks
-	build/venv-blender/bin/python -m benchmarks
+bench: build/venv/stiv ## Run every benchmark with its default settings
+	set -e; for script in benchmarks/*.py; do echo "== $$script"; build/venv/bin/python $$script; done
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
