@@ -11,9 +11,9 @@ EXIT_CODE = pytest.StashKey[int]()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of every module that imports bpy."""
+    """Mark what is in tests/blender, and the tests of every module that imports bpy."""
     for item in items:
-        if "bpy" in vars(getattr(item, "module", None) or object):
+        if item.path.parent.name == "blender" or "bpy" in vars(getattr(item, "module", None) or object):
             item.add_marker(pytest.mark.blender)
 
 
