@@ -8,8 +8,10 @@ namespace stiv {
 Wires::Wires(const Cage& cage, const CageEdges& edges, bool smooth)
     : cage_(cage),
       smooth_(smooth),
+      on_face_(static_cast<std::size_t>(cage.vertex_count), false),
       edge_count_(static_cast<std::size_t>(cage.vertex_count), 0),
       neighbours_(static_cast<std::size_t>(cage.vertex_count), {-1, -1}) {
+  for (const Index vertex : cage.face_corners) on_face_[static_cast<std::size_t>(vertex)] = true;
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
     if (!edges.is_loose(edge)) continue;
     for (Index end = 0; end < 2; ++end) {
@@ -29,10 +31,10 @@ void Wires::add_vertex(Index vertex, WeightRows& rows) const {
   rows.add(neighbours_[v][1], 1.0 / 6);
 }
 
-/// The vertex that continues the chain beyond `vertex`, away from `except`; -1 where it ends or branches.
+/// The vertex that continues the chain beyond `vertex`, away from `except`; -1 where it ends, branches or meets a face.
 Index Wires::neighbour(Index vertex, Index except) const {
   const auto v = static_cast<std::size_t>(vertex);
-  if (edge_count_[v] != 2) return -1;
+  if (on_face_[v] || edge_count_[v] != 2) return -1;
   return neighbours_[v][0] == except ? neighbours_[v][1] : neighbours_[v][0];
 }
 

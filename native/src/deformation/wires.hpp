@@ -9,7 +9,7 @@
 namespace stiv {
 
 /// What becomes of the parts of a cage that are in no face. Loose edges turn into uniform cubic B-splines through the
-/// chain of their neighbours; where a chain ends or branches, it is continued in a straight line.
+/// chain of their neighbours; where a chain ends, branches or meets a face, it is continued in a straight line.
 class Wires {
  public:
   /// The cage must outlive this.
@@ -30,6 +30,7 @@ class Wires {
 
   const Cage& cage_;
   bool smooth_;
+  std::vector<bool> on_face_;
   std::vector<Index> edge_count_;                 ///< loose edges of each vertex
   std::vector<std::array<Index, 2>> neighbours_;  ///< other ends of its first two loose edges
 };
