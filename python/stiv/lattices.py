@@ -14,7 +14,10 @@ from stiv.weights import Weights
 
 
 def lattice_rest_points(resolution: Sequence[int]) -> Floats:
-    """Return the points of a new lattice in its own space, (u v w, 3): 1 apart, centred on the origin, u fastest."""
+    """Return the points of a lattice in its own space, (u v w, 3): 1 apart, centred on the origin, u fastest.
+
+    Lattices of a Blender file can have other rest positions: read them from there.
+    """
     axes = [np.arange(points) - (points - 1) / 2 for points in _resolution(resolution)]
     w, v, u = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
     return np.stack([u.ravel(), v.ravel(), w.ravel()], axis=1)

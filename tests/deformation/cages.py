@@ -145,7 +145,7 @@ def cubes_sharing_an_edge() -> CageCase:
     """Two closed cubes with one edge in common: four faces on it."""
     first = cube()
     renamed = {0: 3, 4: 7, **{v: 7 + k for k, v in enumerate((1, 2, 3, 5, 6, 7), 1)}}
-    moved = first.vertices + [2.0, 2.0, 0.0]
+    moved = first.vertices + np.array([2.0, 2.0, 0.0])
     vertices = np.concatenate([first.vertices, moved[[1, 2, 3, 5, 6, 7]]])
     return CageCase(vertices, first.faces + [tuple(renamed[v] for v in f) for f in first.faces])
 
@@ -169,7 +169,12 @@ def loose_vertices() -> CageCase:
 
 def wires() -> CageCase:
     """Loose edges: an open chain, a closed one, a branching, a single edge; some with creases."""
-    chain, ring, fork, single = [(0, 1), (2, 1), (2, 3)], [(4, 5), (6, 5), (6, 4)], [(7, 8), (7, 9), (7, 10)], [(11, 12)]
+    chain, ring, fork, single = (
+        [(0, 1), (2, 1), (2, 3)],
+        [(4, 5), (6, 5), (6, 4)],
+        [(7, 8), (7, 9), (7, 10)],
+        [(11, 12)],
+    )
     points = np.random.default_rng(7).normal(size=(13, 3))
     return CageCase(points, [], [*chain, *ring, *fork, *single], {(0, 1): 1.0}, {2: 1.0, 5: 0.4})
 
@@ -177,7 +182,7 @@ def wires() -> CageCase:
 def wires_on_a_sheet() -> CageCase:
     """Wires that start at vertices of faces: a corner, a boundary vertex, inner ones; one and two at a vertex."""
     case = grid(4)
-    extra = np.random.default_rng(8).normal(size=(7, 3)) + [1.5, 1.5, 2.0]
+    extra = np.random.default_rng(8).normal(size=(7, 3)) + np.array([1.5, 1.5, 2.0])
     loose = [(0, 16), (16, 17), (5, 18), (6, 19), (20, 6), (2, 21), (22, 21), (22, 7)]
     return CageCase(np.concatenate([case.vertices, extra]), case.faces, loose)
 

@@ -9,8 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module (bpy)")
 import bmesh  # noqa: E402
-
 import stiv  # noqa: E402
+
 from tests.deformation.cages import CASES, CageCase, creased_cylinder, cube_with_both_creases, grid  # noqa: E402
 from tests.deformation.evaluated_meshes import (  # noqa: E402
     cage_of,
@@ -85,7 +85,9 @@ def test_weights_hold_for_every_shape(monkey: Any) -> None:
     """The weights do not depend on where the cage's vertices are."""
     with linked(monkey) as item:
         check_equal(item, levels=2)
-        moved = read(monkey.vertices, "co") + np.random.default_rng(10).normal(scale=0.2, size=(len(monkey.vertices), 3))
+        moved = read(monkey.vertices, "co") + np.random.default_rng(10).normal(
+            scale=0.2, size=(len(monkey.vertices), 3)
+        )
         monkey.vertices.foreach_set("co", moved.astype(np.float32).ravel())
         monkey.update()
         check_equal(item, levels=2)
