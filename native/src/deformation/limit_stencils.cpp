@@ -35,12 +35,12 @@ float crease_sharpness(const std::vector<float>& creases, std::size_t k) {
 }
 
 /// "Simple" is Catmull-Clark with everything infinitely sharp. Where wires meet a face, its vertex is sharp too.
-Sharpness sharpness_of(const Cage& cage, const Wires& wires, bool simple) {
+Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wires, bool simple) {
   Sharpness sharpness;
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
     const float value =
         simple ? infinite_sharpness : crease_sharpness(cage.edge_crease, static_cast<std::size_t>(edge));
-    if (!(value > 0)) continue;
+    if (edges.is_loose(edge) || !(value > 0)) continue;
     sharpness.edge_ends.insert(sharpness.edge_ends.end(), {cage.edges(edge, 0), cage.edges(edge, 1)});
     sharpness.edge.push_back(value);
   }
@@ -126,8 +126,9 @@ struct LimitStencils::Tables {
   std::unique_ptr<const Stencils> stencils;
 };
 
-LimitStencils::LimitStencils(const Cage& cage, const Wires& wires, const SubdivisionOptions& options) {
-  const auto refiner = make_refiner(cage, sharpness_of(cage, wires, options.simple), options.boundary);
+LimitStencils::LimitStencils(const Cage& cage, const CageEdges& edges, const Wires& wires,
+                             const SubdivisionOptions& options) {
+  const auto refiner = make_refiner(cage, sharpness_of(cage, edges, wires, options.simple), options.boundary);
   if (!refiner) throw InputError("cage: OpenSubdiv cannot subdivide these faces; check them for degenerate ones");
   const bool adaptive = options.limit_surface;
   const int level = options.simple ? 1 : adaptive ? options.quality : options.levels;

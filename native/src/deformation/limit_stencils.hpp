@@ -14,7 +14,7 @@ namespace stiv {
 class LimitStencils {
  public:
   /// @throws InputError when OpenSubdiv refuses the cage.
-  LimitStencils(const Cage& cage, const Wires& wires, const SubdivisionOptions& options);
+  LimitStencils(const Cage& cage, const CageEdges& edges, const Wires& wires, const SubdivisionOptions& options);
   ~LimitStencils();
 
   /// Adds the weights of the point at `location`, which must be on a face, to the row being built.

@@ -46,7 +46,7 @@ WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& opt
   const Wires wires(cage, edges, !options.simple);
   const std::vector<SurfaceLocation> locations = surface_locations(cage, vertices);
   std::optional<LimitStencils> stencils;
-  if (face_count(cage) > 0) stencils.emplace(cage, wires, options);
+  if (face_count(cage) > 0) stencils.emplace(cage, edges, wires, options);
 
   WeightRows rows(vertices.count(), cage.vertex_count);
   for (Index vertex = 0; vertex < vertices.count(); ++vertex) {
