@@ -7,9 +7,9 @@ from typing import Any
 
 import bpy
 import numpy as np
-import stiv
 from numpy.typing import NDArray
 
+import stiv
 from tests.deformation.cages import CageCase
 
 Floats = NDArray[np.float64]

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-import stiv
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+import stiv
 from tests.deformation.cages import mixed_strip
 
 Floats = NDArray[np.float64]

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import stiv
 from hypothesis import given
 from hypothesis import strategies as st
+
+import stiv
 
 INTERPOLATIONS = ("linear", "cardinal", "catmull_rom", "bspline")
 RANDOM = np.random.default_rng(1)

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module (bpy)")
 
 import stiv  # noqa: E402
-
 from tests.deformation.cages import CageCase, creased_cylinder, torus, wires_on_a_sheet  # noqa: E402
 from tests.deformation.evaluated_meshes import (  # noqa: E402
     cage_of,

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import stiv
 from hypothesis import given
 from hypothesis import strategies as st
 
+import stiv
 from tests.deformation.cages import CASES, CageCase, cube, grid, octahedron, torus
 
 

@@ -9,8 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module (bpy)")
 import bmesh  # noqa: E402
-import stiv  # noqa: E402
 
+import stiv  # noqa: E402
 from tests.deformation.cages import CASES, CageCase, creased_cylinder, cube_with_both_creases, grid  # noqa: E402
 from tests.deformation.evaluated_meshes import (  # noqa: E402
     cage_of,
