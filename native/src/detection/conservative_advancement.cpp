@@ -8,8 +8,8 @@ namespace stiv {
 
 namespace {
 
-/// Steps per pair; contacts take 2 to 6, the hardest grazing motions seen in tests 30.
-constexpr int most_steps = 96;
+/// Steps per pair; contacts take 2 to 6; those that touch without crossing take a fixed fraction of the wait at each.
+constexpr int most_steps = 256;
 /// Trials of a longer step in each step.
 constexpr int most_trials = 4;
 /// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
@@ -81,7 +81,7 @@ bool approaches(const RelativeMotion& motion, const Witness& witness) {
 
 /// Near enough to end: within rounding of the threshold, or within the tolerance and still approaching.
 bool arrived(const RelativeMotion& motion, const Witness& nearest, double threshold) {
-  if (nearest.distance <= threshold + 4 * motion.rounding) return true;
+  if (nearest.distance <= threshold + 1.25 * motion.rounding) return true;
   return nearest.distance <= threshold * (1 + tolerance) && approaches(motion, nearest);
 }
 

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Events of whole surfaces: the broad phases agree, and agree with single pairs."""
+
+import threading
+from itertools import combinations
+
+import numpy as np
+import pytest
+import stiv
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+
+def soup(seed: int, triangles: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Random small triangles, some of which share vertices, and random motion of half of the vertices."""
+    random = np.random.default_rng(seed)
+    centres = random.random((triangles, 1, 3))
+    start = (centres + size * (random.random((triangles, 3, 3)) - 0.5)).reshape(-1, 3)
+    corners = np.arange(3 * triangles).reshape(-1, 3)
+    corners[1::4, 0] = corners[0::4, 2][: len(corners[1::4])]
+    end = start + np.where(random.random((len(start), 1)) < 0.5, size, 0) * (random.random(start.shape) - 0.5)
+    return corners, start, end
+
+
+def assert_same(a: stiv.Events, b: stiv.Events) -> None:
+    for name in ("kind", "vertices", "time", "weights", "normal", "start_distance"):
+        assert np.array_equal(getattr(a, name), getattr(b, name)), name
+
+
+@settings(max_examples=20, deadline=None, derandomize=True)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.003, 0.05]), st.sampled_from([0.1, 0.4, 1.0]))
+def test_broad_phases_and_threads_agree(seed: int, separation: float, size: float) -> None:
+    corners, start, end = soup(seed, 60, size)
+    expected = stiv.find_interference(corners, start, end, separation, "brute_force", threads=1)
+    for threads in (1, 2, 3):
+        assert_same(stiv.find_interference(corners, start, end, separation, threads=threads), expected)
+    times = expected.time
+    earliest = stiv.Detector(corners, threads=2).earliest_time(start, end, separation)
+    assert earliest == (times.min() if len(times) else np.inf)
+
+
+def all_pairs(corners: np.ndarray) -> list[tuple[int, tuple[int, ...]]]:
+    edges = sorted({tuple(sorted((int(face[k]), int(face[k - 1])))) for face in corners for k in range(3)})
+    faces = [(0, (v, *map(int, face))) for v in range(int(corners.max()) + 1) for face in corners]
+    pairs = faces + [(1, a + b) for a, b in combinations(edges, 2)]
+    return [(kind, v) for kind, v in pairs if len(set(v)) == 4]
+
+
+def test_events_are_the_pairs_that_meet() -> None:
+    corners, start, end = soup(3, 16, 1.2)
+    events = stiv.find_interference(corners, start, end, separation=0)
+    found = {
+        (int(kind), tuple(v)): time for kind, v, time in zip(events.kind, events.vertices, events.time, strict=True)
+    }
+    pairs = all_pairs(corners)
+    for kind, name in enumerate(("vf", "ee")):
+        rows = np.array([v for k, v in pairs if k == kind])
+        times = stiv.time_of_impact(name, start[rows], end[rows])
+        expected = {(kind, tuple(v)): t for v, t in zip(rows, times, strict=True) if np.isfinite(t)}
+        assert {pair: t for pair, t in found.items() if pair[0] == kind} == expected
+    assert len(found) > 20 and {kind for kind, _ in found} == {0, 1}
+
+
+def test_events_describe_the_contact() -> None:
+    corners, start, end = soup(5, 40, 0.5)
+    events = stiv.find_interference(corners, start, end, separation=0.01)
+    assert len(events) > 20 and set(events.kind_names) == {"vf", "ee"}
+    t = events.time[:, None, None]
+    x = (1 - t) * start[events.vertices] + t * end[events.vertices]
+    separation = np.einsum("kv,kvi->ki", events.weights, x)
+    approach = np.einsum("kv,kvi,ki->k", events.weights, (end - start)[events.vertices], events.normal)
+    threshold = np.minimum(0.01, 0.5 * events.start_distance)
+    assert np.allclose(events.weights.sum(1), 0, atol=1e-15)
+    assert np.allclose(np.linalg.norm(separation, axis=1), threshold, rtol=1.1e-3, atol=1e-12)
+    assert np.allclose(np.linalg.norm(events.normal, axis=1), 1)
+    assert np.all(np.einsum("ki,ki->k", separation, events.normal) > 0) and np.all(approach <= 0)
+    order = np.lexsort((*events.vertices.T[::-1], events.kind))
+    assert np.array_equal(order, np.arange(len(events)))
+
+
+def test_bodies_loose_edges_and_loose_vertices() -> None:
+    start = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0.2, 1], [1, 0.2, 1], [0.2, 0.2, 1]], float)
+    end = start.copy()
+    end[3:, 2] = -1
+    plain = stiv.find_interference([[0, 1, 2]], start, end)
+    assert sorted(plain.vertices[:, 0]) == [3, 4, 5][2:]
+    surface = stiv.Surface([[0, 1, 2]], 6, loose_edges=[[3, 4]])
+    events = stiv.Detector(surface).find(start, end)
+    assert [tuple(v) for v in events.vertices] == [(5, 0, 1, 2), (0, 2, 3, 4), (1, 2, 3, 4)]
+    bodies = [stiv.Body("face", "fixed"), stiv.Body("edge")]
+    apart = stiv.Surface([[0, 1, 2]], 6, [[3, 4]], [0, 0, 0, 1, 1, 1], bodies, ignored=[(0, 1)])
+    assert len(stiv.Detector(apart).find(start, end)) == 0
+
+
+def test_common_motion_gives_no_event() -> None:
+    corners, start, _ = soup(9, 60, 0.4)
+    start = start.astype(np.float32).astype(float)
+    for shift in ([1, 0, 0], [0.1, -7.3, 1e3]):
+        assert len(stiv.find_interference(corners, start, start + np.array(shift), separation=0.02)) == 0
+
+
+def test_a_detector_is_used_by_one_thread_at_a_time() -> None:
+    corners, start, end = soup(11, 300, 0.5)
+    detector = stiv.Detector(corners, broad_phase="brute_force", threads=1)
+    outcomes: list[object] = []
+
+    def use() -> None:
+        try:
+            outcomes.append(len(detector.find(start, end)))
+        except stiv.InputError as error:
+            outcomes.append(str(error))
+
+    threads = [threading.Thread(target=use) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    counts = {outcome for outcome in outcomes if isinstance(outcome, int)}
+    assert counts == {len(stiv.find_interference(corners, start, end))}
+    assert all("in use" in str(outcome) for outcome in outcomes if not isinstance(outcome, int))
+
+
+SHAPE = np.zeros((4, 3))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: stiv.find_interference([[0, 1, 4]], SHAPE, SHAPE), "face 0: vertex index 4 is out of range 0..3"),
+        (lambda: stiv.find_interference([[0, 1, -1]], SHAPE, SHAPE), "triangles, row 0: index -1 is out of range"),
+        (lambda: stiv.find_interference([[0, 1, 2.5]], SHAPE, SHAPE), "triangles: dtype is float64"),
+        (lambda: stiv.find_interference([[0, 1]], SHAPE, SHAPE), "triangles: shape is"),
+        (lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE[:3]), "end: shape is"),
+        (lambda: stiv.find_interference([[0, 1, 2]], SHAPE + np.inf, SHAPE), "start, row 0: a number is not finite"),
+        (lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE, broad_phase="octree"), "'bvh', 'brute_force'"),
+        (lambda: stiv.Detector([[0, 1, 2]], narrow_phase="cubic"), "no 'cubic', only 'conservative'"),
+        (lambda: stiv.Detector([[0, 1, 2]], threads=-1), "threads: expected an integer"),
+        (lambda: stiv.Detector([[0, 1, 2]]).find(SHAPE, SHAPE, 0, 1), "kept fraction"),
+        (lambda: stiv.Detector(stiv.Surface([[0, 1, 2]], 3)).find(SHAPE, SHAPE), "start: shape is"),
+        (lambda: stiv.Surface([[0, 1, 2]], vertex_body=[0, 0, 1]), "vertex_body, row 2: index 1 is out of range"),
+        (lambda: stiv.Surface([[0, 1, 2]], bodies=[stiv.Body("a", "soft")]), 'not "soft"'),
+    ],
+)
+def test_bad_input_is_named(call: object, message: str) -> None:
+    with pytest.raises(stiv.InputError, match=message.replace("(", r"\(")):
+        call()  # type: ignore[operator]

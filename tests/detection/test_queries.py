@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Published collision queries with exact answers; STIV_CCD_QUERIES names their folder (its README gives the format)."""
+
+import os
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import stiv
+
+from tests.detection.exact import WIDTH, first_contact, squared_distance
+
+FOLDER = os.environ.get("STIV_CCD_QUERIES", "")
+pytestmark = pytest.mark.skipif(not FOLDER, reason="STIV_CCD_QUERIES does not name a folder of collision queries")
+
+KINDS = {"vertex-face": "vf", "edge-edge": "ee"}
+FILES = sorted(Path(FOLDER).glob("*/*/*.csv")) if FOLDER else []
+
+
+def read(path: Path) -> tuple[list[list[list[Fraction]]], list[bool]]:
+    """Eight points a query, each of three fractions, and whether the pair meets."""
+    lines = [[int(number) for number in line.split(",")] for line in path.read_text().splitlines() if line]
+    points = [[Fraction(line[k], line[k + 1]) for k in (0, 2, 4)] for line in lines]
+    return [points[k : k + 8] for k in range(0, len(points), 8)], [bool(line[6]) for line in lines[::8]]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: "-".join(path.parts[-3:]))
+def test_no_query_is_missed_and_none_is_late(path: Path) -> None:
+    kind = KINDS[path.parent.name]
+    queries, answers = read(path)
+    points = np.array(queries, dtype=float)
+    times = stiv.time_of_impact(kind, points[:, :4], points[:, 4:])
+    found, meets = np.isfinite(times), np.array(answers)
+    assert not np.any(meets & ~found), "missed"
+    early = []
+    for row in np.flatnonzero(found):
+        truth = first_contact(kind, queries[row][:4], queries[row][4:])
+        assert (truth is not None) == meets[row]
+        if truth is None:
+            assert nearness(kind, queries[row], times[row]) < 2**-44, f"query {row} is nowhere near"
+        else:
+            assert Fraction(times[row]) <= truth + WIDTH, f"query {row} is late"
+            early.append(float(truth) - times[row])
+    assert np.median(early or [0.0]) < 1e-3
+    print(f"{len(meets)} queries, {np.sum(meets)} meet, {np.sum(found & ~meets)} nearer than rounding")
+
+
+def nearness(kind: str, points: list[list[Fraction]], time: float) -> float:
+    """Distance at a time, relative to the largest coordinate."""
+    t = Fraction(time)
+    at_time = [tuple((1 - t) * a + t * b for a, b in zip(points[k], points[k + 4], strict=True)) for k in range(4)]
+    size = max(abs(c) for point in points for c in point)
+    return float(squared_distance(kind, at_time) / size**2) ** 0.5
