@@ -5,7 +5,7 @@
 set -eu
 python=$1
 opensubdiv=$(realpath "$2")
-echo "build/wheel: compiling the core and the Python module"
+echo "build/wheel: compiling the core and the Python module (minutes, the first time)"
 rm -f build/wheel/*.whl
 "$python" -m pip wheel . --no-deps --no-build-isolation --disable-pip-version-check --quiet --wheel-dir build/wheel \
     --config-settings build-dir=build/native \
