@@ -62,8 +62,8 @@ class EditOptions:
 class EditResult:
     """What an edit came to."""
 
-    #: "reached" (the goal itself), "corrected" (interference was resolved), "blocked" (stopped at the last clear state),
-    #: "budget" (the time was used up), "cancelled" (the state before), or "unchanged" (nothing to do)
+    #: "reached" (the goal itself), "corrected" (interference was resolved), "blocked" (stopped at the last clear
+    #: state), "budget" (the time was used up), "cancelled" (the state before), or "unchanged" (nothing to do)
     status: str
     controls: NDArray[np.float64]  #: (m, 3) accepted controls, as stored
     surface: NDArray[np.float64]  #: (N, 3) the surface that they give, world coordinates
@@ -145,7 +145,10 @@ class EditSession:
     ) -> None:
         self._topology = as_surface(surface, deformation.vertex_count)
         self._session = _native.EditSession(
-            self._topology.native, deformation, _as_doubles(controls, "controls"), _native_options(options or EditOptions())
+            self._topology.native,
+            deformation,
+            _as_doubles(controls, "controls"),
+            _native_options(options or EditOptions()),
         )
 
     @property
@@ -168,8 +171,9 @@ class EditSession:
     ) -> EditResult:
         """One edit from the accepted controls toward ``goal``, (m, 3).
 
-        ``cancel.cancel()``, from another thread or from ``progress``, ends it within milliseconds with the state before
-        the edit. ``progress(phase, fraction)`` is called between rounds; an exception in it cancels, and is raised again.
+        ``cancel.cancel()``, from another thread or from ``progress``, ends it within milliseconds with the state
+        before the edit. ``progress(phase, fraction)`` is called between rounds; an exception in it cancels, and is
+        raised again.
         """
         return _result(self._session.edit(_as_doubles(goal, "goal"), cancel, progress), self._topology)
 

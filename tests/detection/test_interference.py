@@ -6,9 +6,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-import stiv
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+import stiv
 
 
 def soup(seed: int, triangles: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import stiv
 
+import stiv
 from tests.detection.exact import WIDTH, first_contact, squared_distance
 
 FOLDER = os.environ.get("STIV_CCD_QUERIES", "")

@@ -5,10 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import stiv
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import stiv
 from tests.detection.exact import WIDTH, first_contact, squared_distance
 
 GRID = st.integers(-3, 3)

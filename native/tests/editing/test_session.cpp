@@ -216,4 +216,3 @@ TEST_CASE("session: a scale by a power of two changes no bit") {
     CHECK(second.controls == scale * first.controls);
   }
 }
-

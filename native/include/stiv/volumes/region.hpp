@@ -17,8 +17,8 @@ struct Region {
 /// Each event falls into one region on either side, that of its heaviest vertex; a region keeps the earliest event
 /// whose normal is usable (n . Drho < -1e-8 |Drho|). Events whose nearest points lie on a
 /// vertex or edge of a face or at an end of an edge, and those of nearly parallel edges, count only if there are no
-/// others: their normals are not steady. Sorted by vertex; ties go to the first event. Empty although there are events: none of
-/// them tells a way out, and the edit has to be truncated.
+/// others: their normals are not steady. Sorted by vertex; ties go to the first event. Empty although there are events:
+/// none of them tells a way out, and the edit has to be truncated.
 /// @param start, end the step, (N, 3) each
 std::vector<Region> earliest_regions(const Events& events, const Positions& start, const Positions& end);
 
