@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside Blender: plays the scenarios one after the other and writes results.json beside the pictures."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import sys
+import time
+import traceback
+from collections.abc import Generator
+from pathlib import Path
+
+import bpy
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+TICK = 0.1  # seconds between two steps of a scenario: Blender handles events and draws in between
+DRAW_LIMIT = 120.0  # seconds for the first picture; software rendering compiles its shaders first
+
+
+def import_extension() -> None:
+    """Register addon/ under the name that the tests use."""
+    sys.path[:0] = [str(ROOT / "python"), str(HERE)]
+    spec = importlib.util.spec_from_file_location(
+        "stiv_addon", ROOT / "addon/__init__.py", submodule_search_locations=[str(ROOT / "addon")]
+    )
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["stiv_addon"] = module
+    spec.loader.exec_module(module)
+    module.register()
+
+
+class Driver:
+    """Plays generators: each `yield` hands control back to Blender for a tick."""
+
+    def __init__(self, output: Path, names: list[str]):
+        """Choose scenarios by name; none means all."""
+        import scenarios
+        from simulation import Window
+
+        self.window = Window(output)
+        chosen = {name: scenarios.SCENARIOS[name] for name in names} or scenarios.SCENARIOS
+        self.results = {"complete": False, "scenarios": {}}
+        self.path = output / "results.json"
+        self.steps = self.play(chosen)
+
+    def play(self, chosen: dict) -> Generator[None, None, None]:
+        """Wait for the first drawing (events before it are lost), then all scenarios."""
+        yield from self.window.first_draw(DRAW_LIMIT)
+        for name, scenario in chosen.items():
+            started = time.time()
+            self.results["scenarios"][name] = yield from self.play_one(scenario)
+            print(f"{name}: {time.time() - started:.1f} s", flush=True)
+            self.save()
+        self.results["complete"] = True
+
+    def play_one(self, scenario: object) -> Generator[None, None, str]:
+        """The failure of one scenario, empty if it passed; afterwards no drag is left over."""
+        try:
+            yield from scenario(self.window)
+        except Exception:
+            failure = traceback.format_exc()
+            self.window.picture(f"failed_{scenario.__name__}")
+            self.window.key("ESC")
+            yield
+            return failure
+        return ""
+
+    def save(self) -> None:
+        """Write what is known so far, so that a crash tells where it happened."""
+        self.path.write_text(json.dumps(self.results))
+
+    def tick(self) -> float:
+        """Called by Blender's timer."""
+        try:
+            next(self.steps)
+        except StopIteration:
+            self.save()
+            leave(0)
+        except Exception:
+            traceback.print_exc()
+            self.save()
+            leave(3)
+        return TICK
+
+
+def leave(code: int) -> None:
+    """End at once: a window that is closed normally asks whether to save."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
+def start() -> float | None:
+    """Begin when the window exists."""
+    if not bpy.context.window_manager.windows:
+        return TICK
+    try:
+        import_extension()
+        output, *names = sys.argv[sys.argv.index("--") + 1 :]
+        bpy.app.timers.register(Driver(Path(output), names).tick)
+    except Exception:
+        traceback.print_exc()
+        leave(3)
+    return None
+
+
+bpy.context.preferences.view.show_splash = False  # it would swallow the first events
+bpy.app.timers.register(start)

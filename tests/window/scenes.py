@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small scenes for the window: something to drag, and a wall whose face is at x = WALL_FACE."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import bmesh
+import bpy
+import mathutils
+
+WALL_FACE = 1.9
+WALL_THICKNESS = 0.2
+HALF = 0.5  # of what is dragged, along x
+
+
+def clear() -> None:
+    """Remove every object, in Object Mode, and give the scene its default settings back."""
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    scene = bpy.context.scene
+    for name in ("separation", "responders", "object_response"):
+        scene.stiv.property_unset(name)
+
+
+def look_from_above(area: Any) -> None:
+    """Parallel view along -z: x to the right, y upwards."""
+    view = area.spaces.active.region_3d
+    view.view_perspective = "ORTHO"
+    view.view_rotation = mathutils.Quaternion()
+    view.view_location, view.view_distance = (0.0, 0.0, 0.0), 9.0
+    view.update()
+
+
+def look_from_corner(area: Any) -> None:
+    """Perspective view that shows depth, for pictures."""
+    look_from_above(area)
+    view = area.spaces.active.region_3d
+    view.view_perspective = "PERSP"
+    view.view_rotation = mathutils.Euler((math.radians(58.0), 0.0, math.radians(-28.0))).to_quaternion()
+    view.update()
+
+
+def add_mesh(name: str, build: Any, location: tuple = (0.0, 0.0, 0.0)) -> Any:
+    """A mesh object; `build` fills a bmesh."""
+    mesh = bpy.data.meshes.new(name)
+    content = bmesh.new()
+    build(content)
+    content.to_mesh(mesh)
+    content.free()
+    thing = bpy.data.objects.new(name, mesh)
+    thing.location = location
+    bpy.context.collection.objects.link(thing)
+    return thing
+
+
+def add_wall() -> Any:
+    """A thin upright box."""
+    size = mathutils.Matrix.Diagonal((WALL_THICKNESS, 4.0, 3.0, 1.0))
+    centre = (WALL_FACE + WALL_THICKNESS / 2.0, 0.0, 0.0)
+    return add_mesh("Wall", lambda content: bmesh.ops.create_cube(content, size=1.0, matrix=size), centre)
+
+
+def add_box() -> Any:
+    """A box of edge 1 in the middle."""
+    return add_mesh("Box", lambda content: bmesh.ops.create_cube(content, size=2.0 * HALF))
+
+
+def add_cage() -> Any:
+    """A subdivided cube under a Subdivision Surface modifier."""
+
+    def build(content: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_cube(content, size=2.0 * HALF)
+        bmesh.ops.subdivide_edges(content, edges=content.edges[:], cuts=2, use_grid_fill=True)
+
+    cage = add_mesh("Cage", build)
+    cage.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    return cage
+
+
+def add_ball_in_lattice() -> tuple[Any, Any]:
+    """A sphere and the lattice that deforms it."""
+    ball = add_mesh("Ball", lambda content: bmesh.ops.create_icosphere(content, subdivisions=3, radius=HALF))
+    data = bpy.data.lattices.new("Lattice")
+    data.points_u = data.points_v = data.points_w = 4
+    lattice = bpy.data.objects.new("Lattice", data)
+    lattice.scale = (1.3, 1.3, 1.3)
+    bpy.context.collection.objects.link(lattice)
+    ball.modifiers.new("Lattice", "LATTICE").object = lattice
+    return ball, lattice
+
+
+def select_only(thing: Any) -> None:
+    """Select one object and make it active."""
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other == thing)
+    bpy.context.view_layer.objects.active = thing
+    bpy.context.view_layer.update()
+
+
+def evaluated_extent(name: str) -> float:
+    """The largest x of an object as Blender evaluates it."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    thing = bpy.data.objects[name].evaluated_get(graph)
+    mesh = thing.to_mesh()
+    largest = max((thing.matrix_world @ vertex.co).x for vertex in mesh.vertices)
+    thing.to_mesh_clear()
+    return largest
