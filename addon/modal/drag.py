@@ -17,9 +17,6 @@ class Edit(Protocol):
     def drag(self, matrix: Any) -> Any:
         """Solve for an absolute goal."""
 
-    def apply(self, matrix: Any) -> Any:
-        """Solve for a goal given at once, settled."""
-
     def settle(self) -> Any:
         """Solve again from the accepted state."""
 
@@ -35,6 +32,8 @@ class Progress(Enum):
 
     RUNNING = "running"
     FINISHED = "finished"
+    VALUE_GIVEN = "value given"
+    """Confirmed by a typed number: everything is restored, and `transform` is to be applied as a script would."""
     CANCELLED = "cancelled"
 
 
@@ -118,17 +117,13 @@ class Drag:
 
     def _confirm(self) -> None:
         if self.state.typed.active:
-            self._apply_typed()
-        elif self._pending or self.result is not None:
+            self.transform = self._measure(self.state)
+            self._edit.restore()
+            self.progress = Progress.VALUE_GIVEN
+            return
+        if self._pending or self.result is not None:
             self._finish_dragged()
         self.progress = Progress.FINISHED
-
-    def _apply_typed(self) -> None:
-        """From the start again: a typed value gives what the same value gives in a script or the redo panel."""
-        self.transform = self._measure(self.state)
-        self._edit.restore()
-        self.result = self._edit.apply(self._matrix(self.transform))
-        self.report = self._edit.write()
 
     def _finish_dragged(self) -> None:
         if self._pending:

@@ -19,7 +19,6 @@ from .messages import outcome_text, write_failure
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
 TICK = 1.0 / 60.0  # seconds between two solves at least
-ENDINGS = {Progress.RUNNING: "RUNNING_MODAL", Progress.FINISHED: "FINISHED", Progress.CANCELLED: "CANCELLED"}
 
 
 class TransformOperator:
@@ -80,9 +79,8 @@ class TransformOperator:
             self._drag.handle(interface.plain_event(event, context.region))
         if self._drag.progress is Progress.RUNNING:
             self._show(context)
-        else:
-            self._end(context)
-        return {ENDINGS[self._drag.progress]}
+            return {"RUNNING_MODAL"}
+        return self._end(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the drag: a file is loaded, the window closes."""
@@ -112,13 +110,21 @@ class TransformOperator:
         told = [text for text in (drag.note, write_failure(drag.report)) if text]
         interface.show(context, drag.state, value, verdict, [*told, *self._notes])
 
-    def _end(self, context: bpy.types.Context) -> None:
+    def _end(self, context: bpy.types.Context) -> set[str]:
+        drag = self._drag
         self._leave(context)
-        if self._drag.error is not None:
-            self._refuse(self._drag.error, None)
-        elif self._drag.progress is Progress.FINISHED and self._drag.transform is not None:
-            self.keep(self._drag.transform)
-            self._tell(outcome_text(self._drag.result), write_failure(self._drag.report))
+        if drag.error is not None:
+            return self._refuse(drag.error, None)
+        if drag.progress is Progress.CANCELLED:
+            return {"CANCELLED"}
+        if drag.transform is not None:
+            self.keep(drag.transform)
+        if drag.progress is Progress.VALUE_GIVEN:
+            return self.execute(context)  # so that a typed value, a script and the redo panel give the same
+        if drag.result is not None:
+            context.window_manager.stiv_last_edit = describe(drag.result, drag.report)
+            self._tell(outcome_text(drag.result), write_failure(drag.report))
+        return {"FINISHED"}
 
     def _leave(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)

@@ -21,10 +21,6 @@ class FakeEdit:
         self._called("drag")
         return self._solve(matrix)
 
-    def apply(self, matrix: Any) -> Any:
-        self._called("apply")
-        return self._solve(matrix)
-
     def settle(self) -> Any:
         self._called("settle")
         return SimpleNamespace(status="unchanged")

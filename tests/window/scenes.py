@@ -95,6 +95,7 @@ def add_ball_in_lattice() -> tuple[Any, Any]:
 
 def select_only(thing: Any) -> None:
     """Select one object and make it active."""
+    bpy.context.view_layer.update()  # it lists removed objects as None until then
     for other in bpy.context.view_layer.objects:
         other.select_set(other == thing)
     bpy.context.view_layer.objects.active = thing

@@ -13,10 +13,8 @@ import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 Steps = Generator[None, None, None]
-DIGITS = dict(
-    zip("0123456789", ["ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"], strict=True)
-)
-OTHER_KEYS = {".": "PERIOD", "-": "MINUS"}
+DIGIT_NAMES = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+CHARACTER_KEYS = {str(digit): name for digit, name in enumerate(DIGIT_NAMES)} | {".": "PERIOD", "-": "MINUS"}
 SETTLE = 4  # ticks after which Blender has handled an event, solved and drawn
 
 
@@ -89,7 +87,7 @@ class Window:
     def type(self, text: str) -> Steps:
         """Type a number."""
         for character in text:
-            self.key(DIGITS.get(character) or OTHER_KEYS[character], character)
+            self.key(CHARACTER_KEYS[character], character)
             yield
 
     def move(self, x: int, y: int, **modifiers: bool) -> None:
