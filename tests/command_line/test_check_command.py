@@ -38,8 +38,8 @@ def test_pairs_are_named_for_people_and_in_the_report(tmp_path, capsys):
     assert 'object "flat", triangle 0 - object "upright ü", triangle 0' in capsys.readouterr().out
     data = json.loads(report.read_text(encoding="utf-8"))
     assert (data["schema"], data["version"], data["free"], data["intersections"]) == ("stiv-check", 1, False, 1)
-    pair = data["pairs"][0]
-    assert pair == {"first": {"object": "flat", "triangle": 0}, "second": {"object": "upright ü", "triangle": 0}}
+    assert data["pairs"][0]["first"] == {"object": "flat", "kind": "triangle", "number": 0}
+    assert data["pairs"][0]["second"] == {"object": "upright ü", "kind": "triangle", "number": 0}
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
 
 

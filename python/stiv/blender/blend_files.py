@@ -10,12 +10,13 @@ import bpy
 from stiv import InputError
 
 
-def open_blend(path: Path) -> None:
-    """Makes `path` the open file. Raises InputError if Blender cannot read it."""
+def open_blend(path: Path) -> bpy.types.Context:
+    """Makes `path` the open file and returns Blender's context. Raises InputError if Blender cannot read it."""
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
         raise InputError(f"{path}: Blender cannot open it: {_reason(error)}") from error
+    return bpy.context
 
 
 def save_blend(path: Path) -> None:

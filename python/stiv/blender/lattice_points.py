@@ -29,7 +29,13 @@ def read_points(lattice: bpy.types.Lattice) -> Singles:
 
 
 def read_rest_points(lattice: bpy.types.Lattice) -> Singles:
-    """Points at rest, (m, 3), in the lattice's frame."""
+    """Points at rest, (m, 3), in the lattice's frame.
+
+    While a lattice is edited Blender's own rest positions are nonsense; they are those of every lattice of its size.
+    """
+    if lattice.is_editmode:
+        resolution = (lattice.points_u, lattice.points_v, lattice.points_w)
+        return stiv.lattice_rest_points(resolution).astype(np.float32)
     return read_collection(lattice.points, "co", 3, np.float32)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 
@@ -65,11 +66,20 @@ def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
 def read_creases(mesh: bpy.types.Mesh) -> tuple[Singles | None, Singles | None]:
     """Creases of edges, (E,), and of vertices, (V,); None where there are none."""
 
+    if mesh.is_editmode:  # attributes are empty there
+        edited = bmesh.from_edit_mesh(mesh)
+        return _edited_creases(edited.edges, "crease_edge"), _edited_creases(edited.verts, "crease_vert")
+
     def values(name: str) -> Singles | None:
         attribute = mesh.attributes.get(name)
         return None if attribute is None else read_collection(attribute.data, "value", 1, np.float32)
 
     return values("crease_edge"), values("crease_vert")
+
+
+def _edited_creases(elements: Any, name: str) -> Singles | None:
+    layer = elements.layers.float.get(name)
+    return None if layer is None else np.array([element[layer] for element in elements], np.float32)
 
 
 def read_group_weights(vertices: Collection[Any], group: int) -> Singles:

@@ -39,6 +39,11 @@ def replay(script: EditScript, on_edit: Callable[[Report], None] = lambda report
     return reports
 
 
+def operators_are_there() -> bool:
+    """Is the add-on registered?"""
+    return hasattr(bpy.types.Scene, "stiv")
+
+
 def _prepare(step: EditStep, script: EditScript, number: int) -> None:
     try:
         _apply_settings({**script.settings, **step.settings})
@@ -52,6 +57,8 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
     scene = bpy.context.scene
     scene.tool_settings.transform_pivot_point = "MEDIAN_POINT"
     for name, value in settings.items():
+        if name != "roles" and name not in scene.stiv.bl_rna.properties:
+            raise InputError(f'setting "{name}": the add-on has none of this name')
         try:
             if name == "roles":
                 _apply_roles(value)

@@ -5,24 +5,27 @@ from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
 from stiv.command_line.blender_module import require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json
-from stiv.mesh_files import SUFFIXES, Mesh, read_mesh
+from stiv.mesh_files import SUFFIXES, read_mesh
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 SCHEMA, VERSION = "stiv-check", 1
-LISTED_PAIRS = 100
+LISTED_PAIRS = 100  # in the report
+SHOWN_PAIRS = 10  # on the terminal
+
+_Element = tuple[str, str, int]
 
 _DESCRIPTION = f"""\
 Tests exactly whether any two triangles meet other than in the vertices and edges they share. Touching, coplanar
@@ -59,23 +62,33 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE if report["free"] else ExitCode.NOT_FREE
 
 
+@dataclass(frozen=True)
+class _Finding:
+    """What was tested, and the pairs that meet: each end as object, kind of element and number within the object."""
+
+    objects: tuple[str, ...]
+    vertices: int
+    triangles: int
+    pairs: list[tuple[_Element, _Element]]
+
+
 def check_file(path: Path) -> dict[str, Any]:
     """The result of the exact test of a .blend or a mesh file, ready for JSON. Raises InputError."""
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
     begin = time.perf_counter()
-    mesh = _evaluated(path) if path.suffix.lower() == ".blend" else read_mesh(path)
-    pairs = stiv.find_intersections(mesh.vertices, mesh.triangles)
+    found = _check_blend(path) if path.suffix.lower() == ".blend" else _check_mesh(path)
+    listed = [{"first": _named(first), "second": _named(second)} for first, second in found.pairs[:LISTED_PAIRS]]
     return {
         "schema": SCHEMA,
         "version": VERSION,
         "file": path.name,
-        "objects": list(mesh.object_names),
-        "vertices": len(mesh.vertices),
-        "triangles": len(mesh.triangles),
-        "free": len(pairs) == 0,
-        "intersections": len(pairs),
-        "pairs": _named_pairs(pairs[:LISTED_PAIRS], mesh),
+        "objects": list(found.objects),
+        "vertices": found.vertices,
+        "triangles": found.triangles,
+        "free": not found.pairs,
+        "intersections": len(found.pairs),
+        "pairs": listed,
         "seconds": round(time.perf_counter() - begin, 3),
     }
 
@@ -85,35 +98,46 @@ def summary(report: dict[str, Any]) -> str:
     size = f"{report['vertices']:,} vertices, {report['triangles']:,} triangles, {len(report['objects'])} objects"
     if report["free"]:
         return f"{report['file']}: free of intersections ({size}, {report['seconds']:.2f} s)"
-    lines = [f"{report['file']}: {report['intersections']:,} intersecting pairs of triangles ({size})"]
-    lines += [_pair_text(pair) for pair in report["pairs"][:10]]
-    more = report["intersections"] - 10
+    lines = [f"{report['file']}: {report['intersections']:,} intersecting pairs ({size})"]
+    lines += [f"  {_text(pair['first'])} - {_text(pair['second'])}" for pair in report["pairs"][:SHOWN_PAIRS]]
+    more = report["intersections"] - SHOWN_PAIRS
     return "\n".join(lines + ([f"  ... and {more:,} more"] if more > 0 else []))
 
 
-def _pair_text(pair: dict[str, Any]) -> str:
-    first, second = pair["first"], pair["second"]
-    return (
-        f'  object "{first["object"]}", triangle {first["triangle"]} - '
-        f'object "{second["object"]}", triangle {second["triangle"]}'
-    )
+def _named(element: _Element) -> dict[str, Any]:
+    name, kind, number = element
+    return {"object": name, "kind": kind, "number": number}
 
 
-def _named_pairs(pairs: NDArray[np.int32], mesh: Mesh) -> list[dict[str, Any]]:
-    """Pairs by object and by the triangle's number within its object."""
+def _text(element: dict[str, Any]) -> str:
+    return f'object "{element["object"]}", {element["kind"]} {element["number"]}'
+
+
+def _check_mesh(path: Path) -> _Finding:
+    mesh = read_mesh(path)
     owner = mesh.triangle_object
-    within = np.zeros(len(owner), np.int64)
-    for number in range(len(mesh.object_names)):
-        mine = np.flatnonzero(owner == number)
-        within[mine] = np.arange(len(mine))
+    first_of_object = np.searchsorted(np.sort(owner), np.arange(len(mesh.object_names)))
+    within = np.empty(len(owner), np.int64)
+    within[np.argsort(owner, kind="stable")] = np.arange(len(owner))
 
-    def named(triangle: int) -> dict[str, Any]:
-        return {"object": mesh.object_names[owner[triangle]], "triangle": int(within[triangle])}
+    def element(triangle: int) -> _Element:
+        of = int(owner[triangle])
+        return mesh.object_names[of], "triangle", int(within[triangle] - first_of_object[of])
 
-    return [{"first": named(a), "second": named(b)} for a, b in pairs]
+    pairs = stiv.find_intersections(mesh.vertices, mesh.triangles)
+    named = [(element(a), element(b)) for a, b in pairs.tolist()]
+    return _Finding(mesh.object_names, len(mesh.vertices), len(mesh.triangles), named)
 
 
-def _evaluated(path: Path) -> Mesh:
-    files = require_blender("stiv.blender.blend_files", path)
-    mesh: Mesh = files.evaluated_mesh(path)
-    return mesh
+def _check_blend(path: Path) -> _Finding:
+    """Of every visible mesh as Blender evaluates it; loose edges and vertices are tested too."""
+    context = require_blender("stiv.blender.blend_files", path).open_blend(path)
+    checking = require_blender("stiv.blender.checking", path)
+    assembly = checking.read_surface(context)
+    pairs = [(_plain(pair.first), _plain(pair.second)) for pair in checking.find_pairs(assembly)]
+    objects = tuple(dict.fromkeys(mesh.owner.name for mesh in assembly.meshes))
+    return _Finding(objects, len(assembly.positions), len(assembly.surface.triangles), pairs)
+
+
+def _plain(element: Any) -> _Element:
+    return element.object, element.kind, element.number

@@ -70,7 +70,8 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 def run_script(script: EditScript, scene: Path) -> list[dict[str, Any]]:
     """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON."""
     replaying = require_blender("stiv.blender.replaying", scene)
-    require_blender("stiv_addon", scene).register()
+    if not replaying.operators_are_there():
+        require_blender("stiv_addon", scene).register()
     with progress_bar("edits", len(script)) as advance:
         edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]))
     return edits
