@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "detection/relative_motion.hpp"
+#include "detection/plane_filter.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 
 namespace stiv {
@@ -45,24 +45,35 @@ bool PairTest::matters(EventKind kind, const Vertices& v) const {
   const bool apart = kind == EventKind::vertex_face ? (v[0] != v[1]) & (v[0] != v[2]) & (v[0] != v[3])
                                                     : (v[0] != v[2]) & (v[0] != v[3]) & (v[1] != v[2]) & (v[1] != v[3]);
   const auto moved = [&](std::size_t k) { return moved_[static_cast<std::size_t>(v[k])]; };
-  return apart && (moved(0) | moved(1) | moved(2) | moved(3)) != 0 &&
+  return apart & ((moved(0) | moved(1) | moved(2) | moved(3)) != 0) &
          surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3]));
 }
 
-bool PairTest::plane_separates(EventKind kind, const Vertices& v) const {
-  const RelativeMotion motion(kind, motion_of(step_, v));
-  const double clearance = step_.proximity.separation + motion.rounding;
-  const Vector3 normal = geometric_normal(motion, 0);
-  return reach_of_plane(motion, normal, 0, clearance) >= 1 || reach_of_plane(motion, -normal, 0, clearance) >= 1;
+// Places are written without branches; only the count tells which of them stay.
+std::span<Candidate> PairTest::that_matter(EventKind kind, std::span<Candidate> candidates) const {
+  std::size_t count = 0;
+  for (const Candidate candidate : candidates) {
+    candidates[count] = candidate;
+    count += matters(kind, vertices(kind, candidate));
+  }
+  return candidates.first(count);
 }
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
-  const auto settled = [&](const Candidate& candidate) {
-    const Vertices v = vertices(kind, candidate);
-    return !matters(kind, v) || plane_separates(kind, v);
-  };
-  const auto end = std::remove_if(candidates.begin(), candidates.end(), settled);
-  return candidates.first(static_cast<std::size_t>(end - candidates.begin()));
+  candidates = that_matter(kind, candidates);
+  PlaneFilter filter;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin < candidates.size(); begin += PlaneFilter::width) {
+    const std::size_t lanes = std::min(PlaneFilter::width, candidates.size() - begin);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      filter.set(lane, vertices(kind, candidates[begin + lane]), step_.start, step_.end);
+    const auto apart = filter.apart(kind, step_.proximity.separation);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      candidates[count] = candidates[begin + lane];
+      count += apart[lane] == 0;
+    }
+  }
+  return candidates.first(count);
 }
 
 std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate, double latest) const {

@@ -25,8 +25,7 @@ class PairTest {
 
   Vertices vertices(EventKind kind, const Candidate& candidate) const;
   bool matters(EventKind kind, const Vertices& v) const;
-  /// Does the plane of the face (or of both edges) at the start separate the pair during the whole step?
-  bool plane_separates(EventKind kind, const Vertices& v) const;
+  std::span<Candidate> that_matter(EventKind kind, std::span<Candidate> candidates) const;
 
   const Surface& surface_;
   const Step& step_;
