@@ -34,7 +34,8 @@ void join_neighbours(const Surface& surface, const std::vector<Region>& regions,
     for (const Index* other = surface.neighbours_begin(vertex); other != surface.neighbours_end(vertex); ++other) {
       if (*other >= vertex) break;  // each pair once: neighbours ascend
       const auto found = std::lower_bound(regions.begin(), regions.end(), *other, before);
-      if (found->vertex == *other) partition.join(k, static_cast<Index>(found - regions.begin()));
+      const bool apart = regions[k].rigid || found->rigid;
+      if (found->vertex == *other && !apart) partition.join(k, static_cast<Index>(found - regions.begin()));
     }
   }
 }

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
+#include <utility>
 
 namespace stiv {
 
@@ -56,22 +58,70 @@ Index heaviest_vertex(const Event& event, int begin, int end) {
   return event.vertices[heaviest];
 }
 
+using BodyPair = std::pair<Index, Index>;
+
+BodyPair bodies_of(const Surface& surface, const Event& event) {
+  return {surface.body_of(event.vertices[0]), surface.body_of(event.vertices[first_side_size(event.kind)])};
+}
+
+bool is_rigid(const Surface& surface, const BodyPair& pair) {
+  const auto rigid = [&](Index body) { return surface.bodies()[body].mobility == Mobility::rigid; };
+  return rigid(pair.first) || rigid(pair.second);
+}
+
+/// Share of the time left after a rigid body's first contact within which further contacts count as made with it.
+constexpr double rigid_window = 0.03;
+constexpr std::size_t most_rigid_regions = 32;
+
+/// Without those events of rigid bodies that come later than their pair's earliest ones.
+std::vector<Index> without_consequences(const Surface& surface, const Events& events,
+                                        const std::vector<Index>& chosen) {
+  std::map<BodyPair, double> first;
+  for (const Index k : chosen) {
+    const auto entry = first.emplace(bodies_of(surface, events[k]), events[k].time).first;
+    entry->second = std::min(entry->second, events[k].time);
+  }
+  std::vector<Index> kept;
+  for (const Index k : chosen) {
+    const BodyPair pair = bodies_of(surface, events[k]);
+    const double latest = first[pair] + rigid_window * (1 - first[pair]);
+    if (!is_rigid(surface, pair) || events[k].time <= latest) kept.push_back(k);
+  }
+  return kept;
+}
+
+/// Takes every so manieth region of each pair of bodies of which one is rigid, so that their number stays bounded.
+std::vector<Region> thinned(const Surface& surface, const Events& events, const std::vector<Region>& regions) {
+  std::map<BodyPair, std::size_t> count, seen;
+  for (const Region& region : regions)
+    if (region.rigid) ++count[bodies_of(surface, events[region.event])];
+  std::vector<Region> kept;
+  for (const Region& region : regions) {
+    const BodyPair pair = bodies_of(surface, events[region.event]);
+    const std::size_t stride = (count[pair] + most_rigid_regions - 1) / most_rigid_regions;
+    if (!region.rigid || seen[pair]++ % stride == 0) kept.push_back(region);
+  }
+  return kept;
+}
+
 }  // namespace
 
-std::vector<Region> earliest_regions(const Events& events, const Positions& start, const Positions& end) {
+std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
+                                     const Positions& end) {
   std::vector<Region> regions;
-  for (const Index k : telling_events(events, start, end)) {
+  for (const Index k : without_consequences(surface, events, telling_events(events, start, end))) {
     const Event& event = events[k];
     const int split = first_side_size(event.kind);
-    regions.push_back({heaviest_vertex(event, 0, split), k});
-    regions.push_back({heaviest_vertex(event, split, 4), k});
+    const bool rigid = is_rigid(surface, bodies_of(surface, event));
+    regions.push_back({heaviest_vertex(event, 0, split), k, rigid});
+    regions.push_back({heaviest_vertex(event, split, 4), k, rigid});
   }
   std::sort(regions.begin(), regions.end(), [&](const Region& a, const Region& b) {
     return std::tie(a.vertex, events[a.event].time, a.event) < std::tie(b.vertex, events[b.event].time, b.event);
   });
   const auto same_vertex = [](const Region& a, const Region& b) { return a.vertex == b.vertex; };
   regions.erase(std::unique(regions.begin(), regions.end(), same_vertex), regions.end());
-  return regions;
+  return thinned(surface, events, regions);
 }
 
 }  // namespace stiv

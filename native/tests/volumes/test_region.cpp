@@ -17,13 +17,22 @@ Event vertex_on_face(double time) {
   return event;
 }
 
+Surface points(Index count, Mobility mobility = Mobility::deformable) {
+  SurfaceDefinition definition;
+  definition.vertex_count = count;
+  definition.bodies = {{"falling", mobility}, {"standing", Mobility::fixed}};
+  definition.vertex_body.assign(count, 1);
+  definition.vertex_body[0] = 0;
+  return Surface(definition);
+}
+
 /// Regions of events in which vertex 0 falls on a face whose corners stand still.
 std::vector<Region> regions_of(const Events& events, double fall = 1) {
   Positions start(4, 3);
   start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   Positions end = start;
   end(0, 2) -= fall;
-  return earliest_regions(events, start, end);
+  return earliest_regions(points(4), events, start, end);
 }
 
 }  // namespace
@@ -73,10 +82,39 @@ TEST_CASE("region: edges that are nearly parallel or meet at an end count only w
   parallel.normal = Vector3::UnitZ();
   Event face = vertex_on_face(0.5);
   face.vertices = {4, 5, 6, 7};
-  CHECK(earliest_regions({parallel}, start, end).size() == 2);
-  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 4);
+  CHECK(earliest_regions(points(8), {parallel}, start, end).size() == 2);
+  CHECK(earliest_regions(points(8), {parallel, face}, start, end).front().vertex == 4);
   end(1, 1) = start(1, 1) = 1;
-  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 0);
+  CHECK(earliest_regions(points(8), {parallel, face}, start, end).front().vertex == 0);
   parallel.weights = {1, 0, -0.6, -0.4};
-  CHECK(earliest_regions({parallel, face}, start, end).front().vertex == 4);
+  CHECK(earliest_regions(points(8), {parallel, face}, start, end).front().vertex == 4);
+}
+
+TEST_CASE("region: what happens to a rigid body after its first contact is left out, and many contacts are thinned") {
+  Positions start(4, 3);
+  start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  Positions end = start;
+  end(0, 2) = 0;
+  Event late = vertex_on_face(0.4);
+  late.weights = {1, -0.5, -0.2, -0.3};
+  const Events events{vertex_on_face(0.3), late};
+  CHECK(earliest_regions(points(4), events, start, end).size() == 3);
+  const auto regions = earliest_regions(points(4, Mobility::rigid), events, start, end);
+  REQUIRE(regions.size() == 2);
+  CHECK(regions[1].vertex == 2);
+  CHECK(regions[1].rigid);
+
+  const Index many = 300;
+  Events spread;
+  Positions sheet = Positions::Zero(many, 3);
+  for (Index k = 0; k + 3 < many; ++k) {
+    spread.push_back(vertex_on_face(0.3));
+    spread.back().vertices = {0, k + 1, k + 2, k + 3};
+  }
+  Positions lifted = sheet;
+  lifted(0, 2) = -1;
+  CHECK(earliest_regions(points(many), spread, sheet, lifted).size() > 200);
+  const std::size_t kept = earliest_regions(points(many, Mobility::rigid), spread, sheet, lifted).size();
+  CHECK(kept > 16);
+  CHECK(kept <= 32);
 }

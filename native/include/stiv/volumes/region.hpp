@@ -11,7 +11,8 @@ namespace stiv {
 /// The barycentric cell of a vertex, with the event it is hit by first. [P4, "Interference prisms"]
 struct Region {
   Index vertex = 0;
-  Index event = 0;  ///< position in the list of events
+  Index event = 0;     ///< position in the list of events
+  bool rigid = false;  ///< a rigid body takes part in the event
 };
 
 /// Each event falls into one region on either side, that of its heaviest vertex; a region keeps the earliest event
@@ -19,7 +20,12 @@ struct Region {
 /// vertex or edge of a face or at an end of an edge, and those of nearly parallel edges, count only if there are no
 /// others: their normals are not steady. Sorted by vertex; ties go to the first event. Empty although there are events:
 /// none of them tells a way out, and the edit has to be truncated.
+///
+/// A rigid body has six degrees of freedom, and what its other vertices do after the first contact follows from that
+/// contact: of the events of a pair of bodies of which one is rigid only those of nearly the earliest time count, and
+/// at most 32 regions, evenly taken. (mathematics.md, "Rigid bodies")
 /// @param start, end the step, (N, 3) each
-std::vector<Region> earliest_regions(const Events& events, const Positions& start, const Positions& end);
+std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
+                                     const Positions& end);
 
 }  // namespace stiv
