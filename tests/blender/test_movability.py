@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Who may not be moved, and what the refusal says; the scene is left as it was."""
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+import pytest
+from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, mesh, select, snapshot
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene
+
+RIGID, DEFORM = EditSettings(), EditSettings(object_response="deform")
+
+
+def refused(pattern: str, settings: EditSettings = RIGID, kind: str = "move") -> None:
+    before = snapshot()
+    with pytest.raises(stiv.InputError, match=pattern):
+        BlenderEdit.begin(bpy.context, settings, kind)
+    assert snapshot() == before
+
+
+def accepted(settings: EditSettings = RIGID, kind: str = "move") -> BlenderEdit:
+    return BlenderEdit.begin(bpy.context, settings, kind)
+
+
+def test_nothing_selected() -> None:
+    add_cube("Cube")
+    select()
+    refused("nothing is selected that may move")
+
+
+def test_nothing_selected_in_edit_mode() -> None:
+    edit_mode(add_cube("Cube"))
+    bpy.ops.mesh.select_all(action="DESELECT")
+    refused("nothing is selected")
+
+
+def test_lights_have_no_surface() -> None:
+    select(add("Light", bpy.data.lights.new("Light", "POINT")))
+    refused("nothing is selected that may move")
+
+
+def test_modes_without_controls() -> None:
+    select(add_cube("Cube"))
+    bpy.ops.object.mode_set(mode="SCULPT")
+    refused("mode Sculpt is not supported")
+
+
+def test_curves_have_no_controls() -> None:
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    select(add("Curve", curve), add_cube("Cube"))
+    refused('object "Curve": a curve has no controls', EditSettings(roles={"Curve": "controls"}))
+
+
+def test_unknown_names_in_settings() -> None:
+    select(add_cube("Cube"))
+    refused('object "Nobody"', EditSettings(roles={"Nobody": "rigid"}))
+    refused('object "Nobody"', EditSettings(ignored_pairs=(("Cube", "Nobody"),)))
+
+
+@pytest.mark.parametrize("choice", [{"responders": "x"}, {"object_response": "x"}, {"roles": {"a": "x"}}])
+def test_unknown_choices(choice: dict[str, Any]) -> None:
+    with pytest.raises(stiv.InputError, match="'x' is none of"):
+        EditSettings(**choice)
+
+
+def test_unknown_kind() -> None:
+    select(add_cube("Cube"))
+    refused("kind", kind="shear")
+
+
+def test_animated_placement() -> None:
+    cube = add_cube("Cube")
+    cube.keyframe_insert("location", frame=1)
+    select(cube)
+    refused('object "Cube": its placement is animated or driven; clear or bake that, or make it an obstacle')
+    accepted(DEFORM)
+
+
+def test_driven_placement() -> None:
+    cube = add_cube("Cube")
+    cube.driver_add("rotation_euler", 2)
+    select(cube)
+    refused('object "Cube": its placement is animated or driven')
+
+
+def test_animation_of_other_properties_is_no_obstacle() -> None:
+    cube = add_cube("Cube")
+    cube.keyframe_insert("hide_render", frame=1)
+    select(cube)
+    accepted()
+
+
+def test_constraint() -> None:
+    cube = add_cube("Cube")
+    constraint = cube.constraints.new("LIMIT_LOCATION")
+    constraint.name = "Hold"
+    select(cube)
+    refused('object "Cube", constraint "Hold": decides the placement; apply or disable it')
+    constraint.mute = True
+    accepted()
+
+
+def test_constraint_of_a_child() -> None:
+    cube = add_cube("Cube")
+    add_cube("Child", (3, 0, 0), parent=cube).constraints.new("LIMIT_LOCATION")
+    select(cube)
+    refused('object "Child", constraint')
+
+
+@pytest.mark.parametrize("settings", [RIGID, DEFORM], ids=["rigid", "deform"])
+def test_zero_scale(settings: EditSettings) -> None:
+    select(add_cube("Cube", scale=(1, 0, 1)))
+    refused('object "Cube": its scale is zero; give it a size, or make it an obstacle', settings)
+
+
+def test_shared_mesh() -> None:
+    cube = add_cube("Cube")
+    add("Twin", cube.data, (5, 0, 0))
+    select(cube)
+    refused('object "Cube": its mesh is shared with object "Twin".*make it single user', DEFORM)
+    accepted()
+
+
+def test_shape_keys() -> None:
+    cube = add_cube("Cube")
+    cube.shape_key_add(name="Basis")
+    cube.shape_key_add(name="Big")
+    select(cube)
+    refused('object "Cube", shape key "Big": hides changes of the mesh; apply or remove', DEFORM)
+    accepted()
+
+
+def test_linked_and_overridden_data(tmp_path: Path) -> None:
+    cube = add_cube("Linked")
+    path = str(tmp_path / "library ü.blend")
+    bpy.data.libraries.write(path, {cube})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.objects = ["Linked"]
+    linked = bpy.data.objects["Linked"]
+    bpy.context.collection.objects.link(linked)
+    select(linked)
+    refused('object "Linked": its object is linked from another file; make it local or an obstacle')
+    refused('object "Linked": its mesh is linked from another file', DEFORM)
+    select(add_cube("Own", (5, 0, 0)))
+    assert [each.role for each in accepted().summary.participants if each.name == "Linked"] == ["obstacle"]
+    override = linked.override_create()
+    bpy.context.collection.objects.link(override)
+    bpy.context.collection.objects.unlink(linked)
+    select(override)
+    refused("its object is a library override")
+
+
+def test_metaballs() -> None:
+    ball = bpy.data.metaballs.new("Ball")
+    ball.elements.new()
+    select(add("Ball", ball))
+    refused('object "Ball": metaballs cannot be moved; convert it to a mesh, or make it an obstacle')
+
+
+def test_lattice_that_deforms_nothing() -> None:
+    select(add_lattice("Lattice", (2, 2, 2)))
+    refused('object "Lattice": this lattice deforms no visible mesh', DEFORM)
+
+
+def test_lattice_with_shape_keys_or_modifiers() -> None:
+    lattice = add_lattice("Lattice", (2, 2, 2))
+    add_modifier(add_cube("Cube"), "LATTICE", object=lattice)
+    select(lattice)
+    add_modifier(lattice, "CAST", "Ball")
+    refused('object "Lattice", modifier "Ball": deforms the lattice', DEFORM)
+    lattice.modifiers.clear()
+    lattice.shape_key_add(name="Basis")
+    refused('object "Lattice": its shape keys', DEFORM)
+
+
+def test_lattice_moved_away_from_its_mesh() -> None:
+    cube, lattice = add_cube("Cube"), add_lattice("Lattice", (2, 2, 2))
+    add_modifier(cube, "LATTICE", "Bend", object=lattice)
+    select(cube)
+    refused('object "Cube", modifier "Bend": looks at object "Lattice", which does not move along')
+    select(lattice)
+    refused('object "Cube", modifier "Bend": would change with object "Lattice"')
+    select(cube, lattice)
+    accepted()
+    refused('object "Cube": moves itself and with its lattice "Lattice"; deselect one', DEFORM)
+
+
+def test_what_other_objects_look_at() -> None:
+    cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
+    add_modifier(other, "BOOLEAN", "Cut", object=cube)
+    select(cube)
+    refused('object "Other", modifier "Cut": would change with object "Cube"')
+    refused('object "Other", modifier "Cut": would change with object "Cube"', DEFORM)
+    other.modifiers[0].show_viewport = False
+    accepted()
+
+
+def test_what_geometry_nodes_look_at() -> None:
+    cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
+    tree = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
+    node = tree.nodes.new("GeometryNodeObjectInfo")
+    node.inputs["Object"].default_value = cube
+    add_modifier(other, "NODES", "Look").node_group = tree
+    select(cube)
+    refused('object "Other", modifier "Look": would change with object "Cube"')
+
+
+def test_what_instances_show() -> None:
+    cube = add_cube("Cube")
+    collection = bpy.data.collections.new("Shared")
+    collection.objects.link(cube)
+    add("Instancer", None, (9, 0, 0), instance_type="COLLECTION", instance_collection=collection)
+    select(cube)
+    for settings in (RIGID, DEFORM):
+        refused('object "Cube": is also shown by the instances of object "Instancer"', settings)
+
+
+def test_children_on_vertices() -> None:
+    grid = add_grid("Grid", 2)
+    add_cube("Rider", (0, 0, 3), 0.1, parent=grid, parent_type="VERTEX")
+    select(grid)
+    refused('object "Rider": hangs on vertices of object "Grid"', DEFORM)
+    accepted()
+
+
+def test_cage_that_hangs_on_a_mover() -> None:
+    parent, child = add_cube("Parent"), add_cube("Child", (5, 0, 0))
+    child.parent = parent
+    select(parent)
+    refused('object "Child": is deformed and hangs on an object that moves', EditSettings(roles={"Child": "controls"}))
+    refused('object "Child": hangs on object "Parent", which moves too', EditSettings(roles={"Child": "rigid"}))
+
+
+def test_rotation_below_an_uneven_parent() -> None:
+    parent = add("Parent", None, scale=(1, 3, 1))
+    child = add_cube("Child", (5, 0, 0), parent=parent, rotation_euler=(0.5, 0.2, 0.1))
+    select(child)
+    refused('object "Child": its parent is scaled unevenly', kind="rotate")
+    refused('object "Child": is sheared by its parent', kind="scale")
+    accepted()
+
+
+def test_obstacles_may_be_anything() -> None:
+    select(add_cube("Cube", (0, 0, 9)))
+    sheared = add("Parent", None, scale=(1, 3, 1))
+    wild = add_cube("Wild", parent=sheared, rotation_euler=(1, 1, 1))
+    add_modifier(wild, "BEVEL")
+    wild.keyframe_insert("location", frame=1)
+    wild.shape_key_add(name="Basis")
+    wild.shape_key_add(name="Key")
+    flat = add_cube("Flat", (20, 0, 0), scale=(1, 1, 0))
+    assert flat.name in {each.name for each in accepted().summary.participants}
+    assert check_scene(bpy.context, objects=["Wild"]).pairs == ()
+
+
+def test_triangles_without_area_are_counted() -> None:
+    select(add("Sliver", mesh("Sliver", [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])))
+    assert "1 triangles without area take part" in accepted().summary.warnings
