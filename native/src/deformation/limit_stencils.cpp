@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/limit_stencils.hpp"
 
+#include <algorithm>
 #include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTableFactory.h>
@@ -34,6 +35,23 @@ float crease_sharpness(const std::vector<float>& creases, std::size_t k) {
   return creases.empty() ? 0 : infinite_sharpness * creases[k] * creases[k];
 }
 
+/// What a vertex of two edges alone gets on top of its own sharpness: the lesser one of the two, as in Blender's modifier.
+std::vector<float> corner_sharpness(const Cage& cage) {
+  const auto count = static_cast<std::size_t>(cage.vertex_count);
+  std::vector<float> least(count, infinite_sharpness);
+  std::vector<int> edges(count, 0);
+  for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
+    for (const Index end : {cage.edges(edge, 0), cage.edges(edge, 1)}) {
+      const auto vertex = static_cast<std::size_t>(end);
+      least[vertex] = std::min(least[vertex], crease_sharpness(cage.edge_crease, static_cast<std::size_t>(edge)));
+      ++edges[vertex];
+    }
+  }
+  for (std::size_t vertex = 0; vertex < count; ++vertex)
+    if (edges[vertex] != 2) least[vertex] = 0;
+  return least;
+}
+
 /// "Simple" is Catmull-Clark with everything infinitely sharp. Where wires meet a face, its vertex is sharp too.
 Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wires, bool simple) {
   Sharpness sharpness;
@@ -44,10 +62,11 @@ Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wi
     sharpness.edge_ends.insert(sharpness.edge_ends.end(), {cage.edges(edge, 0), cage.edges(edge, 1)});
     sharpness.edge.push_back(value);
   }
+  const std::vector<float> corner = corner_sharpness(cage);
   for (Index vertex = 0; vertex < cage.vertex_count; ++vertex) {
+    const auto k = static_cast<std::size_t>(vertex);
     const bool infinite = simple || wires.touches(vertex);
-    const float value =
-        infinite ? infinite_sharpness : crease_sharpness(cage.vertex_crease, static_cast<std::size_t>(vertex));
+    const float value = infinite ? infinite_sharpness : crease_sharpness(cage.vertex_crease, k) + corner[k];
     if (!(value > 0)) continue;
     sharpness.vertices.push_back(vertex);
     sharpness.vertex.push_back(value);
