@@ -62,6 +62,7 @@ def add_modifier(ob: Any, kind: str, name: str = "", **properties: Any) -> Any:
 
 def select(*objects: Any) -> None:
     """Select these objects alone; the first becomes active."""
+    bpy.context.view_layer.update()
     for ob in bpy.context.view_layer.objects:
         ob.select_set(ob in objects)
     bpy.context.view_layer.objects.active = objects[0] if objects else None

@@ -195,7 +195,11 @@ def test_one_lattice_of_two_meshes() -> None:
 
 def test_rigid_and_controls_roles_give_way() -> None:
     add_grid("Wall", 2, 3.0, rotation_euler=(0, np.pi / 2, 0), location=(6, 0, 0))
-    pusher, ball, sheet = add_cube("Pusher"), add_cube("Ball", (2.5, 0.2, 0.3)), add_grid("Sheet", 4, location=(0, 0, 3))
+    pusher, ball, sheet = (
+        add_cube("Pusher"),
+        add_cube("Ball", (2.5, 0.2, 0.3)),
+        add_grid("Sheet", 4, location=(0, 0, 3)),
+    )
     select(pusher)
     settings = EditSettings(roles={"Ball": "rigid", "Sheet": "controls"}, responders="unselected")
     edit = begin(settings=settings)
@@ -231,7 +235,9 @@ def test_start_that_intersects_is_refused() -> None:
 
 def test_instances_are_obstacles() -> None:
     collection = bpy.data.collections.new("Inner")
-    collection.objects.link(bpy.data.objects.new("Inner", mesh("Inner", [(-3, -3, 0), (3, -3, 0), (0, 3, 0)], [(0, 1, 2)])))
+    collection.objects.link(
+        bpy.data.objects.new("Inner", mesh("Inner", [(-3, -3, 0), (3, -3, 0), (0, 3, 0)], [(0, 1, 2)]))
+    )
     add("Instancer", None, (0, 0, -2), instance_type="COLLECTION", instance_collection=collection)
     cube = add_cube("Cube")
     select(cube)

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, add, select, shift
+from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, select, shift
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings

@@ -140,7 +140,7 @@ def test_linked_and_overridden_data(tmp_path: Path) -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.objects = ["Linked"]
-    linked = bpy.data.objects["Linked"]
+    (linked,) = wanted.objects
     bpy.context.collection.objects.link(linked)
     select(linked)
     refused('object "Linked": its object is linked from another file; make it local or an obstacle')

@@ -51,8 +51,8 @@ class BlenderEdit:
         movers = find_movers(context, settings)
         scene = read_scene(context, lambda name: settings.role(name) != "ignored")
         parts, groups = make_parts(context, movers, scene.meshes, settings, kind)
-        if not parts:
-            raise InputError("nothing is selected that may move; select a mesh, a lattice or an object with a surface")
+        if not any(part.rule.moves for part in parts):
+            raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
         mobility = _mobility(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
         return cls(assembly, parts, _session(assembly, parts, settings), summarise(assembly, parts, scene.hidden))

@@ -65,7 +65,6 @@ def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
 
 def read_creases(mesh: bpy.types.Mesh) -> tuple[Singles | None, Singles | None]:
     """Creases of edges, (E,), and of vertices, (V,); None where there are none."""
-
     if mesh.is_editmode:  # attributes are empty there
         edited = bmesh.from_edit_mesh(mesh)
         return _edited_creases(edited.edges, "crease_edge"), _edited_creases(edited.verts, "crease_vert")

@@ -21,6 +21,10 @@ class Writer(Protocol):
 class GoalRule(Protocol):
     """What a transformation of the selection asks of controls."""
 
+    @property
+    def moves(self) -> bool:
+        """Does the transformation move any of them?"""
+
     def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
         """Goal of the controls, (m, 3), for an absolute world transform, (4, 4), since the start.
 

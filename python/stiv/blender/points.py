@@ -14,6 +14,11 @@ class PointGoal:
 
     selected: np.ndarray[tuple[int], np.dtype[np.bool_]]
 
+    @property
+    def moves(self) -> bool:
+        """Is any point selected?"""
+        return bool(self.selected.any())
+
     def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
         """Goal of the points, (m, 3)."""
         goal = controls.copy()

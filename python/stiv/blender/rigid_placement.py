@@ -44,6 +44,11 @@ class PlacementGoal:
     turns: bool
     axes: Floats | None
 
+    @property
+    def moves(self) -> bool:
+        """Is the group selected?"""
+        return self.selected
+
     def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
         """Goal of centre and rotation vector, or centre and scale factors, (2, 3)."""
         if not self.selected:
