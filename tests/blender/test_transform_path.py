@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Paths of typed values."""
 
+from itertools import pairwise
+
 import bpy  # noqa: F401
 import numpy as np
 import pytest
@@ -38,7 +40,7 @@ def test_no_increment_is_longer_than_asked() -> None:
     matrix = turn(2.5, "X", (4, 0, 0))
     count = increments(matrix, points, 0.1, 1000)
     path = [moved(transform_at(matrix, k / count), points) for k in range(count + 1)]
-    steps = [np.abs(b - a).max() for a, b in zip(path, path[1:], strict=False)]
+    steps = [np.abs(b - a).max() for a, b in pairwise(path)]
     assert max(steps) < 0.2
     assert increments(shift(), points, 0.1, 1000) == 1
     assert increments(shift(1e9), points, 0.1, 50) == 50

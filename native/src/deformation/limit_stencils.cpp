@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/limit_stencils.hpp"
 
-#include <algorithm>
 #include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
+#include <algorithm>
 
 #include "stiv/error.hpp"
 
@@ -35,7 +35,8 @@ float crease_sharpness(const std::vector<float>& creases, std::size_t k) {
   return creases.empty() ? 0 : infinite_sharpness * creases[k] * creases[k];
 }
 
-/// What a vertex of two edges alone gets on top of its own sharpness: the lesser one of the two, as in Blender's modifier.
+/// What a vertex of two edges alone gets on top of its own sharpness: the lesser one of the two, as in Blender's
+/// modifier.
 std::vector<float> corner_sharpness(const Cage& cage) {
   const auto count = static_cast<std::size_t>(cage.vertex_count);
   std::vector<float> least(count, infinite_sharpness);
