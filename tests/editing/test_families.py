@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edits of the scene families: free of intersections, free on the way, and near the goal."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stiv
+from benchmarks.energy import truncated_energy
+from blend_fixtures.scenes import families
+from blend_fixtures.scenes.families import Edit
+
+# One edit of each family, and at most which share of the energy of a stop at the first contact it may leave.
+CASES = [
+    (families.spheres(1.0), 0.05),
+    (families.sheets(0.4), 0.20),
+    (families.fold(), 0.22),
+    (families.subdivision(0.6, levels=2), 0.12),
+    (families.vase(1.8, count=6), 0.05),
+    (families.rigid(1.0), 0.60),
+    (families.knot(0.5, rings=90, sides=6), 0.05),
+]
+IDS = [edit.name for edit, _ in CASES]
+
+
+def session_of(edit: Edit, **options: object) -> stiv.EditSession:
+    """A session with the edit's own options and others."""
+    chosen = stiv.EditOptions(**{**edit.options, **options})
+    return stiv.EditSession(edit.surface, edit.deformation, edit.controls, chosen)
+
+
+def sampled_path_is_free(edit: Edit, start: np.ndarray, end: np.ndarray, samples: int = 60) -> bool:
+    """No pair of triangles meets at any of many times of the way: found without any continuous test."""
+    return all(
+        len(stiv.find_intersections(start + t * (end - start), edit.surface)) == 0 for t in np.linspace(0, 1, samples)
+    )
+
+
+@pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
+def test_an_edit_is_free_and_near_the_goal(edit: Edit, share: float) -> None:
+    session = session_of(edit)
+    start = session.surface
+    result = session.edit(edit.goal)
+    assert result.status in ("reached", "corrected")
+    assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
+    assert sampled_path_is_free(edit, start, result.surface)
+    assert np.array_equal(result.controls, result.controls.astype(np.float32))
+    goal = edit.deformation.surface(edit.goal)
+    assert result.energy == pytest.approx(0.5 * ((result.surface - goal) ** 2).sum())
+    assert result.energy <= share * truncated_energy(edit, session.separation)
+    settled = session.settle()
+    assert settled.energy <= result.energy
+    assert len(stiv.find_intersections(settled.surface, edit.surface)) == 0
+
+
+@pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
+def test_one_and_two_threads_give_the_same_bits(edit: Edit, share: float) -> None:
+    one, two = (session_of(edit, threads=threads).edit(edit.goal) for threads in (1, 2))
+    assert one.controls.tobytes() == two.controls.tobytes()
+    assert one.counters == two.counters
+
+
+@pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
+def test_a_common_motion_of_all_changes_nothing(edit: Edit, share: float) -> None:
+    shape = edit.controls.shape
+    everything = stiv.identity(edit.surface.vertex_count)
+    start = edit.deformation.surface(edit.controls).astype(np.float32).astype(float)
+    bodies = [stiv.Body(body.name) for body in edit.surface.bodies]
+    surface = stiv.Surface(
+        edit.surface.triangles, edit.surface.vertex_count, vertex_body=edit.surface.vertex_body, bodies=bodies
+    )
+    goal = start + (3.7, -1.3, 0.9)
+    result = stiv.edit(surface, everything, start, goal)
+    assert result.status == "reached"
+    assert result.rounds == 0
+    assert np.array_equal(result.controls, goal.astype(np.float32).astype(float))
+    assert shape == edit.controls.shape
+
+
+def test_random_edits_never_intersect() -> None:
+    chance = np.random.default_rng(17)
+    for edit in (families.spheres(1.0, levels=1), families.sheets(0.4, cells=6), families.rigid(1.0)):
+        session = session_of(edit)
+        size = np.ptp(session.surface, axis=0).max()
+        for _ in range(15):
+            before = session.surface
+            goal = session.controls + 0.15 * size * chance.normal(size=3)
+            goal += 0.03 * size * chance.normal(size=goal.shape)
+            goal[chance.random(len(goal)) < 0.5] = session.controls[0]
+            result = session.edit(goal)
+            assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
+            assert sampled_path_is_free(edit, before, result.surface, 12)
