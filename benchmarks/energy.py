@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near to the goal edits come: the full loop against the plain stop at the first contact, and against one constraint.
+"""How near to the goal edits come: the loop against the plain stop at the first contact, and against one constraint.
 
 E = 1/2 |f(p) - f(goal)|^2 of the ways to answer fourteen edits of seven families: truncation at the first contact;
 Algorithm 1, with one constraint for all and none kept from round to round; the loop as it is; the loop, then settled.

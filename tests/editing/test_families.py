@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -30,10 +32,14 @@ def session_of(edit: Edit, **options: object) -> stiv.EditSession:
     return stiv.EditSession(edit.surface, edit.deformation, edit.controls, chosen)
 
 
-def sampled_path_is_free(edit: Edit, start: np.ndarray, end: np.ndarray, samples: int = 60) -> bool:
+def path_is_free(edit: Edit, start: np.ndarray, result: stiv.EditResult, samples: int = 60) -> bool:
     """No pair of triangles meets at any of many times of the way: found without any continuous test."""
+    states = [start, *(edit.deformation.surface(controls) for controls in result.path)]
+    assert np.array_equal(states[-1], result.surface)
     return all(
-        len(stiv.find_intersections(start + t * (end - start), edit.surface)) == 0 for t in np.linspace(0, 1, samples)
+        len(stiv.find_intersections(begin + t * (end - begin), edit.surface)) == 0
+        for begin, end in pairwise(states)
+        for t in np.linspace(0, 1, samples)
     )
 
 
@@ -44,7 +50,7 @@ def test_an_edit_is_free_and_near_the_goal(edit: Edit, share: float) -> None:
     result = session.edit(edit.goal)
     assert result.status in ("reached", "corrected")
     assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
-    assert sampled_path_is_free(edit, start, result.surface)
+    assert path_is_free(edit, start, result)
     assert np.array_equal(result.controls, result.controls.astype(np.float32))
     goal = edit.deformation.surface(edit.goal)
     assert result.energy == pytest.approx(0.5 * ((result.surface - goal) ** 2).sum())
@@ -63,7 +69,6 @@ def test_one_and_two_threads_give_the_same_bits(edit: Edit, share: float) -> Non
 
 @pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
 def test_a_common_motion_of_all_changes_nothing(edit: Edit, share: float) -> None:
-    shape = edit.controls.shape
     everything = stiv.identity(edit.surface.vertex_count)
     start = edit.deformation.surface(edit.controls).astype(np.float32).astype(float)
     bodies = [stiv.Body(body.name) for body in edit.surface.bodies]
@@ -75,7 +80,6 @@ def test_a_common_motion_of_all_changes_nothing(edit: Edit, share: float) -> Non
     assert result.status == "reached"
     assert result.rounds == 0
     assert np.array_equal(result.controls, goal.astype(np.float32).astype(float))
-    assert shape == edit.controls.shape
 
 
 def test_random_edits_never_intersect() -> None:
@@ -83,11 +87,12 @@ def test_random_edits_never_intersect() -> None:
     for edit in (families.spheres(1.0, levels=1), families.sheets(0.4, cells=6), families.rigid(1.0)):
         session = session_of(edit)
         size = np.ptp(session.surface, axis=0).max()
-        for _ in range(15):
+        for _ in range(12):
             before = session.surface
-            goal = session.controls + 0.15 * size * chance.normal(size=3)
-            goal += 0.03 * size * chance.normal(size=goal.shape)
-            goal[chance.random(len(goal)) < 0.5] = session.controls[0]
+            goal = session.controls + 0.1 * size * chance.normal(size=3)
+            goal += 0.01 * size * chance.normal(size=goal.shape)
+            still = chance.random(len(goal)) < 0.3
+            goal[still] = session.controls[still]
             result = session.edit(goal)
             assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
-            assert sampled_path_is_free(edit, before, result.surface, 12)
+            assert path_is_free(edit, before, result, 12)

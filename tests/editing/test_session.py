@@ -100,7 +100,7 @@ def test_restore_takes_back(session: stiv.EditSession, edit: families.Edit) -> N
 
 def test_a_start_that_intersects_is_refused_with_its_pairs(edit: families.Edit) -> None:
     with pytest.raises(stiv.StartIntersectsError, match="already intersects") as caught:
-        stiv.EditSession(edit.surface, edit.deformation, edit.controls * (1, 1, 0.001))
+        stiv.EditSession(edit.surface, edit.deformation, edit.controls * (1, 1, 0))
     assert caught.value.pairs.shape[1] == 2
 
 
