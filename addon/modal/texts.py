@@ -11,7 +11,7 @@ _VERDICTS = {
     "reached": "clear",
     "corrected": "gives way",
     "blocked": "blocked",
-    "budget": "still solving",
+    "budget": "not settled yet",
     "cancelled": "cancelled",
     "unchanged": "",
 }

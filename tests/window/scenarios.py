@@ -45,7 +45,7 @@ def select_right_half() -> None:
         bmesh.update_edit_mesh(data)
     else:
         for point in data.points:
-            point.select = point.co.x > 0.1
+            point.select = point.co_deform.x > 0.1  # `co` is nonsense in Edit Mode
 
 
 def start(window: Window, key: str = "M") -> Steps:

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whole edits by the operators: values in, and what Blender evaluates afterwards out."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import bmesh  # noqa: E402
+import stiv_addon  # noqa: E402
+
+WALL_FACE = 1.9
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+@pytest.fixture(autouse=True)
+def wall() -> Any:
+    """An upright plate whose face is at x = WALL_FACE."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    return box("Wall", (WALL_FACE + 0.1, 0.0, 0.0), (0.1, 2.0, 2.0))
+
+
+def box(name: str, centre: tuple, half: tuple) -> Any:
+    bpy.ops.mesh.primitive_cube_add(size=2.0, location=centre)
+    thing = bpy.context.active_object
+    thing.name = name
+    for vertex in thing.data.vertices:
+        vertex.co = [coordinate * extent for coordinate, extent in zip(vertex.co, half, strict=True)]
+    return thing
+
+
+def smooth_cage() -> Any:
+    cage = box("Cage", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    cage.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    return cage
+
+
+def ball_in_lattice() -> Any:
+    """The lattice, active and alone selected."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.5)
+    ball = bpy.context.active_object
+    ball.name = "Ball"
+    bpy.ops.object.add(type="LATTICE")
+    lattice = bpy.context.active_object
+    lattice.data.points_u = lattice.data.points_v = lattice.data.points_w = 3
+    lattice.scale = (1.3, 1.3, 1.3)
+    ball.modifiers.new("Lattice", "LATTICE").object = lattice
+    bpy.context.view_layer.update()
+    return lattice
+
+
+def edit_right_half() -> None:
+    """Edit Mode with what lies at x > 0 selected."""
+    bpy.ops.object.mode_set(mode="EDIT")
+    data = bpy.context.object.data
+    if bpy.context.object.type == "LATTICE":
+        for point in data.points:
+            point.select = point.co_deform.x > 0.1  # `co` is nonsense in Edit Mode
+        return
+    content = bmesh.from_edit_mesh(data)
+    for vertex in content.verts:
+        vertex.select_set(vertex.co.x > 0.1)
+    content.select_flush_mode()
+    bmesh.update_edit_mesh(data)
+
+
+def positions(name: str) -> np.ndarray:
+    """World positions of an object as Blender evaluates it, (n, 3)."""
+    thing = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = thing.to_mesh()
+    result = np.array([thing.matrix_world @ vertex.co for vertex in mesh.vertices])
+    thing.to_mesh_clear()
+    return result
+
+
+def expect_free() -> None:
+    assert bpy.ops.stiv.check() == {"FINISHED"}
+    assert bpy.context.window_manager.stiv_check.summary == "No intersections"
+
+
+def test_a_box_moved_through_a_wall_ends_in_front_of_it() -> None:
+    box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    assert bpy.ops.stiv.move(value=(5.0, 0.0, 0.0)) == {"FINISHED"}
+    assert WALL_FACE - 0.02 < positions("Box")[:, 0].max() < WALL_FACE
+    expect_free()
+
+
+def test_a_clear_move_is_exact() -> None:
+    thing = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.ops.stiv.move(value=(0.25, -1.0, 3.0))
+    assert tuple(thing.location) == (0.25, -1.0, 3.0)
+
+
+def test_a_typed_rotation_and_scaling_leave_no_intersection() -> None:
+    box("Box", (1.0, 0.0, 0.0), (0.2, 0.9, 0.2))
+    bpy.ops.stiv.rotate(angle=np.pi / 2.0, axis=(0.0, 0.0, 1.0))
+    expect_free()
+    bpy.ops.stiv.scale(value=(4.0, 4.0, 4.0))
+    expect_free()
+    assert positions("Box")[:, 0].max() < WALL_FACE
+
+
+def test_vertices_of_a_cage_are_pushed_against_the_wall_in_edit_mode() -> None:
+    smooth_cage()
+    edit_right_half()
+    assert bpy.ops.stiv.move(value=(3.0, 0.0, 0.0)) == {"FINISHED"}
+    assert bpy.context.mode == "EDIT_MESH"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert WALL_FACE - 0.1 < positions("Cage")[:, 0].max() < WALL_FACE
+    expect_free()
+
+
+def test_points_of_a_lattice_are_pushed_against_the_wall_in_edit_mode() -> None:
+    ball_in_lattice()
+    edit_right_half()
+    assert bpy.ops.stiv.move(value=(3.0, 0.0, 0.0)) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert WALL_FACE - 0.1 < positions("Ball")[:, 0].max() < WALL_FACE
+    expect_free()
+
+
+def test_a_lattice_responds_by_its_points_in_object_mode_when_told() -> None:
+    ball_in_lattice()
+    bpy.context.scene.stiv.object_response = "deform"
+    bpy.ops.stiv.move(value=(2.5, 0.0, 0.0))
+    ball = positions("Ball")
+    assert WALL_FACE - 0.1 < ball[:, 0].max() < WALL_FACE
+    assert np.ptp(ball[:, 0]) < 0.95 * np.ptp(ball[:, 1])
+    expect_free()
+
+
+@pytest.mark.parametrize("value", [(5.0, 0.0, 0.0), (0.3, 1.0, 0.2)])
+def test_the_same_value_gives_the_same_bits_again(value: tuple) -> None:
+    smooth_cage()
+    edit_right_half()
+    bpy.ops.ed.undo_push(message="start")
+    results = []
+    for _ in range(2):
+        bpy.ops.stiv.move("EXEC_DEFAULT", True, value=value)
+        results.append(positions("Cage"))
+        bpy.ops.ed.undo()
+    np.testing.assert_array_equal(*results)
+
+
+def test_one_undo_takes_the_edit_back() -> None:
+    box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.ops.ed.undo_push(message="start")
+    bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(5.0, 0.0, 0.0))
+    bpy.ops.ed.undo()
+    assert tuple(bpy.data.objects["Box"].location) == (0.0, 0.0, 0.0)
+    bpy.ops.ed.redo()
+    assert WALL_FACE - 0.02 < positions("Box")[:, 0].max() < WALL_FACE
+
+
+def test_a_start_that_intersects_is_refused_and_nothing_changes() -> None:
+    thing = box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
+    before = thing.matrix_world.copy()
+    with pytest.raises(RuntimeError, match="intersect"):
+        bpy.ops.stiv.move(value=(-1.0, 0.0, 0.0))
+    assert thing.matrix_world == before
+
+
+def test_nothing_selected_is_refused() -> None:
+    bpy.ops.object.select_all(action="DESELECT")
+    with pytest.raises(RuntimeError, match="selected"):
+        bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
+
+
+def test_the_role_of_an_object_counts(wall: Any) -> None:
+    wall.stiv.role = "ignored"
+    thing = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.ops.stiv.move(value=(5.0, 0.0, 0.0))
+    assert tuple(thing.location) == (5.0, 0.0, 0.0)
+
+
+def test_the_check_finds_and_selects_what_intersects() -> None:
+    box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
+    box("Far", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    assert bpy.ops.stiv.check() == {"FINISHED"}
+    assert {thing.name for thing in bpy.context.selected_objects} == {"Wall", "Box"}
+    summary = bpy.context.window_manager.stiv_check.summary
+    assert "intersecting pairs" in summary and "Wall" in summary and "Far" not in summary
