@@ -10,6 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 import bmesh  # noqa: E402
+
 import stiv_addon  # noqa: E402
 
 WALL_FACE = 1.9

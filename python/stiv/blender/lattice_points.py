@@ -31,12 +31,16 @@ def read_points(lattice: bpy.types.Lattice) -> Singles:
 def read_rest_points(lattice: bpy.types.Lattice) -> Singles:
     """Points at rest, (m, 3), in the lattice's frame.
 
-    While a lattice is edited Blender's own rest positions are nonsense; they are those of every lattice of its size.
+    In Edit Mode the rest positions that Blender gives are nonsense; those of a copy, which is in no mode, are right.
+    They do not follow from the size alone: a lattice whose resolution was changed keeps its extents.
     """
-    if lattice.is_editmode:
-        resolution = (lattice.points_u, lattice.points_v, lattice.points_w)
-        return stiv.lattice_rest_points(resolution).astype(np.float32)
-    return read_collection(lattice.points, "co", 3, np.float32)
+    if not lattice.is_editmode:
+        return read_collection(lattice.points, "co", 3, np.float32)
+    copy = lattice.copy()
+    try:
+        return read_collection(copy.points, "co", 3, np.float32)
+    finally:
+        bpy.data.lattices.remove(copy)
 
 
 def lattice_part(
