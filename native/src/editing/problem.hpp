@@ -20,7 +20,7 @@ struct State {
   Positions surface;
 };
 
-/// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 10)
+/// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
 double energy(const Positions& a, const Positions& b);
 
 /// What all edits of a session have in common: validated input, what was made of it once, and the questions that the

@@ -10,10 +10,10 @@ namespace {
 
 /// A pair may have slid on by the end of the step, so that its frozen plane (n, w) is no longer violated although the
 /// pair still met on the way. Such a region keeps this fraction of its target as violation, or it would weigh against
-/// its neighbours and V could vanish while events remain. (mathematics.md, Eq. 8)
+/// its neighbours and V could vanish while events remain. (mathematics.md, Eq. 2)
 constexpr double least_violation = 1e-3;
 
-/// A_i (n . sum_k w_k q1_k - target), Eq. 8.
+/// A_i (n . sum_k w_k q1_k - target), Eq. 2.
 double region_volume(const Event& event, const Positions& end, double area, Proximity proximity) {
   const double target = proximity.target(event.start_distance);
   const double approach = event.normal.dot(weighted_sum(event, end)) - target;
@@ -53,7 +53,7 @@ std::vector<Stiv> interference_volumes(const Events& events, const std::vector<R
     const Event& event = events[regions[k].event];
     const double area = areas[regions[k].vertex];
     stivs[labels[k]].volume += region_volume(event, end, area, proximity);
-    for (int corner = 0; corner < 4; ++corner)  // Eq. 9
+    for (int corner = 0; corner < 4; ++corner)  // Eq. 3
       entries.push_back({labels[k], event.vertices[corner], area * event.weights[corner] * event.normal});
   }
   gather(entries, stivs);

@@ -18,7 +18,7 @@ struct MovingExtent {
 MovingExtent moving_extent(const Surface& surface, const Deformation& deformation, const Positions& q);
 
 /// The least separation that survives storing: four units in the last place of what is stored, in the world and in the
-/// frames of the controls. (mathematics.md, Eq. 7)
+/// frames of the controls. (mathematics.md, Eq. 1)
 /// @param frames empty: controls are stored in double precision
 double least_separation(const MovingExtent& extent, const Controls& p, const std::vector<StorageFrame>& frames,
                         const std::vector<Index>& rotation_rows);

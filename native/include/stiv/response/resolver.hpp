@@ -17,7 +17,7 @@ struct ControlConstraint {
 };
 
 /// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control can change are left
-/// out. (mathematics.md, Eq. 11)
+/// out. (mathematics.md, Eq. 5)
 /// @param metric_at controls at which the metric is taken; the same for constraints that are solved together
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
                                                    const Controls& p, const Metric& metric, const Controls& metric_at);
@@ -30,7 +30,7 @@ class ConstraintSet {
   std::size_t size() const { return constraints_.size(); }
 
   /// The point nearest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
-  /// multipliers of the LCP. (mathematics.md, Eq. 12)
+  /// multipliers of the LCP. (mathematics.md, Eq. 6)
   Controls project(const Controls& from, const Execution& execution);
 
  private:
