@@ -40,6 +40,9 @@ test-python: build/venv/stiv ## Run the Python tests that need no Blender
 test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blender on every Blender module
 	build/venv/bin/python tools/run_tests.py blender
 
+test-window: $(OPENSUBDIV) ## Drive the add-on in a real window, in a Debian 13 under build/window/ (needs root and debootstrap)
+	$(PYTHON) tests/window/run.py
+
 lint: build/venv/lint ## Check format, style and types
 	build/venv/bin/python tools/run_tests.py lint
 

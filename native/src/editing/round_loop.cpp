@@ -12,7 +12,8 @@ namespace {
 std::vector<Stiv> measure(const Problem& problem, const State& accepted, const Eigen::VectorXd& areas,
                           RoundOutcome& outcome, Execution& execution) {
   const ScopedTimer timer(execution.timings.volumes);
-  const std::vector<Region> regions = earliest_regions(problem.surface(), outcome.events, accepted.surface, outcome.candidate.surface);
+  const std::vector<Region> regions =
+      earliest_regions(problem.surface(), outcome.events, accepted.surface, outcome.candidate.surface);
   const std::vector<Index> labels = patch_labels(problem.surface(), regions, problem.options().constraints);
   std::vector<Stiv> stivs =
       interference_volumes(outcome.events, regions, labels, outcome.candidate.surface, areas, problem.proximity());
