@@ -28,7 +28,7 @@ void pull_until_settled(Problem& problem, State& accepted, const Aim& aim, doubl
     const double before = energy(accepted.surface, aim.surface);
     pull(problem, accepted, aim, limit, report, execution);
     const double after = energy(accepted.surface, aim.surface);
-    if (!(after < (1 - least_gain) * before)) return;
+    if (report.blocked || !(after < (1 - least_gain) * before)) return;
   }
 }
 

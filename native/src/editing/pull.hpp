@@ -9,7 +9,7 @@ namespace stiv {
 /// energy. [DESIGN 4, "Deep goals"]
 void pull(Problem& problem, State& accepted, const Aim& aim, double limit, SolveReport& report, Execution& execution);
 
-/// Pulls until the energy no longer falls, `most` times at most.
+/// Pulls until the energy no longer falls or the response no longer settles, `most` times at most.
 void pull_until_settled(Problem& problem, State& accepted, const Aim& aim, double limit, int most, SolveReport& report,
                         Execution& execution);
 
