@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import bpy
 
-import stiv
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.settings import EditSettings
-from stiv.blender.verification import FacePair
+from stiv.blender.verification import FacePair, named_pairs
 
 
 @dataclass(frozen=True)
@@ -47,16 +46,5 @@ def check_scene(
     settings = settings or EditSettings()
     scene = read_scene(context, lambda name: settings.role(name) != "ignored" and (objects is None or name in objects))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
-    return SceneCheck(find_pairs(assembly, settings.threads), len(assembly.surface.triangles), scene.hidden)
-
-
-def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
-    """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
-    surface, q = assembly.surface, assembly.positions
-    faces = stiv.find_intersections(q, surface, threads=threads)
-    edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
-    return (
-        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
-        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
-        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
-    )
+    pairs = named_pairs(assembly, assembly.surface, assembly.positions, settings.threads)
+    return SceneCheck(pairs, len(assembly.surface.triangles), scene.hidden)

@@ -22,7 +22,7 @@ from stiv.blender.roles import find_movers
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.blender.summary import Summary, summarise
 from stiv.blender.transform_path import increments, transform_at
-from stiv.blender.verification import WriteReport, verify
+from stiv.blender.verification import Verifier, WriteReport
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
 MOST_STEPS = 200
@@ -31,12 +31,15 @@ MOST_STEPS = 200
 class BlenderEdit:
     """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls."""
 
-    def __init__(self, assembly: Assembly, parts: Sequence[Part], session: stiv.EditSession, summary: Summary) -> None:
+    def __init__(
+        self, assembly: Assembly, parts: Sequence[Part], session: stiv.EditSession, summary: Summary, verifier: Verifier
+    ) -> None:
         """Use `begin`."""
         self.summary = summary
         self._assembly = assembly
         self._parts = tuple(parts)
         self._session = session
+        self._verifier = verifier
         self._start = _stacked([part.controls for part in parts])
         self._goal = self._start
         self._shown = self._start
@@ -55,7 +58,9 @@ class BlenderEdit:
             raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
         mobility = _mobility(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
-        return cls(assembly, parts, _session(assembly, parts, settings), summarise(assembly, parts, scene.hidden))
+        summary = summarise(assembly, parts, scene.hidden)
+        verifier = Verifier(assembly, settings.threads)
+        return cls(assembly, parts, _session(assembly, parts, settings), summary, verifier)
 
     @property
     def controls(self) -> Floats:
@@ -101,7 +106,7 @@ class BlenderEdit:
         """
         accepted = self._session.controls
         self._write(accepted)
-        report = verify(bpy.context, self._assembly, self._session.surface)
+        report = self._verifier.verify(bpy.context, self._session.surface)
         if report.passed:
             self._shown = accepted
             return report

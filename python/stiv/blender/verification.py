@@ -32,23 +32,38 @@ class WriteReport:
     message: str = ""
 
 
-def verify(context: bpy.types.Context, assembly: Assembly, accepted: Floats) -> WriteReport:
-    """Test what Blender evaluates against the accepted surface, (N, 3).
+class Verifier:
+    """Tests what Blender evaluates against accepted surfaces; keeps the trees of the path check."""
 
-    It must be where the accepted surface is, to within single precision; the way there must be free; and it must be
-    free of intersections, in the triangulation of the start and in Blender's present one, which follows the shape.
-    Raises SceneChangedError when other meshes are visible than at the start.
-    """
-    shown = read_shown(context, assembly)
-    message = _elsewhere(assembly, accepted, shown)
-    if message:
-        return WriteReport(False, (), message)
-    if not stiv.is_step_free(assembly.surface, accepted, shown):
-        return _failure(assembly, assembly.surface, shown)
-    present = _present_surface(context, assembly)
-    if present is not assembly.surface and len(stiv.find_intersections(shown, present)):
-        return _failure(assembly, present, shown)
-    return WriteReport(True)
+    def __init__(self, assembly: Assembly, threads: int = 0) -> None:
+        """For the meshes of an assembly; threads 0 for all."""
+        self._assembly = assembly
+        self._threads = threads
+        self._detector = stiv.Detector(assembly.surface, threads=threads)
+        self._has_loose = _has_loose(assembly)
+
+    def verify(self, context: bpy.types.Context, accepted: Floats) -> WriteReport:
+        """Test what Blender evaluates now against the accepted surface, (N, 3), which is free of intersections.
+
+        It must be where the accepted surface is, to within single precision; the way there must be free; and it must
+        be free of intersections, in the triangulation of the start and in Blender's present one, which follows the
+        shape. Raises SceneChangedError when other meshes are visible than at the start.
+        """
+        shown = read_shown(context, self._assembly)
+        message = _elsewhere(self._assembly, accepted, shown)
+        if message:
+            return WriteReport(False, (), message)
+        surfaces = {self._assembly.surface, _present_surface(context, self._assembly)}
+        pairs = next((found for surface in surfaces if (found := self._pairs(surface, shown))), ())
+        if pairs:
+            return WriteReport(False, pairs, _told(pairs))
+        if self._detector.earliest_time(accepted, shown) <= 1:
+            return WriteReport(False, (), "what Blender shows comes too near; use a larger separation")
+        return WriteReport(True)
+
+    def _pairs(self, surface: stiv.Surface, shown: Floats) -> tuple[FacePair, ...]:
+        """Found in a surface over the assembly's vertices whose triangles may be cut in another way."""
+        return named_pairs(self._assembly, surface, shown, self._threads, self._has_loose)
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
@@ -73,18 +88,37 @@ def _elsewhere(assembly: Assembly, accepted: Floats, shown: Floats) -> str:
     return ""
 
 
-def _failure(assembly: Assembly, surface: stiv.Surface, shown: Floats) -> WriteReport:
-    pairs = tuple(
-        FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in stiv.find_intersections(shown, surface)
-    )
-    if not pairs:
-        return WriteReport(False, (), "what Blender shows comes too near to be told apart; use a larger separation")
+def named_pairs(
+    assembly: Assembly, surface: stiv.Surface, q: Floats, threads: int = 0, loose: bool = True
+) -> tuple[FacePair, ...]:
+    """All pairs that meet, (N, 3) positions `q`, in a surface that differs from the assembly's in its cuts at most.
+
+    loose: look at loose edges and vertices too.
+    """
+    found = [
+        FacePair(assembly.face(int(a)), assembly.face(int(b)))
+        for a, b in stiv.find_intersections(q, surface, threads=threads)
+    ]
+    if loose:
+        edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
+        found += [FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges]
+        found += [FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices]
+    return tuple(found)
+
+
+def _has_loose(assembly: Assembly) -> bool:
+    in_faces = np.zeros(assembly.surface.vertex_count, np.bool_)
+    in_faces[assembly.surface.triangles.ravel()] = True
+    return len(assembly.surface.loose_edges) > 0 or not in_faces.all()
+
+
+def _told(pairs: tuple[FacePair, ...]) -> str:
     first, second = pairs[0].first, pairs[0].second
-    return WriteReport(
-        False, pairs,
-        f"{len(pairs)} pairs of triangles meet in what Blender shows, the first in "
-        f'object "{first.object}", face {first.number} and object "{second.object}", face {second.number}',
-    )  # fmt: skip
+    return (
+        f"{len(pairs)} pairs meet in what Blender shows, the first are "
+        f'object "{first.object}", {first.kind} {first.number} and '
+        f'object "{second.object}", {second.kind} {second.number}'
+    )
 
 
 def _present_surface(context: bpy.types.Context, assembly: Assembly) -> stiv.Surface:
