@@ -37,6 +37,21 @@ bool step_is_free(const SurfacePointer& surface, const Positions& start, const P
   return test.is_free(start, {}, execution) && is_step_free(detector, test, start, end, {separation}, execution);
 }
 
+/// What a step is tested with, kept between steps of one surface.
+struct StepCheck {
+  StepCheck(const SurfacePointer& surface, int thread_count)
+      : detector(surface), intersections(surface), threads(thread_count) {}
+
+  bool is_free(const Positions& start, const Positions& end, double separation) {
+    Execution execution(threads);
+    return is_step_free(detector, intersections, start, end, {separation}, execution);
+  }
+
+  Detector detector;
+  IntersectionTest intersections;
+  int threads;
+};
+
 }  // namespace
 
 void bind_acceptance(py::module_& module) {
@@ -44,6 +59,9 @@ void bind_acceptance(py::module_& module) {
   module.def("find_intersections", &find_intersections, Release());
   module.def("find_loose_intersections", &find_loose_intersections, Release());
   module.def("is_step_free", &step_is_free, Release());
+  py::class_<StepCheck>(module, "StepCheck")
+      .def(py::init<const SurfacePointer&, int>())
+      .def("is_free", &StepCheck::is_free, Release());
 }
 
 }  // namespace stiv::bindings

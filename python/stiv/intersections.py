@@ -62,6 +62,28 @@ def is_step_free(
     return _native.is_step_free(surface.native, first, last, distance, as_count(threads, "threads"))
 
 
+class StepCheck:
+    """The test of `is_step_free` for many steps of one surface, from starts known to be free; keeps its trees.
+
+    surface  Surface
+    threads  0: one for each processor; results are the same for any number
+    """
+
+    def __init__(self, surface: Surface, threads: int = 0) -> None:
+        """Take the surface; trees are built at the first step."""
+        self._vertex_count = surface.vertex_count
+        self._native = _native.StepCheck(surface.native, as_count(threads, "threads"))
+
+    def is_free(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0) -> bool:
+        """Tell whether the linear step from `start` to `end`, (N, 3) each, is free: its whole path and its end.
+
+        `start` must be free. Otherwise as `is_step_free`.
+        """
+        first = as_floats(start, "start", (self._vertex_count, 3))
+        last = as_floats(end, "end", (self._vertex_count, 3))
+        return self._native.is_free(first, last, as_number(separation, "separation", 0))
+
+
 def _prepared(vertices: ArrayLike, triangles: Surface | ArrayLike, all_bodies: bool) -> tuple[Surface, Floats]:
     q = as_floats(vertices, "vertices", (None, 3))
     surface = as_surface(triangles, len(q))

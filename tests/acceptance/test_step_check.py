@@ -83,3 +83,13 @@ def test_bad_input_is_named() -> None:
         stiv.is_step_free(faces, start, np.where(np.arange(len(start))[:, None] == 7, np.nan, start))
     with pytest.raises(stiv.InputError, match="separation"):
         stiv.is_step_free(faces, start, start, separation=-1.0)
+
+
+def test_kept_check_says_what_the_one_off_form_says() -> None:
+    triangles = [[0, 1, 2], [3, 4, 5]]
+    start = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, 1], [0.3, 0.2, 2], [0.2, 0.3, 2.0]])
+    check = stiv.StepCheck(stiv.Surface(triangles))
+    for height in (-0.5, -1.5, -4.0, 0.5, -0.99):
+        end = start.copy()
+        end[3:, 2] += height
+        assert check.is_free(start, end) == stiv.is_step_free(triangles, start, end) == (height > -1)

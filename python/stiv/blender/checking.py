@@ -46,5 +46,10 @@ def check_scene(
     settings = settings or EditSettings()
     scene = read_scene(context, lambda name: settings.role(name) != "ignored" and (objects is None or name in objects))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
-    pairs = named_pairs(assembly, assembly.surface, assembly.positions, settings.threads)
+    pairs = find_pairs(assembly, settings.threads)
     return SceneCheck(pairs, len(assembly.surface.triangles), scene.hidden)
+
+
+def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
+    """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
+    return named_pairs(assembly, assembly.surface, assembly.positions, threads)

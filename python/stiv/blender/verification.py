@@ -33,14 +33,13 @@ class WriteReport:
 
 
 class Verifier:
-    """Tests what Blender evaluates against accepted surfaces; keeps the trees of the path check."""
+    """Tests what Blender evaluates against accepted surfaces; keeps its trees."""
 
     def __init__(self, assembly: Assembly, threads: int = 0) -> None:
         """For the meshes of an assembly; threads 0 for all."""
         self._assembly = assembly
         self._threads = threads
-        self._detector = stiv.Detector(assembly.surface, threads=threads)
-        self._has_loose = _has_loose(assembly)
+        self._steps = stiv.StepCheck(assembly.surface, threads)
 
     def verify(self, context: bpy.types.Context, accepted: Floats) -> WriteReport:
         """Test what Blender evaluates now against the accepted surface, (N, 3), which is free of intersections.
@@ -53,17 +52,21 @@ class Verifier:
         message = _elsewhere(self._assembly, accepted, shown)
         if message:
             return WriteReport(False, (), message)
-        surfaces = {self._assembly.surface, _present_surface(context, self._assembly)}
-        pairs = next((found for surface in surfaces if (found := self._pairs(surface, shown))), ())
-        if pairs:
-            return WriteReport(False, pairs, _told(pairs))
-        if self._detector.earliest_time(accepted, shown) <= 1:
-            return WriteReport(False, (), "what Blender shows comes too near; use a larger separation")
+        if not self._steps.is_free(accepted, shown):
+            return self._failure(self._assembly.surface, shown)
+        present = _present_surface(context, self._assembly)
+        if present is not self._assembly.surface and not self._is_free(present, shown):
+            return self._failure(present, shown)
         return WriteReport(True)
 
-    def _pairs(self, surface: stiv.Surface, shown: Floats) -> tuple[FacePair, ...]:
-        """Found in a surface over the assembly's vertices whose triangles may be cut in another way."""
-        return named_pairs(self._assembly, surface, shown, self._threads, self._has_loose)
+    def _is_free(self, surface: stiv.Surface, shown: Floats) -> bool:
+        return len(stiv.find_intersections(shown, surface, threads=self._threads)) == 0
+
+    def _failure(self, surface: stiv.Surface, shown: Floats) -> WriteReport:
+        pairs = named_pairs(self._assembly, surface, shown, self._threads)
+        if not pairs:
+            return WriteReport(False, (), "what Blender shows comes too near; use a larger separation")
+        return WriteReport(False, pairs, _told(pairs))
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
@@ -88,28 +91,18 @@ def _elsewhere(assembly: Assembly, accepted: Floats, shown: Floats) -> str:
     return ""
 
 
-def named_pairs(
-    assembly: Assembly, surface: stiv.Surface, q: Floats, threads: int = 0, loose: bool = True
-) -> tuple[FacePair, ...]:
-    """All pairs that meet, (N, 3) positions `q`, in a surface that differs from the assembly's in its cuts at most.
+def named_pairs(assembly: Assembly, surface: stiv.Surface, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
+    """All pairs that meet at positions `q`, (N, 3), loose edges and vertices included.
 
-    loose: look at loose edges and vertices too.
+    surface: the assembly's, or one that differs from it in the way faces are cut into triangles.
     """
-    found = [
-        FacePair(assembly.face(int(a)), assembly.face(int(b)))
-        for a, b in stiv.find_intersections(q, surface, threads=threads)
-    ]
-    if loose:
-        edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
-        found += [FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges]
-        found += [FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices]
-    return tuple(found)
-
-
-def _has_loose(assembly: Assembly) -> bool:
-    in_faces = np.zeros(assembly.surface.vertex_count, np.bool_)
-    in_faces[assembly.surface.triangles.ravel()] = True
-    return len(assembly.surface.loose_edges) > 0 or not in_faces.all()
+    faces = stiv.find_intersections(q, surface, threads=threads)
+    edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
+    return (
+        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
+        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
+        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
+    )
 
 
 def _told(pairs: tuple[FacePair, ...]) -> str:
