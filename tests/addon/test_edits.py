@@ -190,3 +190,19 @@ def test_the_check_finds_and_selects_what_intersects() -> None:
     assert {thing.name for thing in bpy.context.selected_objects} == {"Wall", "Box"}
     summary = bpy.context.window_manager.stiv_check.summary
     assert "intersecting pairs" in summary and "Wall" in summary and "Far" not in summary
+
+
+@pytest.mark.parametrize(("build", "name"), [(smooth_cage, "Cage"), (ball_in_lattice, "Ball")])
+def test_restoring_works_in_another_mode_too(build: Any, name: str) -> None:
+    from stiv.blender import BlenderEdit, EditSettings
+
+    build()
+    before = positions(name)
+    edit_right_half()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind="move")
+    edit.drag([[1, 0, 0, 0.3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    edit.write()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert np.abs(positions(name) - before).max() > 0.1
+    edit.restore()
+    np.testing.assert_array_equal(positions(name), before)

@@ -9,7 +9,7 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from pathlib import Path
 
 import bpy
@@ -37,11 +37,13 @@ class Driver:
 
     def __init__(self, output: Path, names: list[str]):
         """Choose scenarios by name; none means all."""
-        import scenarios
+        from guide_pictures import PICTURES
+        from scenarios import SCENARIOS
         from simulation import Window
 
         self.window = Window(output)
-        chosen = {name: scenarios.SCENARIOS[name] for name in names} or scenarios.SCENARIOS
+        known = SCENARIOS | PICTURES
+        chosen = {name: known[name] for name in names} or known
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
         self.steps = self.play(chosen)
@@ -56,17 +58,17 @@ class Driver:
             self.save()
         self.results["complete"] = True
 
-    def play_one(self, scenario: object) -> Generator[None, None, str]:
-        """The failure of one scenario, empty if it passed; afterwards no drag is left over."""
+    def play_one(self, scenario: Callable[[object], Generator[None, None, None]]) -> Generator[None, None, str]:
+        """The failure of one scenario, empty if it passed; afterwards no drag and no message box is left over."""
+        failure = ""
         try:
             yield from scenario(self.window)
         except Exception:
             failure = traceback.format_exc()
             self.window.picture(f"failed_{scenario.__name__}")
-            self.window.key("ESC")
-            yield
-            return failure
-        return ""
+        self.window.key("ESC")
+        yield from self.window.settle()
+        return failure
 
     def save(self) -> None:
         """Write what is known so far, so that a crash tells where it happened."""

@@ -79,20 +79,20 @@ class CageWriter:
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        self._write_local(stored(self.frame, controls))
+        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls))
 
     def restore(self) -> None:
-        """Write the original positions."""
-        self._write_local(self.original)
+        """Write the original positions, in whatever mode the object is by now."""
+        _write_local(self.reference.find(), self.original)
 
-    def _write_local(self, local: Singles) -> None:
-        ob = self.reference.find_in_mode(self.mode)
-        if len(local) != _vertex_count(ob):
-            raise SceneChangedError(f'object "{ob.name}" has got another number of vertices')
-        if self.mode == "EDIT":
-            _write_edit_mesh(ob.data, local)
-        else:
-            _write_mesh(ob.data, local)
+
+def _write_local(ob: bpy.types.Object, local: Singles) -> None:
+    if len(local) != _vertex_count(ob):
+        raise SceneChangedError(f'object "{ob.name}" has got another number of vertices')
+    if ob.mode == "EDIT":
+        _write_edit_mesh(ob.data, local)
+    else:
+        _write_mesh(ob.data, local)
 
 
 def _vertex_count(ob: bpy.types.Object) -> int:

@@ -87,15 +87,16 @@ class LatticeWriter:
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        self._write_local(stored(self.frame, controls))
+        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls))
 
     def restore(self) -> None:
-        """Write the original positions."""
-        self._write_local(self.original)
+        """Write the original positions, in whatever mode the object is by now."""
+        _write_local(self.reference.find(), self.original)
 
-    def _write_local(self, local: Singles) -> None:
-        lattice = self.reference.find_in_mode(self.mode).data
-        if len(lattice.points) != len(local):
-            raise SceneChangedError(f'object "{self.reference.name}" has got another number of points')
-        lattice.points.foreach_set("co_deform", local.ravel())
-        lattice.update_tag()
+
+def _write_local(ob: bpy.types.Object, local: Singles) -> None:
+    lattice = ob.data
+    if len(lattice.points) != len(local):
+        raise SceneChangedError(f'object "{ob.name}" has got another number of points')
+    lattice.points.foreach_set("co_deform", local.ravel())
+    lattice.update_tag()
