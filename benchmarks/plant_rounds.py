@@ -4,7 +4,7 @@
 A round is one pass of the loop: a detection and, unless it finds nothing, the response to it. An edit's time, its
 acceptance included, is shared out evenly over its rounds.
 
-    python benchmarks/plant_rounds.py [--threads 1] [--edits 64] [--json FILE]
+    python benchmarks/plant_rounds.py [--threads 1] [--edits N] [--json FILE]
 
 The scene and its edits are those of the fixture plant_in_vase (13,759 vertices, 26,782 triangles: the size of the
 example of Figure 8 in the paper, which reports 40.6 to 48.6 ms a round), solved by the core without Blender.

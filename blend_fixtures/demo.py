@@ -21,6 +21,7 @@ from typing import Any
 from stiv import InputError
 from stiv.blender.blend_files import open_blend, render_picture, save_blend
 from stiv.command_line.output_files import write_json, written_atomically
+from stiv.command_line.quiet import quiet_blender
 from stiv.command_line.replay import replay_report, run_script
 from stiv.edit_scripts import read_edit_script
 
@@ -32,18 +33,19 @@ def run(output: Path) -> list[dict[str, Any]]:
     """Runs the demo's edits and writes its files into `output`; what each edit did."""
     output.mkdir(parents=True, exist_ok=True)
     script = read_edit_script(SCENE.with_suffix(".edits.json"))
-    open_blend(SCENE)
-    _render(output / "before.png")
-    edits = run_script(script, SCENE)
-    with written_atomically(output / "after.blend") as temporary:
-        save_blend(temporary)
-    _render(output / "after.png")
+    with quiet_blender():
+        open_blend(SCENE)
+        _render(output / "before.png")
+        edits = run_script(script, SCENE)
+        with written_atomically(output / "after.blend") as temporary:
+            save_blend(temporary)
+        _render(output / "after.png")
     write_json(output / "report.json", replay_report(SCENE, edits))
     return edits
 
 
 def _render(path: Path) -> None:
-    with written_atomically(path) as temporary:
+    with written_atomically(path) as temporary, quiet_blender(errors=True):
         render_picture(temporary)
 
 
@@ -55,7 +57,7 @@ def check(blend: Path) -> int:
 def summary(edits: list[dict[str, Any]], seconds: float) -> str:
     """What the demo did, in a few lines."""
     touching = [edit for edit in edits if edit["rounds"] > 0]
-    rounds = [1000 * edit["timings"]["total"] / edit["rounds"] for edit in touching]
+    rounds = [1000 * edit["timings"]["total"] / edit["counters"]["detections"] for edit in touching]
     lines = [f"{len(edits)} edits, {len(touching)} of them met resistance, {seconds:.0f} s in all"]
     if touching:
         median = {key: statistics.median(edit[key] for edit in touching) for key in MEDIANS}

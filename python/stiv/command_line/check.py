@@ -16,6 +16,7 @@ from stiv import InputError
 from stiv.command_line.blender_module import require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json
+from stiv.command_line.quiet import quiet_blender
 from stiv.mesh_files import SUFFIXES, read_mesh
 
 if TYPE_CHECKING:
@@ -131,7 +132,9 @@ def _check_mesh(path: Path) -> _Finding:
 
 def _check_blend(path: Path) -> _Finding:
     """Of every visible mesh as Blender evaluates it; loose edges and vertices are tested too."""
-    context = require_blender("stiv.blender.blend_files", path).open_blend(path)
+    files = require_blender("stiv.blender.blend_files", path)
+    with quiet_blender():
+        context = files.open_blend(path)
     checking = require_blender("stiv.blender.checking", path)
     assembly = checking.read_surface(context)
     pairs = [(_plain(pair.first), _plain(pair.second)) for pair in checking.find_pairs(assembly)]

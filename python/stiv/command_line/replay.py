@@ -12,6 +12,7 @@ from stiv.command_line.blender_module import require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.progress import progress_bar
+from stiv.command_line.quiet import quiet_blender
 from stiv.edit_scripts import EditScript, read_edit_script
 
 if TYPE_CHECKING:
@@ -54,13 +55,14 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
         raise InputError(f"{arguments.scene}: there is no such file")
     script = read_edit_script(arguments.edits)
     files = require_blender("stiv.blender.blend_files", arguments.scene)
-    files.open_blend(arguments.scene)
-    edits = run_script(script, arguments.scene)
-    with written_atomically(arguments.output) as temporary:
-        files.save_blend(temporary)
-    if arguments.render is not None:
-        with written_atomically(arguments.render) as temporary:
-            files.render_picture(temporary)
+    with quiet_blender():
+        files.open_blend(arguments.scene)
+        edits = run_script(script, arguments.scene)
+        with written_atomically(arguments.output) as temporary:
+            files.save_blend(temporary)
+        if arguments.render is not None:
+            with written_atomically(arguments.render) as temporary, quiet_blender(errors=True):
+                files.render_picture(temporary)
     if arguments.report is not None:
         write_json(arguments.report, replay_report(arguments.scene, edits))
     print(summary(edits))
