@@ -43,9 +43,6 @@ test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blende
 test-window: $(OPENSUBDIV) ## Drive the add-on in a real window, in a Debian 13 under build/window/ (needs root and debootstrap)
 	$(PYTHON) tests/window/run.py
 
-test-window: build/venv/ready $(OPENSUBDIV) ## Drive the extension in a real window, in a Debian folder (needs root and debootstrap)
-	build/venv/bin/python tests/window/run.py --opensubdiv $(OPENSUBDIV)
-
 lint: build/venv/lint ## Check format, style and types
 	build/venv/bin/python tools/run_tests.py lint
 
