@@ -71,16 +71,12 @@ class TransformOperator:
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Pass an event on, show what became of it, clear up at the end."""
-        if context.mode != self._mode:
-            self._drag.abort(DragEnded("the mode changed during the drag"))
-        elif event.type == "TIMER":
-            self._drag.tick()
-        else:
-            self._drag.handle(interface.plain_event(event, context.region))
-        if self._drag.progress is Progress.RUNNING:
+        try:
+            self._advance(context, event)
             self._show(context)
-            return {"RUNNING_MODAL"}
-        return self._end(context)
+        except Exception as error:  # Blender would keep an operator running that raises
+            self._drag.abort(error)
+        return {"RUNNING_MODAL"} if self._drag.progress is Progress.RUNNING else self._end(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the drag: a file is loaded, the window closes."""
@@ -99,12 +95,25 @@ class TransformOperator:
         )
         self._mode = context.mode
         self._notes = scene_frame.notes(context)
+        self._shown: Any = None
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
-        self._show(context)
+
+    def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        if context.mode != self._mode:
+            self._drag.abort(DragEnded("the mode changed during the drag"))
+        elif event.type == "TIMER":
+            self._drag.tick()
+        else:
+            self._drag.handle(interface.plain_event(event, context.region))
 
     def _show(self, context: bpy.types.Context) -> None:
+        """Header, status bar and views, if there is anything new: a timer that only waits draws nothing."""
         drag = self._drag
+        news = (drag.state, id(drag.result), drag.note)
+        if news == self._shown or drag.progress is not Progress.RUNNING:
+            return
+        self._shown = news
         value = drag.transform.text() if drag.transform is not None else self.bl_label
         verdict = outcome_text(drag.result) if drag.result is not None else ""
         told = [text for text in (drag.note, write_failure(drag.report)) if text]
@@ -144,5 +153,5 @@ class TransformOperator:
             put_back(edit, error)
         if not isinstance(error, ValueError | SceneChangedError | DragEnded):
             traceback.print_exception(error)
-        self.report({"ERROR"}, str(error) or type(error).__name__)
+        self.report({"ERROR"}, "; ".join([str(error) or type(error).__name__, *getattr(error, "__notes__", ())]))
         return {"CANCELLED"}

@@ -23,7 +23,7 @@ class FakeEdit:
 
     def settle(self) -> Any:
         self._called("settle")
-        return SimpleNamespace(status="unchanged")
+        return SimpleNamespace(status="unchanged", blocking=())
 
     def write(self) -> Any:
         self._called("write")
@@ -42,4 +42,4 @@ class FakeEdit:
     def _solve(self, matrix: Any) -> Any:
         self.goals.append(float(matrix))
         self.accepted = min(float(matrix), 1.0)
-        return SimpleNamespace(status=self.statuses.pop(0) if self.statuses else "reached")
+        return SimpleNamespace(status=self.statuses.pop(0) if self.statuses else "reached", blocking=())

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The modal half of the operators, which Blender without a window cannot run: with a context made of plain values."""
+
+import sys
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from fake_edit import FakeEdit  # noqa: E402
+
+from stiv_addon.operators import interface  # noqa: E402
+from stiv_addon.operators.adapter import TransformOperator  # noqa: E402
+from stiv_addon.transform.frame import Frame  # noqa: E402
+
+
+class Area:
+    """A 3D view: its header, and how often it was to be drawn."""
+
+    type = "VIEW_3D"
+
+    def __init__(self) -> None:
+        self.header: str | None = None
+        self.drawn = 0
+
+    def header_text_set(self, text: str | None) -> None:
+        self.header = text
+
+    def tag_redraw(self) -> None:
+        self.drawn += 1
+
+
+class Probe(TransformOperator):
+    """A transform whose value is a hundredth of the pointer's x."""
+
+    bl_label = "Probe"
+    kind = "move"
+
+    def __init__(self) -> None:
+        self.reports: list[tuple[set, str]] = []
+
+    def report(self, kind: set, text: str) -> None:
+        self.reports.append((kind, text))
+
+    def measure(self, state: Any, frame: Frame) -> Any:
+        value = state.pointer.effective[0] / 100.0
+        return SimpleNamespace(text=lambda: f"{value}", matrix=lambda frame: value)
+
+    def keep(self, transform: Any) -> None:
+        self.kept = transform
+
+
+class Context(SimpleNamespace):
+    """What the adapter asks of Blender's context."""
+
+    def __init__(self) -> None:
+        self.area, self.timers, self.modals = Area(), [], []
+        manager = SimpleNamespace(
+            windows=[SimpleNamespace(screen=SimpleNamespace(areas=[self.area]))],
+            event_timer_add=lambda step, window: self.timers.append(step) or step,
+            event_timer_remove=self.timers.remove,
+            modal_handler_add=self.modals.append,
+            stiv_last_edit="",
+        )
+        tools = SimpleNamespace(transform_pivot_point="MEDIAN_POINT")
+        scene = SimpleNamespace(tool_settings=tools, transform_orientation_slots=[SimpleNamespace(type="GLOBAL")])
+        super().__init__(mode="OBJECT", region=None, workspace=None, window=None, scene=scene, window_manager=manager)
+
+
+def event(kind: str, value: str = "PRESS", x: int = 0) -> Any:
+    nothing = dict.fromkeys(interface.MODIFIERS, False)
+    return SimpleNamespace(type=kind, value=value, mouse_x=x, mouse_y=0, unicode="", **nothing)
+
+
+@pytest.fixture
+def edit() -> FakeEdit:
+    return FakeEdit()
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Context]:
+    monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
+    operator, context = Probe(), Context()
+    operator._start(context, event("M"), Frame(np.zeros(3)), edit)
+    return operator, context
+
+
+def expect_clean(context: Context) -> None:
+    assert context.area.header is None and not context.timers
+
+
+def test_a_drag_shows_its_value_and_leaves_nothing_behind(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+    assert context.area.header.startswith("0.5") and edit.shown == 0.5
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert edit.shown == 0.0 and operator.reports == []
+    expect_clean(context)
+
+
+def test_a_timer_that_only_waits_draws_nothing(started: Any) -> None:
+    operator, context = started
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    drawn = context.area.drawn
+    for _ in range(20):
+        operator.modal(context, event("TIMER"))
+    assert context.area.drawn == drawn
+
+
+@pytest.mark.parametrize("failing", ["drag", "write"])
+def test_a_fault_of_the_edit_restores_reports_and_clears(started: Any, edit: FakeEdit, failing: str) -> None:
+    operator, context = started
+    edit.failing = {failing: RuntimeError("broken")}
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert edit.calls[-1] == "restore" and operator.reports == [({"ERROR"}, "broken")]
+    expect_clean(context)
+
+
+def test_a_fault_of_the_interface_ends_the_drag_too(
+    started: Any, edit: FakeEdit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    operator, context = started
+
+    def fail(*arguments: Any) -> None:
+        raise AttributeError("no such area")
+
+    monkeypatch.setattr(interface, "show", fail)
+    assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"CANCELLED"}
+    assert edit.calls == ["restore"] and operator.reports == [({"ERROR"}, "no such area")]
+    expect_clean(context)
+
+
+def test_what_cannot_be_restored_is_said(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    edit.failing = {"drag": RuntimeError("broken"), "restore": RuntimeError("the box is gone")}
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    assert operator.reports == [({"ERROR"}, "broken; while restoring: the box is gone")]
+    expect_clean(context)
+
+
+def test_another_mode_ends_the_drag(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    context.mode = "EDIT_MESH"
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert edit.calls == ["restore"] and "mode changed" in operator.reports[0][1]
+    expect_clean(context)
+
+
+def test_blender_may_end_the_drag(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    operator.cancel(context)
+    assert edit.calls == ["restore"]
+    expect_clean(context)
