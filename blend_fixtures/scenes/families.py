@@ -231,13 +231,13 @@ def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
 
 
 def all_edits() -> list[Edit]:
-    """Fourteen edits of the seven families: shallow ones, and ones that would go fully through."""
+    """Fourteen edits of the seven families: shallow ones, deep ones, and ones that would go fully through."""
     return [
-        *(spheres(depth) for depth in (0.5, 1.0, 1.5)),
-        *(sheets(depth) for depth in (0.4, 0.7)),
+        *(spheres(depth) for depth in (0.5, 1.5, 4.6)),
+        *(sheets(depth) for depth in (0.5, 1.0)),
         fold(),
         *(subdivision(depth) for depth in (0.6, 1.2)),
         *(vase(depth) for depth in (1.5, 2.2)),
-        *(rigid(depth) for depth in (0.7, 1.0)),
+        *(rigid(depth) for depth in (0.7, 1.6)),
         *(knot(lift) for lift in (0.5, 1.0)),
     ]

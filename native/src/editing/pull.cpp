@@ -10,7 +10,7 @@ namespace stiv {
 
 namespace {
 
-constexpr double least_gain = 1e-3;  // relative fall of E that makes another pull worth while
+constexpr double least_gain = 1e-2;  // relative fall of E that makes another pull worth while
 
 }  // namespace
 

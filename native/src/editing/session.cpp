@@ -15,7 +15,7 @@ namespace stiv {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr int most_pulls = 40;  // of a settlement
+constexpr int most_pulls = 12;  // of a settlement
 constexpr int most_pulls_of_drag = 12;
 
 }  // namespace

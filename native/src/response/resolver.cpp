@@ -77,6 +77,19 @@ void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
       gram_(row, column) = gram_(column, row) = dot(constraints_[row].row, constraints_[column].step);
 }
 
+void ConstraintSet::drop_inactive() {
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index r = 0; r < multipliers_.size(); ++r)
+    if (multipliers_[r] > 0) active.push_back(r);
+  const Eigen::MatrixXd gram = gram_(active, active);
+  const Eigen::VectorXd multipliers = multipliers_(active);
+  for (std::size_t k = 0; k < active.size(); ++k)
+    if (static_cast<Eigen::Index>(k) != active[k]) constraints_[k] = std::move(constraints_[active[k]]);
+  constraints_.resize(active.size());
+  gram_ = gram;
+  multipliers_ = multipliers;
+}
+
 Controls ConstraintSet::project(const Controls& from, const Execution& execution) {
   Eigen::VectorXd excess(static_cast<Eigen::Index>(constraints_.size()));
   for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, from) - constraints_[r].bound;

@@ -54,7 +54,7 @@ std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region
   std::vector<Index> labels(regions.size(), 0);
   if (kind == ConstraintKind::single) return labels;
   Partition partition(regions.size());
-  join_neighbours(surface, regions, partition);
+  if (kind == ConstraintKind::per_patch) join_neighbours(surface, regions, partition);
   join_same_event(regions, partition);
   Index count = 0;
   for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) {

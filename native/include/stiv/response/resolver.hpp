@@ -29,6 +29,9 @@ class ConstraintSet {
   void add(std::vector<ControlConstraint> constraints);
   std::size_t size() const { return constraints_.size(); }
 
+  /// Forget the constraints that the last projection did not rest on; they are found again if they are met again.
+  void drop_inactive();
+
   /// The point nearest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
   /// multipliers of the LCP. (mathematics.md, Eq. 6)
   Controls project(const Controls& from, const Execution& execution);

@@ -9,8 +9,9 @@
 namespace stiv {
 
 enum class ConstraintKind {
-  per_patch,  ///< one STIV for each patch
-  single      ///< one for all
+  per_patch,   ///< one STIV for each patch
+  single,      ///< one for all
+  per_contact  ///< one for each event, the finest there is: many constraints, few rounds
 };
 
 /// Label of each region, 0, 1, ...: regions of neighbouring vertices and regions of the same event are one patch.
