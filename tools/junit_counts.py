@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run of tests came to, counted from the JUnit files that pytest and ctest write."""
 
+import ast
 import re
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
@@ -64,7 +65,7 @@ def from_ctest(path: Path, code: int) -> Counts:
 def _reason(skip: ElementTree.Element) -> str:
     """Why a test was skipped; for a whole module pytest writes it into the text, after its place."""
     if skip.get("message") == "collection skipped" and skip.text:
-        return skip.text.split("Skipped: ")[-1].removesuffix('")')
+        return ast.literal_eval(skip.text)[-1].removeprefix("Skipped: ")
     return skip.get("message", "no reason given")
 
 
