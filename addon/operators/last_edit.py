@@ -20,5 +20,6 @@ def describe(result: Any, report: Any) -> str:
             "timings": {name: float(value) for name, value in result.timings.items()},
             "counters": {name: int(value) for name, value in result.counters.items()},
             "shown": bool(report.passed),
+            "message": str(report.message),
         }
     )
