@@ -50,7 +50,7 @@ extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as 
 	build/venv/bin/python tools/build_extension.py build/wheel/*.whl
 
 bench: build/venv/stiv ## Run every benchmark with its default settings
-	set -e; for script in benchmarks/*.py; do echo "== $$script"; build/venv/bin/python $$script; done
+	set -e; for name in $(basename $(notdir $(wildcard benchmarks/*.py))); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
