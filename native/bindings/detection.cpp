@@ -43,8 +43,8 @@ Eigen::VectorXd times_of_impact(EventKind kind, const Quadruples& start, const Q
 /// A detector that refuses to be used by two threads at once.
 class GuardedDetector {
  public:
-  GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, int threads)
-      : detector_(std::move(surface), {broad_phase}), threads_(threads) {}
+  GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, NarrowPhase narrow_phase, int threads)
+      : detector_(std::move(surface), {broad_phase, narrow_phase}), threads_(threads) {}
 
   Events find(const Positions& start, const Positions& end, double separation, double keep) {
     const Use use(busy_);
@@ -97,9 +97,10 @@ void bind_detection(py::module_& module) {
   py::enum_<BroadPhase>(module, "BroadPhase")
       .value("bvh", BroadPhase::bvh)
       .value("brute_force", BroadPhase::brute_force);
+  py::enum_<NarrowPhase>(module, "NarrowPhase").value("conservative", NarrowPhase::conservative);
   module.def("times_of_impact", &times_of_impact, Release());
   py::class_<GuardedDetector>(module, "Detector")
-      .def(py::init<std::shared_ptr<Surface>, BroadPhase, int>())
+      .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>())
       .def("find",
            [](GuardedDetector& detector, const Positions& start, const Positions& end, double separation, double keep) {
              const Events events = [&] {

@@ -39,12 +39,15 @@ class BroadPhase(enum.Enum):
     bvh = 0
     brute_force = 1
 
+class NarrowPhase(enum.Enum):
+    conservative = 0
+
 _EventArrays = tuple[NDArray[np.uint8], _Indices, _Floats, _Floats, _Floats, _Floats]
 
 def times_of_impact(kind: EventKind, start: _Floats, end: _Floats, separation: float, threads: int) -> _Floats: ...
 
 class Detector:
-    def __init__(self, surface: Surface, broad_phase: BroadPhase, threads: int) -> None: ...
+    def __init__(self, surface: Surface, broad_phase: BroadPhase, narrow_phase: NarrowPhase, threads: int) -> None: ...
     def find(self, start: _Floats, end: _Floats, separation: float, keep: float) -> _EventArrays: ...
     def earliest_time(self, start: _Floats, end: _Floats, separation: float, keep: float) -> float: ...
 

@@ -18,7 +18,7 @@ BROAD_PHASES: Mapping[str, _native.BroadPhase] = {
     "bvh": _native.BroadPhase.bvh,
     "brute_force": _native.BroadPhase.brute_force,
 }
-NARROW_PHASES: Mapping[str, None] = {"conservative": None}
+NARROW_PHASES: Mapping[str, _native.NarrowPhase] = {"conservative": _native.NarrowPhase.conservative}
 
 Choice = TypeVar("Choice")
 
@@ -102,9 +102,9 @@ class Detector:
         threads: int = 0,
     ) -> None:
         """Check the arguments; trees are built at the first step."""
-        broad = _choose(BROAD_PHASES, broad_phase, "broad_phase")
-        _choose(NARROW_PHASES, narrow_phase, "narrow_phase")
-        self._broad_phase, self._threads = broad, as_count(threads, "threads")
+        self._broad_phase = _choose(BROAD_PHASES, broad_phase, "broad_phase")
+        self._narrow_phase = _choose(NARROW_PHASES, narrow_phase, "narrow_phase")
+        self._threads = as_count(threads, "threads")
         self._surface = surface if isinstance(surface, Surface) else as_indices(surface, "triangles", (None, 3))
         self._native: _native.Detector | None = None
 
@@ -129,7 +129,7 @@ class Detector:
     def _ready(self, vertex_count: int) -> _native.Detector:
         if self._native is None:
             self._surface = as_surface(self._surface, vertex_count)
-            self._native = _native.Detector(self._surface.native, self._broad_phase, self._threads)
+            self._native = _native.Detector(self._surface.native, self._broad_phase, self._narrow_phase, self._threads)
         return self._native
 
 

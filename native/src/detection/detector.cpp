@@ -45,6 +45,7 @@ class Detector::Implementation {
  public:
   Implementation(std::shared_ptr<const Surface> surface, DetectorOptions options)
       : surface_(std::move(surface)),
+        narrow_phase_(options.narrow_phase),
         source_(options.broad_phase == BroadPhase::bvh ? make_bvh_source(*surface_) : make_brute_force(*surface_)) {}
 
   Events find(const Step& step, Execution& execution) {
@@ -83,7 +84,7 @@ class Detector::Implementation {
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
     source_->update(step, execution);
-    const PairTest test(*surface_, step);
+    const PairTest test(*surface_, step, narrow_phase_);
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -111,6 +112,7 @@ class Detector::Implementation {
   }
 
   std::shared_ptr<const Surface> surface_;
+  NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "detection/plane_filter.hpp"
-#include "stiv/detection/narrow_phase.hpp"
+#include "stiv/error.hpp"
 
 namespace stiv {
 
@@ -28,8 +28,8 @@ std::vector<unsigned char> moved_vertices(const Step& step) {
   return moved;
 }
 
-PairTest::PairTest(const Surface& surface, const Step& step)
-    : surface_(surface), step_(step), moved_(moved_vertices(step)) {}
+PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase)
+    : surface_(surface), step_(step), narrow_phase_(narrow_phase), moved_(moved_vertices(step)) {}
 
 PairTest::Vertices PairTest::vertices(EventKind kind, const Candidate& candidate) const {
   if (kind == EventKind::vertex_face) {
@@ -76,9 +76,17 @@ std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candi
   return candidates.first(count);
 }
 
+std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, double latest) const {
+  switch (narrow_phase_) {
+    case NarrowPhase::conservative:
+      return first_contact(kind, motion, step_.proximity, latest);
+  }
+  throw InputError("there is no such narrow phase");
+}
+
 std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate, double latest) const {
   const Vertices v = vertices(kind, candidate);
-  const std::optional<Contact> contact = first_contact(kind, motion_of(step_, v), step_.proximity, latest);
+  const std::optional<Contact> contact = contact_of(kind, motion_of(step_, v), latest);
   if (!contact) return std::nullopt;
   return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance};
 }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "detection/candidates.hpp"
+#include "stiv/detection/detector.hpp"
+#include "stiv/detection/narrow_phase.hpp"
 
 namespace stiv {
 
@@ -12,7 +14,7 @@ namespace stiv {
 /// those that one fixed plane shows apart, and the narrow phase decides the rest.
 class PairTest {
  public:
-  PairTest(const Surface& surface, const Step& step);
+  PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase);
 
   /// Moves the candidates that need the narrow phase to the front and returns them.
   std::span<Candidate> reduce(EventKind kind, std::span<Candidate> candidates) const;
@@ -25,10 +27,12 @@ class PairTest {
 
   Vertices vertices(EventKind kind, const Candidate& candidate) const;
   bool matters(EventKind kind, const Vertices& v) const;
+  std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, double latest) const;
   std::span<Candidate> that_matter(EventKind kind, std::span<Candidate> candidates) const;
 
   const Surface& surface_;
   const Step& step_;
+  NarrowPhase narrow_phase_;
   std::vector<unsigned char> moved_;
 };
 

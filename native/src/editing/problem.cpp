@@ -43,7 +43,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
       options_(checked(std::move(options), deformation_->control_count())),
       rotation_rows_(deformation_->rotation_rows()),
       metric_(deformation_->metric({options_.smoothness, options_.weights})),
-      detector_(surface_, {options_.broad_phase}),
+      detector_(surface_, {.broad_phase = options_.broad_phase}),
       intersections_(surface_) {
   check_controls(controls, "controls");
   const Positions q = deformation_->surface(controls);

@@ -26,7 +26,8 @@ bool same_bits(const Events& a, const Events& b) {
 
 Events find(const MovingScene& scene, BroadPhase broad_phase, int threads, double separation) {
   Execution execution(threads);
-  return Detector(scene.surface, {broad_phase}).find(scene.start, scene.end, {separation, 0.5}, execution);
+  return Detector(scene.surface, {.broad_phase = broad_phase})
+      .find(scene.start, scene.end, {separation, 0.5}, execution);
 }
 
 /// A triangle with a vertex above it that falls through, and a loose edge beside it.
