@@ -24,6 +24,7 @@ class Surface:
         vertex_body: list[int],
         bodies: list[tuple[str, str]],
         ignored: list[tuple[int, int]],
+        recut_faces: list[list[int]],
     ) -> None: ...
     @property
     def edges(self) -> _Indices: ...

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ struct SurfaceDefinition {
   std::vector<Index> vertex_body;  ///< (N) body of each vertex; empty: all of body 0
   std::vector<Body> bodies;        ///< empty: one deformable body named "surface"
   std::vector<std::pair<Index, Index>> ignored;  ///< pairs of bodies (a body with itself allowed) never tested
+  std::vector<std::vector<Index>> recut_faces;   ///< vertices of polygons whose triangles come in more than one cut
 };
 
 /// All triangles of all taking part, one concatenated mesh: connectivity only, immutable. Positions travel apart.
@@ -55,6 +57,12 @@ class Surface {
     return meets_[static_cast<std::size_t>(a) * definition_.bodies.size() + static_cast<std::size_t>(b)] != 0;
   }
 
+  /// Do all these vertices belong to one recut face? Its cuts cross each other by nature, so they are not tested.
+  template <std::size_t count>
+  bool in_one_recut_face(const std::array<Index, count>& vertices) const {
+    return !recut_.empty() && in_one_recut_face(vertices.data(), count);
+  }
+
   /// Neighbours of a vertex along edges, ascending.
   const Index* neighbours_begin(Index vertex) const {
     return neighbours_.data() + neighbour_start_[static_cast<std::size_t>(vertex)];
@@ -75,8 +83,11 @@ class Surface {
   void check_positions(const Positions& q) const;
 
  private:
+  bool in_one_recut_face(const Index* vertices, std::size_t count) const;
+
   SurfaceDefinition definition_;
   Edges edges_;
+  std::vector<std::vector<Index>> recut_;  // recut faces of each vertex, ascending; empty without any
   std::vector<unsigned char> meets_;
   std::vector<Index> neighbour_start_, neighbours_;
 };

@@ -23,8 +23,9 @@ GroupTable meeting_bodies(const Surface& surface) {
 /// Pairs of two kinds of primitives, or of one with itself, that intersect.
 class Search {
  public:
-  Search(const Primitives& first, const Primitives& second, const GroupTable& bodies, const Positions& q)
-      : first_(first), second_(second), bodies_(bodies), q_(q) {}
+  Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
+         const Positions& q)
+      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q) {}
 
   IndexPairs all(const Execution& execution) const {
     std::vector<IndexPairs> found(static_cast<std::size_t>(Execution::chunk_count(blocks(), blocks_per_chunk)));
@@ -61,9 +62,13 @@ class Search {
       first_.tree().overlaps_of_block(block, second_.tree(), bodies_, candidates);
       for (std::size_t k = 0; k < candidates.count; ++k) {
         const PrimitivePair& pair = candidates.pairs[k];
-        if (triangles_intersect(first_.corners(pair.first), second_.corners(pair.second), q_) && !report(pair)) return;
+        if (meet(first_.corners(pair.first), second_.corners(pair.second)) && !report(pair)) return;
       }
     }
+  }
+
+  bool meet(const std::array<Index, 3>& a, const std::array<Index, 3>& b) const {
+    return !surface_.in_one_recut_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q_);
   }
 
   IndexPairs sorted(const std::vector<IndexPairs>& parts) const {
@@ -76,6 +81,7 @@ class Search {
     return pairs;
   }
 
+  const Surface& surface_;
   const Primitives &first_, &second_;
   const GroupTable& bodies_;
   const Positions& q_;
@@ -85,11 +91,12 @@ class Search {
 
 class IntersectionTest::Implementation {
  public:
-  explicit Implementation(const Surface& surface)
-      : triangles_(surface, triangle_corners(surface)),
-        loose_edges_(surface, loose_edge_corners(surface)),
-        loose_vertices_(surface, loose_vertex_corners(surface)),
-        bodies_(meeting_bodies(surface)) {}
+  explicit Implementation(std::shared_ptr<const Surface> surface)
+      : surface_(std::move(surface)),
+        triangles_(*surface_, triangle_corners(*surface_)),
+        loose_edges_(*surface_, loose_edge_corners(*surface_)),
+        loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
+        bodies_(meeting_bodies(*surface_)) {}
 
   IndexPairs find(const Positions& q, const Execution& execution) { return find(triangles_, q, execution); }
   IndexPairs find_loose_edges(const Positions& q, const Execution& execution) {
@@ -105,7 +112,7 @@ class IntersectionTest::Implementation {
     const std::vector<Bounds> boxes = vertex_bounds(q);
     for (Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_}) first->update(boxes, moved);
     for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
-      if (Search(*first, triangles_, bodies_, q).any(execution)) return false;
+      if (Search(*surface_, *first, triangles_, bodies_, q).any(execution)) return false;
     return true;
   }
 
@@ -114,15 +121,16 @@ class IntersectionTest::Implementation {
     const std::vector<Bounds> boxes = vertex_bounds(q);
     first.update(boxes, {});
     if (&first != &triangles_) triangles_.update(boxes, {});
-    return Search(first, triangles_, bodies_, q).all(execution);
+    return Search(*surface_, first, triangles_, bodies_, q).all(execution);
   }
 
+  std::shared_ptr<const Surface> surface_;
   Primitives triangles_, loose_edges_, loose_vertices_;
   GroupTable bodies_;
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
-    : implementation_(std::make_unique<Implementation>(*surface)) {}
+    : implementation_(std::make_unique<Implementation>(std::move(surface))) {}
 IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;

@@ -46,7 +46,7 @@ bool PairTest::matters(EventKind kind, const Vertices& v) const {
                                                     : (v[0] != v[2]) & (v[0] != v[3]) & (v[1] != v[2]) & (v[1] != v[3]);
   const auto moved = [&](std::size_t k) { return moved_[static_cast<std::size_t>(v[k])]; };
   return apart & ((moved(0) | moved(1) | moved(2) | moved(3)) != 0) &
-         surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3]));
+         surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3])) & !surface_.in_one_recut_face(v);
 }
 
 // Places are written without branches; only the count tells which of them stay.

@@ -52,6 +52,18 @@ TEST_CASE("intersections: the tree finds what brute force finds, for any number 
   }
 }
 
+TEST_CASE("intersections: the cuts of a recut face are tested against all but each other") {
+  SurfaceDefinition definition;
+  definition.vertex_count = 7;
+  definition.triangles.resize(5, 3);
+  definition.triangles << 0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3, 4, 5, 6;
+  Positions q(7, 3);  // a flat square in both cuts, and a triangle that stands in its corner beside one diagonal
+  q << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.6, 0.2, -1, 0.6, 0.2, 1, 0.7, 0.25, 1;
+  CHECK(find(std::make_shared<const Surface>(definition), q, 1).size() > 2);
+  definition.recut_faces = {{0, 1, 2, 3}};
+  CHECK(find(std::make_shared<const Surface>(definition), q, 1) == IndexPairs{{0, 4}, {2, 4}});
+}
+
 TEST_CASE("intersections: trees kept between calls follow the positions") {
   std::mt19937 random(6);
   Assembly scene;

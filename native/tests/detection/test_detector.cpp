@@ -47,6 +47,26 @@ MovingScene falling_vertex() {
 
 }  // namespace
 
+TEST_CASE("detector: both cuts of a recut face meet others, and never each other") {
+  SurfaceDefinition definition;
+  definition.vertex_count = 5;
+  definition.triangles.resize(4, 3);
+  definition.triangles << 0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3;
+  definition.recut_faces = {{0, 1, 2, 3}};
+  MovingScene scene;
+  scene.surface = std::make_shared<const Surface>(definition);
+  scene.start.resize(5, 3);
+  scene.start << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.6, 0.2, 1;
+  scene.end = scene.start;
+  scene.end.row(2) << 0.5, 0.5, 0.3;  // bends the square until its diagonals have passed each other
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+    CHECK(find(scene, broad_phase, 1, 0).empty());
+    MovingScene struck = scene;
+    struck.end.row(4) << 0.6, 0.2, -1;
+    CHECK(find(struck, broad_phase, 1, 0).size() == 2);
+  }
+}
+
 TEST_CASE("detector: a loose vertex that falls through a face is one event") {
   const MovingScene scene = falling_vertex();
   for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
