@@ -16,7 +16,7 @@ struct Counters {
   std::int64_t sub_edits = 0;         ///< passes of the outer loop
   std::int64_t rounds = 0;            ///< detections that were followed by a response
   std::int64_t detections = 0;        ///< traversals of the whole scene
-  std::int64_t candidate_pairs = 0;   ///< pairs whose bounds overlap
+  std::int64_t candidate_pairs = 0;   ///< pairs that may matter and whose bounds overlap
   std::int64_t pairs_tested = 0;      ///< pairs that reached the iterative narrow phase
   std::int64_t events = 0;            ///< interference events found
   std::int64_t acceptance_tries = 0;  ///< states proposed to the acceptance test

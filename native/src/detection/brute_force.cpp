@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <optional>
 
-#include "detection/candidates.hpp"
+#include "detection/relevance.hpp"
 
 namespace stiv {
 
@@ -12,7 +13,7 @@ class BruteForce final : public CandidateSource {
  public:
   explicit BruteForce(const Surface& surface) : surface_(surface) {}
 
-  void update(const Step&, const Execution&) override {}
+  void update(const Step& step, const Execution&) override { relevance_.emplace(surface_, step); }
 
   Index chunk_count(EventKind kind) const override { return Execution::chunk_count(firsts(kind), chunk_size); }
 
@@ -23,7 +24,7 @@ class BruteForce final : public CandidateSource {
       candidates.clear();
       for (Index second = kind == EventKind::vertex_face ? 0 : first + 1; second < seconds(kind); ++second)
         candidates.push_back({first, second});
-      sink(candidates);
+      sink(relevance_->select(kind, candidates));
     }
   }
 
@@ -38,6 +39,7 @@ class BruteForce final : public CandidateSource {
   }
 
   const Surface& surface_;
+  std::optional<Relevance> relevance_;
 };
 
 }  // namespace

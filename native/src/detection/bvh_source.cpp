@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <optional>
 
-#include "detection/candidates.hpp"
+#include "detection/relevance.hpp"
 #include "detection/swept_bounds.hpp"
 
 namespace stiv {
@@ -31,6 +31,7 @@ class BvhSource final : public CandidateSource {
 
   void update(const Step& step, const Execution& execution) override {
     sweep_bounds(surface_, step, execution, swept_);
+    relevance_.emplace(surface_, step);
     if (!vertices_) build();
     vertices_->refit(swept_.vertices, swept_.vertex_moves);
     edges_->refit(swept_.edges, swept_.edge_moves);
@@ -46,7 +47,7 @@ class BvhSource final : public CandidateSource {
     const Index end = std::min(queries(kind).block_count(), (chunk + 1) * blocks_per_chunk);
     PairBuffer found;
     const auto hand_out = [&] {
-      sink({found.pairs.data(), found.count});
+      sink(relevance_->select(kind, {found.pairs.data(), found.count}));
       found.count = 0;
     };
     for (Index block = chunk * blocks_per_chunk; block < end; ++block) {
@@ -74,6 +75,7 @@ class BvhSource final : public CandidateSource {
   const Surface& surface_;
   GroupTable bodies_;
   SweptBounds swept_;
+  std::optional<Relevance> relevance_;
   std::optional<Bvh> vertices_, edges_, faces_;
 };
 

@@ -28,8 +28,8 @@ struct Step {
 std::vector<unsigned char> moved_vertices(const Step& step);
 
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
-/// chunk depend on the step alone. A source may leave out pairs that stay apart by more than the separation, pairs
-/// that share a vertex or do not move and pairs of bodies that do not meet; it need leave out none of them.
+/// chunk do not depend on the number of threads. Candidates are relevant (see Relevance), and each comes once; pairs
+/// whose padded bounds stay apart (see sweep_bounds) may be left out.
 class CandidateSource {
  public:
   /// Takes some of a chunk's candidates; may overwrite them, the source does not look at them again.

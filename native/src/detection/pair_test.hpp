@@ -10,8 +10,8 @@
 
 namespace stiv {
 
-/// What is done with candidates, whichever broad phase they come from: pairs that cannot matter are left out, then
-/// those that one fixed plane shows apart, and the narrow phase decides the rest.
+/// What is done with candidates, whichever broad phase they come from: those that one fixed plane shows apart are left
+/// out, and the narrow phase decides the rest.
 class PairTest {
  public:
   PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase);
@@ -23,17 +23,11 @@ class PairTest {
   std::optional<Event> event(EventKind kind, const Candidate& candidate, double latest) const;
 
  private:
-  using Vertices = std::array<Index, 4>;
-
-  Vertices vertices(EventKind kind, const Candidate& candidate) const;
-  bool matters(EventKind kind, const Vertices& v) const;
   std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, double latest) const;
-  std::span<Candidate> that_matter(EventKind kind, std::span<Candidate> candidates) const;
 
   const Surface& surface_;
   const Step& step_;
   NarrowPhase narrow_phase_;
-  std::vector<unsigned char> moved_;
 };
 
 }  // namespace stiv

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/relevance.hpp"
+
+#include <algorithm>
+
+namespace stiv {
+
+std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, const Candidate& candidate) {
+  if (kind == EventKind::vertex_face) {
+    const auto face = surface.triangles().row(candidate.second);
+    return {candidate.first, face[0], face[1], face[2]};
+  }
+  const auto a = surface.edges().row(std::min(candidate.first, candidate.second));
+  const auto b = surface.edges().row(std::max(candidate.first, candidate.second));
+  return {a[0], a[1], b[0], b[1]};
+}
+
+std::vector<unsigned char> moved_vertices(const Step& step) {
+  std::vector<unsigned char> moved(static_cast<std::size_t>(step.start.rows()));
+  for (Index vertex = 0; vertex < step.start.rows(); ++vertex)
+    moved[static_cast<std::size_t>(vertex)] = (step.start.row(vertex).array() != step.end.row(vertex).array()).any();
+  return moved;
+}
+
+Relevance::Relevance(const Surface& surface, const Step& step) : surface_(surface), moved_(moved_vertices(step)) {}
+
+bool Relevance::relevant(EventKind kind, const std::array<Index, 4>& v) const {
+  const bool apart = kind == EventKind::vertex_face ? (v[0] != v[1]) & (v[0] != v[2]) & (v[0] != v[3])
+                                                    : (v[0] != v[2]) & (v[0] != v[3]) & (v[1] != v[2]) & (v[1] != v[3]);
+  const auto moved = [&](std::size_t k) { return moved_[static_cast<std::size_t>(v[k])]; };
+  return apart & ((moved(0) | moved(1) | moved(2) | moved(3)) != 0) &
+         surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3])) & !surface_.in_one_recut_face(v);
+}
+
+// Places are written without branches; only the count tells which of them stay.
+std::span<Candidate> Relevance::select(EventKind kind, std::span<Candidate> candidates) const {
+  std::size_t count = 0;
+  for (const Candidate candidate : candidates) {
+    candidates[count] = candidate;
+    count += relevant(kind, vertices_of(surface_, kind, candidate));
+  }
+  return candidates.first(count);
+}
+
+}  // namespace stiv
