@@ -52,6 +52,7 @@ void register_exceptions(py::module_& module) {
 PYBIND11_MODULE(_native, module) {
   module.doc() = "Native core of stiv; use the package stiv, which documents it.";
   register_exceptions(module);
+  stiv::bindings::bind_vector_target(module);
   stiv::bindings::bind_surface(module);
   stiv::bindings::bind_deformation(module);
   stiv::bindings::bind_detection(module);

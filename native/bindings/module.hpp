@@ -10,5 +10,6 @@ void bind_deformation(pybind11::module_& module);
 void bind_detection(pybind11::module_& module);
 void bind_acceptance(pybind11::module_& module);
 void bind_editing(pybind11::module_& module);
+void bind_vector_target(pybind11::module_& module);
 
 }  // namespace stiv::bindings

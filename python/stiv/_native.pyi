@@ -15,6 +15,15 @@ class InputError(ValueError): ...
 class StartIntersectsError(InputError):
     pairs: _Indices
 
+class VectorTarget(enum.Enum):
+    baseline = 0
+    avx2 = 1
+    avx512 = 2
+
+def best_vector_target() -> VectorTarget: ...
+def vector_target() -> VectorTarget: ...
+def limit_vector_target(most: VectorTarget) -> None: ...
+
 class Surface:
     def __init__(
         self,

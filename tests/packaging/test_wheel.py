@@ -34,7 +34,7 @@ def test_wheel_holds_the_addon_as_a_package(installed_files: set[str]) -> None:
 
 def test_wheel_holds_the_licenses_of_what_is_linked(installed_files: set[str]) -> None:
     names = {Path(name).name for name in installed_files if "/licenses/" in name}
-    assert names >= {"LICENSE", "Eigen.txt", "OpenSubdiv.txt", "OpenSubdiv-NOTICE.txt", "pybind11.txt"}
+    assert names >= {"LICENSE", "Eigen.txt", "Highway.txt", "OpenSubdiv.txt", "OpenSubdiv-NOTICE.txt", "pybind11.txt"}
 
 
 def test_source_archive_holds_what_a_build_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,19 +26,21 @@ PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_
     : surface_(surface), step_(step), narrow_phase_(narrow_phase) {}
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
-  PlaneFilter filter;
-  std::size_t count = 0;
-  for (std::size_t begin = 0; begin < candidates.size(); begin += PlaneFilter::width) {
-    const std::size_t lanes = std::min(PlaneFilter::width, candidates.size() - begin);
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      filter.set(lane, vertices_of(surface_, kind, candidates[begin + lane]), step_.start, step_.end);
-    const auto apart = filter.apart(kind, step_.proximity.separation);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      candidates[count] = candidates[begin + lane];
-      count += apart[lane] == 0;
+  PairBlock block;
+  PairFlags apart;
+  std::size_t kept = 0;
+  for (std::size_t begin = 0; begin < candidates.size(); begin += block.count) {
+    block.count = 0;
+    const std::span<Candidate> some =
+        candidates.subspan(begin, std::min(PairBlock::capacity, candidates.size() - begin));
+    for (const Candidate& candidate : some) block.add(vertices_of(surface_, kind, candidate));
+    find_apart(kind, block, step_.start, step_.end, step_.proximity.separation, apart);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      candidates[kept] = some[k];
+      kept += apart[k] == 0;
     }
   }
-  return candidates.first(count);
+  return candidates.first(kept);
 }
 
 std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, double latest) const {

@@ -1,85 +1,112 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detection/plane_filter.hpp"
 
-#include <cmath>
-#include <limits>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detection/plane_filter.cpp"
+#include "vector/foreach_target.hpp"
+#include "vector/points-inl.hpp"
 
-namespace stiv {
+HWY_BEFORE_NAMESPACE();
+namespace stiv::HWY_NAMESPACE {
 
-namespace {
-
-// As comparisons that compile to one instruction, which std::min with references does not everywhere.
-double least(double a, double b) { return a < b ? a : b; }
-double most(double a, double b) { return a > b ? a : b; }
-
-struct Point {
-  double x, y, z;
+/// A pair a lane, seen from its first vertex: the others at the start and at the end of the step.
+struct PairStep {
+  Point start[3], end[3];
 };
 
-Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Point cross(const Point& a, const Point& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+HWY_INLINE PairStep load(const PairBlock& pairs, std::size_t first, const double* start, const double* end) {
+  const std::int32_t* const origin = pairs.vertices[0].data() + first;
+  const Point from = gather_points(start, origin), to = gather_points(end, origin);
+  PairStep step;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int32_t* const vertex = pairs.vertices[k + 1].data() + first;
+    step.start[k] = gather_points(start, vertex) - from;
+    step.end[k] = gather_points(end, vertex) - to;
+  }
+  return step;
 }
-double sum(const Point& a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
 
 /// How far the first side lies beyond the second along n, or the second beyond the first: the first vertex projects to
 /// zero. A step is linear, so the lesser of the values at both ends holds in between.
 struct Gaps {
-  double beyond, before;
+  Lanes beyond, before;
 };
 
 template <EventKind kind>
-Gaps gaps(double p1, double p2, double p3) {
-  if constexpr (kind == EventKind::vertex_face)
-    return {-most(most(p1, p2), p3), least(least(p1, p2), p3)};
-  else
-    return {least(0, p1) - most(p2, p3), least(p2, p3) - most(0, p1)};
+HWY_INLINE Gaps gaps(Point normal, const Point* x) {
+  const Lanes p1 = dot(normal, x[0]), p2 = dot(normal, x[1]), p3 = dot(normal, x[2]);
+  if constexpr (kind == EventKind::vertex_face) return {hn::Neg(max3(p1, p2, p3)), min3(p1, p2, p3)};
+  const Lanes zero = hn::Zero(Doubles());
+  return {hn::Sub(hn::Min(zero, p1), hn::Max(p2, p3)), hn::Sub(hn::Min(p2, p3), hn::Max(zero, p1))};
 }
 
-}  // namespace
-
-void PlaneFilter::set(std::size_t lane, const std::array<Index, 4>& vertices, const Positions& start,
-                      const Positions& end) {
-  const double* const from = start.data() + 3 * static_cast<std::ptrdiff_t>(vertices[0]);
-  const double* const to = end.data() + 3 * static_cast<std::ptrdiff_t>(vertices[0]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* const a = start.data() + 3 * static_cast<std::ptrdiff_t>(vertices[k + 1]);
-    const double* const b = end.data() + 3 * static_cast<std::ptrdiff_t>(vertices[k + 1]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      start_[k][axis][lane] = a[axis] - from[axis];
-      end_[k][axis][lane] = b[axis] - to[axis];
-    }
-  }
-}
-
-// The bound of rounding is that of RelativeMotion, with the normal's length bounded by the sum of its components. The
-// comparison is strict and allows for underflow, so that a normal that vanishes separates nothing.
+/// The bound of rounding is that of RelativeMotion, with the normal's length bounded by the sum of its components. The
+/// comparison is strict and allows for underflow, so that a normal that vanishes separates nothing.
 template <EventKind kind>
-std::array<int, PlaneFilter::width> PlaneFilter::apart(double separation) const {
-  constexpr double underflow = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
-  Lanes excess;
-  for (std::size_t lane = 0; lane < width; ++lane) {
-    const auto at = [&](const auto& points, std::size_t k) {
-      return Point{points[k][0][lane], points[k][1][lane], points[k][2][lane]};
-    };
-    const Point a1 = at(start_, 0), a2 = at(start_, 1), a3 = at(start_, 2);
-    const Point b1 = at(end_, 0), b2 = at(end_, 1), b3 = at(end_, 2);
-    const Point normal = kind == EventKind::vertex_face ? cross(a2 - a1, a3 - a1) : cross(a1, a3 - a2);
-    const Gaps first = gaps<kind>(dot(normal, a1), dot(normal, a2), dot(normal, a3));
-    const Gaps last = gaps<kind>(dot(normal, b1), dot(normal, b2), dot(normal, b3));
-    const double gap = most(least(first.beyond, last.beyond), least(first.before, last.before));
-    const double magnitude = most(most(most(sum(a1), sum(a2)), sum(a3)), most(most(sum(b1), sum(b2)), sum(b3)));
-    excess[lane] = gap - ((separation + 0x1p-46 * magnitude) * sum(normal) + underflow);
-  }
-  std::array<int, width> result;
-  for (std::size_t lane = 0; lane < width; ++lane) result[lane] = excess[lane] > 0;
-  return result;
+HWY_INLINE Mask plane_separates(Point normal, const PairStep& step, Lanes clearance) {
+  constexpr double underflow = 0x1p-970;  // the least normal number over 2^-52
+  const Gaps first = gaps<kind>(normal, step.start), last = gaps<kind>(normal, step.end);
+  const Lanes gap = hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
+  return hn::Gt(gap, hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
 }
 
-std::array<int, PlaneFilter::width> PlaneFilter::apart(EventKind kind, double separation) const {
-  return kind == EventKind::vertex_face ? apart<EventKind::vertex_face>(separation)
-                                        : apart<EventKind::edge_edge>(separation);
+/// Normal of the face, or of both edges.
+template <EventKind kind>
+HWY_INLINE Point normal_of(const Point* x) {
+  return kind == EventKind::vertex_face ? cross(x[1] - x[0], x[2] - x[0]) : cross(x[0], x[2] - x[1]);
+}
+
+/// From the middle of the second side to that of the first, times a factor.
+template <EventKind kind>
+HWY_INLINE Point between_middles(const Point* x) {
+  return kind == EventKind::vertex_face ? x[0] + x[1] + x[2] : x[1] + x[2] - x[0];
+}
+
+HWY_INLINE Lanes magnitude_of(const Point* x) { return max3(sum_norm(x[0]), sum_norm(x[1]), sum_norm(x[2])); }
+
+template <EventKind kind>
+HWY_INLINE Mask apart(const PairStep& step, double separation) {
+  const Lanes magnitude = hn::Max(magnitude_of(step.start), magnitude_of(step.end));
+  const Lanes clearance = hn::Add(all(separation), hn::Mul(all(0x1p-46), magnitude));
+  const Mask at_start = plane_separates<kind>(normal_of<kind>(step.start), step, clearance);
+  const Point middles = between_middles<kind>(step.start) + between_middles<kind>(step.end);
+  const Mask between = hn::Or(at_start, plane_separates<kind>(middles, step, clearance));
+  if (hn::AllTrue(Doubles(), between)) return between;
+  return hn::Or(between, plane_separates<kind>(normal_of<kind>(step.end), step, clearance));
+}
+
+template <EventKind kind>
+void find_apart_of_kind(const PairBlock& pairs, const double* start, const double* end, double separation,
+                        unsigned char* result) {
+  const Doubles d;
+  const std::size_t width = hn::Lanes(d);
+  static_assert(PairBlock::capacity % HWY_MAX_BYTES == 0);
+  HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t first = 0; first < pairs.count; first += width) {
+    const Mask mask = apart<kind>(load(pairs, first, start, end), separation);
+    hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
+    for (std::size_t lane = 0; lane < width; ++lane) result[first + lane] = flags[lane] != 0;
+  }
+}
+
+void find_apart(EventKind kind, const PairBlock& pairs, const double* start, const double* end, double separation,
+                unsigned char* result) {
+  if (kind == EventKind::vertex_face)
+    find_apart_of_kind<EventKind::vertex_face>(pairs, start, end, separation, result);
+  else
+    find_apart_of_kind<EventKind::edge_edge>(pairs, start, end, separation, result);
+}
+
+}  // namespace stiv::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stiv {
+
+void find_apart(EventKind kind, const PairBlock& pairs, const Positions& start, const Positions& end, double separation,
+                PairFlags& apart) {
+  STIV_FOR_VECTOR_TARGET(find_apart)(kind, pairs, start.data(), end.data(), separation, apart.data());
 }
 
 }  // namespace stiv
+#endif

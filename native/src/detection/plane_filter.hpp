@@ -8,26 +8,25 @@
 
 namespace stiv {
 
-/// Eight pairs side by side, each seen from its first vertex: a quick answer for the many pairs that the plane of the
-/// face (or of both edges) at the start of the step shows apart for the whole step.
-class PlaneFilter {
- public:
-  static constexpr std::size_t width = 8;
+/// Up to so many pairs, each of four vertices in the order of Event::vertices, as arrays over the pairs.
+struct PairBlock {
+  static constexpr std::size_t capacity = 64;
 
-  /// Sets one of the pairs. Rows of `start` and `end` are positions, (N, 3).
-  void set(std::size_t lane, const std::array<Index, 4>& vertices, const Positions& start, const Positions& end);
+  std::array<std::array<Index, capacity>, 4> vertices{};
+  std::size_t count = 0;
 
-  /// 1 for each pair that keeps more than `separation`, by more than all rounding.
-  std::array<int, width> apart(EventKind kind, double separation) const;
-
- private:
-  using Lanes = std::array<double, width>;
-
-  template <EventKind kind>
-  std::array<int, width> apart(double separation) const;
-
-  // Vertices 1 to 3 (the first is the origin), then x, y, z.
-  std::array<std::array<Lanes, 3>, 3> start_{}, end_{};
+  void add(const std::array<Index, 4>& pair) {
+    for (std::size_t k = 0; k < 4; ++k) vertices[k][count] = pair[k];
+    ++count;
+  }
 };
+
+/// 1 or 0 for each pair of a block.
+using PairFlags = std::array<unsigned char, PairBlock::capacity>;
+
+/// 1 for each pair that a plane shows apart for the whole step, by more than `separation` and all rounding: a quick
+/// answer for most of them. Rows of `start` and `end` are positions, (N, 3).
+void find_apart(EventKind kind, const PairBlock& pairs, const Positions& start, const Positions& end, double separation,
+                PairFlags& apart);
 
 }  // namespace stiv
