@@ -96,6 +96,7 @@ void bind_detection(py::module_& module) {
   py::enum_<EventKind>(module, "EventKind").value("vf", EventKind::vertex_face).value("ee", EventKind::edge_edge);
   py::enum_<BroadPhase>(module, "BroadPhase")
       .value("bvh", BroadPhase::bvh)
+      .value("hash_grid", BroadPhase::hash_grid)
       .value("brute_force", BroadPhase::brute_force);
   py::enum_<NarrowPhase>(module, "NarrowPhase").value("conservative", NarrowPhase::conservative);
   module.def("times_of_impact", &times_of_impact, Release());

@@ -47,7 +47,8 @@ class EventKind(enum.Enum):
 
 class BroadPhase(enum.Enum):
     bvh = 0
-    brute_force = 1
+    hash_grid = 1
+    brute_force = 2
 
 class NarrowPhase(enum.Enum):
     conservative = 0

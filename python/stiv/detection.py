@@ -16,6 +16,7 @@ from stiv.surface import Surface, as_surface
 KINDS: Mapping[str, _native.EventKind] = {"vf": _native.EventKind.vf, "ee": _native.EventKind.ee}
 BROAD_PHASES: Mapping[str, _native.BroadPhase] = {
     "bvh": _native.BroadPhase.bvh,
+    "hash_grid": _native.BroadPhase.hash_grid,
     "brute_force": _native.BroadPhase.brute_force,
 }
 NARROW_PHASES: Mapping[str, _native.NarrowPhase] = {"conservative": _native.NarrowPhase.conservative}
@@ -87,7 +88,7 @@ class Detector:
     """Finds interference along steps of one surface; keeps its trees between calls.
 
     surface       Surface, or triangles (F, 3) over as many vertices as the first step has
-    broad_phase   "bvh": trees; "brute_force": all pairs, the oracle
+    broad_phase   "bvh": trees; "hash_grid": cells of equal size; "brute_force": all pairs, the oracle
     narrow_phase  "conservative": advancement by separating planes, never late
     threads       0: one for each processor; results are the same for any number
 

@@ -47,7 +47,7 @@ class EditOptions:
     smoothness: float = 0.1  #: damping of the response: 0.1 smooth, 0.01 tight
     weights: ArrayLike | None = None  #: (m,) response of each control, 0 pins it; None: all 1
     constraints: str = "per_patch"  #: "per_patch" or "single": one constraint for each patch, or one for all
-    broad_phase: str = "bvh"  #: "bvh", or "brute_force" for comparison
+    broad_phase: str = "bvh"  #: "bvh"; "hash_grid" or "brute_force" for comparison
     max_sub_edits: int = 6  #: passes of rounds and acceptance
     max_rounds: int = 60  #: detections and responses in a sub-edit
     accumulated_rounds: int = 12  #: rounds that keep the constraints of the rounds before

@@ -133,7 +133,10 @@ SHAPE = np.zeros((4, 3))
         (lambda: stiv.find_interference([[0, 1]], SHAPE, SHAPE), "triangles: shape is"),
         (lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE[:3]), "end: shape is"),
         (lambda: stiv.find_interference([[0, 1, 2]], SHAPE + np.inf, SHAPE), "start, row 0: a number is not finite"),
-        (lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE, broad_phase="octree"), "'bvh', 'brute_force'"),
+        (
+            lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE, broad_phase="octree"),
+            "'bvh', 'hash_grid', 'brute_force'",
+        ),
         (lambda: stiv.Detector([[0, 1, 2]], narrow_phase="cubic"), "no 'cubic', only 'conservative'"),
         (lambda: stiv.Detector([[0, 1, 2]], threads=-1), "threads: expected an integer"),
         (lambda: stiv.Detector([[0, 1, 2]]).find(SHAPE, SHAPE, 0, 1), "kept fraction"),

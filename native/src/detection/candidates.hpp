@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stiv/detection/bvh.hpp"
+#include "stiv/detection/detector.hpp"
 #include "stiv/detection/event.hpp"
 #include "stiv/detection/proximity.hpp"
 #include "stiv/execution.hpp"
@@ -43,5 +44,9 @@ class CandidateSource {
 
 std::unique_ptr<CandidateSource> make_brute_force(const Surface& surface);
 std::unique_ptr<CandidateSource> make_bvh_source(const Surface& surface);
+std::unique_ptr<CandidateSource> make_hash_grid(const Surface& surface);
+
+/// The source of a broad phase over a surface, which must outlive it.
+std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surface& surface);
 
 }  // namespace stiv

@@ -41,12 +41,24 @@ bool comes_before(const Event& a, const Event& b) {
 
 }  // namespace
 
+std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surface& surface) {
+  switch (broad_phase) {
+    case BroadPhase::bvh:
+      return make_bvh_source(surface);
+    case BroadPhase::hash_grid:
+      return make_hash_grid(surface);
+    case BroadPhase::brute_force:
+      return make_brute_force(surface);
+  }
+  throw InputError("there is no such broad phase");
+}
+
 class Detector::Implementation {
  public:
   Implementation(std::shared_ptr<const Surface> surface, DetectorOptions options)
       : surface_(std::move(surface)),
         narrow_phase_(options.narrow_phase),
-        source_(options.broad_phase == BroadPhase::bvh ? make_bvh_source(*surface_) : make_brute_force(*surface_)) {}
+        source_(make_source(options.broad_phase, *surface_)) {}
 
   Events find(const Step& step, Execution& execution) {
     std::vector<ChunkResult> results = search(step, execution, [](const PairTest& test, EventKind kind) {

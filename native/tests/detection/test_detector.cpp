@@ -59,7 +59,7 @@ TEST_CASE("detector: both cuts of a recut face meet others, and never each other
   scene.start << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.6, 0.2, 1;
   scene.end = scene.start;
   scene.end.row(2) << 0.5, 0.5, 0.3;  // bends the square until its diagonals have passed each other
-  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::hash_grid, BroadPhase::brute_force}) {
     CHECK(find(scene, broad_phase, 1, 0).empty());
     MovingScene struck = scene;
     struck.end.row(4) << 0.6, 0.2, -1;
@@ -69,7 +69,7 @@ TEST_CASE("detector: both cuts of a recut face meet others, and never each other
 
 TEST_CASE("detector: a loose vertex that falls through a face is one event") {
   const MovingScene scene = falling_vertex();
-  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::hash_grid, BroadPhase::brute_force}) {
     const Events events = find(scene, broad_phase, 1, 0);
     REQUIRE(events.size() == 1);
     CHECK(events[0].kind == EventKind::vertex_face);
@@ -80,13 +80,16 @@ TEST_CASE("detector: a loose vertex that falls through a face is one event") {
   }
 }
 
-TEST_CASE("detector: the trees find what brute force finds, bit by bit, for any number of threads") {
+TEST_CASE("detector: trees and grid find what brute force finds, bit by bit, for any number of threads") {
   for (const unsigned seed : {1U, 2U, 3U})
     for (const double separation : {0.0, 0.01}) {
       const MovingScene scene = stirred_sheets(12, 3, 0.08, seed);
       const Events expected = find(scene, BroadPhase::brute_force, 1, separation);
       REQUIRE(expected.size() > 100);
-      for (const int threads : {1, 2, 3}) CHECK(same_bits(find(scene, BroadPhase::bvh, threads, separation), expected));
+      for (const int threads : {1, 2, 3}) {
+        CHECK(same_bits(find(scene, BroadPhase::bvh, threads, separation), expected));
+        CHECK(same_bits(find(scene, BroadPhase::hash_grid, threads, separation), expected));
+      }
     }
 }
 
@@ -134,6 +137,7 @@ TEST_CASE("detector: common motion gives no event, and events do not change unde
   MovingScene carried = scene;
   carried.end = scene.start.rowwise() + shift.transpose();
   CHECK(find(carried, BroadPhase::bvh, 1, 0.05).empty());
+  CHECK(find(carried, BroadPhase::hash_grid, 1, 0.05).empty());
   CHECK(find(carried, BroadPhase::brute_force, 1, 0.05).empty());
 
   const Events resting = find(scene, BroadPhase::bvh, 1, 0.01);
@@ -160,7 +164,7 @@ TEST_CASE("detector: pairs of which nothing moves, and bodies that do not meet, 
   for (Index k = 0; k < definition.vertex_count; ++k) definition.vertex_body.push_back(scene.surface->body_of(k));
   definition.bodies = {{"a", Mobility::rigid}, {"b", Mobility::rigid}};
   scene.surface = std::make_shared<const Surface>(definition);
-  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::brute_force}) {
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::hash_grid, BroadPhase::brute_force}) {
     const Events events = find(scene, broad_phase, 1, 0.01);
     CHECK(events.size() > 10);
     for (const Event& event : events)
@@ -192,4 +196,5 @@ TEST_CASE("detector: coordinates beyond single precision") {
   scene.start *= 1e60;
   scene.end *= 1e60;
   CHECK(find(scene, BroadPhase::bvh, 1, 0).size() == 1);
+  CHECK(find(scene, BroadPhase::hash_grid, 1, 0).size() == 1);
 }

@@ -12,6 +12,7 @@ namespace stiv {
 
 enum class BroadPhase {
   bvh,         ///< bounding-volume hierarchies, kept and refitted
+  hash_grid,   ///< cells of equal size, found by hashing; made anew at each step
   brute_force  ///< all pairs: the oracle of the others
 };
 
