@@ -10,8 +10,9 @@ namespace {
 
 /// Steps per pair; contacts take 2 to 6; those that touch without crossing take a fixed fraction of the wait at each.
 constexpr int most_steps = 256;
-/// Trials of a longer step in each step.
-constexpr int most_trials = 4;
+/// Trials of a longer step in each step. A plane may have to turn in hundreds of parts of a step in which a triangle
+/// turns by much beside another: each part holds as long as (angle)^2 times the size stays below the gap.
+constexpr int most_trials = 12;
 /// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
 constexpr double tolerance = 1e-3;
 

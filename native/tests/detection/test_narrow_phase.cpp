@@ -151,3 +151,34 @@ TEST_CASE("narrow phase: the normal points from the second to the first side, ag
     }
   CHECK(seen > 100);
 }
+
+// Of an edit in which two sheets slide over each other: reported at 0.1 and 0.2 without a direction, which ended the
+// edit there, because the planes tried turned too far at once and the steps ran out.
+TEST_CASE("narrow phase: a triangle that turns by much just beside a vertex is followed all the way") {
+  const double separation = 0.000143614;
+  PairMotion apart;  // never nearer than 1.96 separations
+  apart.start = {Vector3(-0.21690352261066437, -0.097364254295825958, -0.64985150098800659),
+                 Vector3(-0.19409334659576416, -0.17285816371440887, -0.65644043684005737),
+                 Vector3(-0.21808119118213654, -0.092100881040096283, -0.65052640438079834),
+                 Vector3(-0.41900405287742615, -0.13450151681900024, -0.35686787962913513)};
+  apart.end = {Vector3(-0.22554981708526611, -0.09608728438615799, -0.68416470289230347),
+               Vector3(-0.19391599297523499, -0.15732350945472717, -0.72345006465911865),
+               Vector3(-0.22656919062137604, -0.094815649092197418, -0.68525660037994385),
+               Vector3(-0.24565017223358154, -0.17206443846225739, -0.0026472785975784063)};
+  CHECK_FALSE(first_contact(EventKind::vertex_face, apart, {separation, 0.5}));
+  PairMotion meeting;
+  meeting.start = {Vector3(-0.13622933626174927, -0.30704113841056824, -0.69579845666885376),
+                   Vector3(-0.15452510118484497, -0.30461135506629944, -0.72061413526535034),
+                   Vector3(0.0051484480500221252, -0.41898763179779053, -0.36020433902740479),
+                   Vector3(-0.068986393511295319, -0.25256946682929993, -0.7075003981590271)};
+  meeting.end = {Vector3(-0.12597635388374329, -0.28308513760566711, -0.72242450714111328),
+                 Vector3(-0.14812690019607544, -0.29980728030204773, -0.75939053297042847),
+                 Vector3(-0.064732268452644348, -0.33793842792510986, -0.022614952176809311),
+                 Vector3(-0.10579831898212433, -0.23464904725551605, -0.81079947948455811)};
+  const auto contact = first_contact(EventKind::vertex_face, meeting, {separation, 0.5});
+  REQUIRE(contact);
+  CHECK(contact->time >
+        0.601);  // by 100,000 samples of the distance, it is first below half of that at the start at 0.60204
+  CHECK(contact->time < 0.60204);
+  CHECK(contact->normal.norm() == doctest::Approx(1));
+}
