@@ -113,7 +113,7 @@ class Drag:
             return
         self.note = ""
         self._pending = self.result.status == "budget"
-        self.report = self._edit.write()
+        self._write()
 
     def _confirm(self) -> None:
         if self.state.typed.active:
@@ -131,7 +131,12 @@ class Drag:
             self.result = self._edit.drag(self._matrix(self.transform))
         settled = self._edit.settle()
         self.result = settled if settled.status != "unchanged" else self.result
+        self._write()
+
+    def _write(self) -> None:
         self.report = self._edit.write()
+        if self.report is not None and self.report.result is not None:  # solved again
+            self.result = self.report.result
 
     def _fail(self, error: Exception) -> None:
         self.error = error

@@ -50,6 +50,7 @@ class TransformOperator:
             edit = self._begin(context)
             result = edit.apply(matrix)
             report = edit.write()
+            result = report.result or result
             context.window_manager.stiv_last_edit = describe(result, report)
         except Exception as error:  # nothing may be left half done, whatever went wrong
             return self._refuse(error, edit)

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <exception>
+#include <optional>
 #include <string>
 
 #include "events.hpp"
@@ -155,11 +156,12 @@ class Session {
     return call(cancel, progress, [&](Execution& execution) { return session_.settle(execution); });
   }
 
-  void restore(const DoubleArray& controls) {
+  void restore(const DoubleArray& controls, const std::optional<DoubleArray>& goal) {
     const Controls to = controls_from(controls, "controls");
+    const Controls toward = goal ? controls_from(*goal, "goal") : to;
     const InUse in_use(in_use_);
     const py::gil_scoped_release unlocked;
-    session_.restore(to);
+    session_.restore(to, toward);
   }
 
   Controls controls() {
@@ -240,7 +242,7 @@ void bind_editing(py::module_& module) {
       .def("edit", &Session::edit, py::arg("goal"), cancel, progress)
       .def("drag", &Session::drag, py::arg("goal"), cancel, progress)
       .def("settle", &Session::settle, cancel, progress)
-      .def("restore", &Session::restore, py::arg("controls"))
+      .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)
       .def_property_readonly("separation", &Session::separation);

@@ -191,13 +191,17 @@ class EditSession:
         """Solve again toward the last goal until the energy no longer falls; it never grows."""
         return _result(self._session.settle(cancel, progress), self._topology)
 
-    def restore(self, controls: ArrayLike) -> None:
+    def restore(self, controls: ArrayLike, goal: ArrayLike | None = None) -> None:
         """Take ``controls``, (m, 3), accepted earlier, as the accepted ones (undo, cancel).
+
+        ``goal``, (m, 3), is taken as the last drag's, from which the increment of the next one counts; None: the
+        controls themselves.
 
         Raises:
             StartIntersectsError: their surface intersects itself; nothing is changed.
         """
-        self._session.restore(_as_doubles(controls, "controls"))
+        toward = None if goal is None else _as_doubles(goal, "goal")
+        self._session.restore(_as_doubles(controls, "controls"), toward)
 
 
 def edit(

@@ -45,7 +45,7 @@ class RecordingEdit:
     def write(self) -> Any:
         thing = bpy.data.objects[self.name]
         thing.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
-        return SimpleNamespace(passed=True, message="")
+        return SimpleNamespace(passed=True, message="", result=None)
 
     def restore(self) -> None:
         bpy.data.objects[self.name].matrix_world = self.before

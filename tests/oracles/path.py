@@ -7,7 +7,7 @@ direction that works at both ends proves the whole interval free. Which directio
 answer. Where an interval shorter than RESOLUTION cannot be proven free, a contact is reported.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +42,7 @@ def find_contacts(
     loose_edges: ArrayLike = (),
     vertex_body: ArrayLike | None = None,
     meets: ArrayLike | None = None,
+    recut_faces: Iterable[Iterable[int]] = (),
 ) -> Contacts:
     """Return all pairs of a vertex and a face, or of two edges, that come too near along a linear step.
 
@@ -50,6 +51,7 @@ def find_contacts(
     separation   what is too near, for pairs that start farther away than separation / keep; for others, that fraction
                  `keep` of their distance at the start
     vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
+    recut_faces  vertices of faces that come in several cuts; pairs within one of them are left out
     """
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
     centre = (first.min(axis=0) + first.max(axis=0)) / 2 if len(first) else 0
@@ -62,6 +64,8 @@ def find_contacts(
     vertices, times = [np.empty((0, 4), int)], [np.empty(0)]
     for kind, pairs in _pairs_in_reach(np.asarray(triangles), loose_edges, first, last, separation + guard):
         kept = pairs[allowed[body[pairs[:, 0]], body[pairs[:, 3]]]]
+        for face in recut_faces:
+            kept = kept[~np.isin(kept, list(face)).all(axis=1)]
         time = first_contacts(kind, first[kept], last[kept], separation, keep, guard)
         met = np.isfinite(time)
         kinds += [kind] * int(met.sum())

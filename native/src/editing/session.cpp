@@ -25,18 +25,19 @@ class EditSession::Implementation {
   Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                  Controls controls, EditOptions options)
       : problem_(std::move(surface), std::move(deformation), controls, std::move(options)) {
-    restore(controls);
+    restore(controls, controls);
   }
 
-  void restore(const Controls& controls) {
+  void restore(const Controls& controls, const Controls& goal) {
     const FloatingPointScope floating_point;
     problem_.check_controls(controls, "controls");
+    problem_.check_controls(goal, "goal");
     Execution execution(problem_.options().threads);
     State state{controls, problem_.surface_at(controls, execution)};
     if (!problem_.is_empty()) problem_.check_start(state.surface, execution);
-    goal_ = state;
+    goal_ = {goal, problem_.surface_at(goal, execution)};
     accepted_ = std::move(state);
-    dragging_ = false;
+    dragging_ = goal != controls;
   }
 
   EditResult edit(const Controls& goal, Execution& execution) {
@@ -141,7 +142,7 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution) {
   return implementation_->drag(goal, execution);
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
-void EditSession::restore(const Controls& controls) { implementation_->restore(controls); }
+void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
 
 const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
 const Positions& EditSession::surface() const { return implementation_->accepted().surface; }

@@ -2,10 +2,10 @@
 """The one place that reads a Blender scene and writes controls back."""
 
 from stiv.blender.checking import SceneCheck, check_scene, read_surface
-from stiv.blender.edit import BlenderEdit
+from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.settings import EditSettings
-from stiv.blender.verification import FacePair, WriteReport
+from stiv.blender.verification import FacePair
 
 __all__ = [
     "BlenderEdit",

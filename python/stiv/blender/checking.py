@@ -52,4 +52,4 @@ def check_scene(
 
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
     """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
-    return named_pairs(assembly, assembly.surface, assembly.positions, threads)
+    return named_pairs(assembly, assembly.positions, threads)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -18,31 +18,51 @@ from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
+from stiv.blender.recutting import Cut, with_bent_quads, with_cuts
+from stiv.blender.results import summed
 from stiv.blender.roles import find_movers
+from stiv.blender.sessions import deformation_of, make_session, mobilities, stacked
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.blender.summary import Summary, summarise
+from stiv.blender.trail import Place, Trail, latest
 from stiv.blender.transform_path import increments, transform_at
-from stiv.blender.verification import Verifier, WriteReport
+from stiv.blender.verification import FacePair, Verification, Verifier
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
 MOST_STEPS = 200
+MOST_RECUTS = 4  # times that an edit is solved again because Blender cut bent faces otherwise
+
+
+@dataclass(frozen=True)
+class WriteReport:
+    """What became of the accepted state in Blender.
+
+    Attributes:
+        passed: Blender shows it, or a state on the way to it, free of intersections; False: the one shown before.
+        intersections: what met in the state that could not be shown.
+        message: why not all of the edit is shown; empty if it is.
+        result: of all calls since the last writing, if writing had to solve again; else None.
+    """
+
+    passed: bool
+    intersections: tuple[FacePair, ...] = ()
+    message: str = ""
+    result: stiv.EditResult | None = None
 
 
 class BlenderEdit:
     """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls."""
 
-    def __init__(
-        self, assembly: Assembly, parts: Sequence[Part], session: stiv.EditSession, summary: Summary, verifier: Verifier
-    ) -> None:
+    def __init__(self, assembly: Assembly, parts: Sequence[Part], settings: EditSettings, summary: Summary) -> None:
         """Use `begin`."""
         self.summary = summary
-        self._assembly = assembly
         self._parts = tuple(parts)
-        self._session = session
-        self._verifier = verifier
-        self._start = _stacked([part.controls for part in parts])
+        self._settings = settings
+        self._start = stacked([part.controls for part in parts])
         self._goal = self._start
-        self._shown = self._start
+        self._at_start = assembly
+        self._take(assembly, self._start)
+        self._trail = Trail(self._start, self._start)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -56,11 +76,10 @@ class BlenderEdit:
         parts, groups = make_parts(context, movers, scene.meshes, settings, kind)
         if not any(part.rule.moves for part in parts):
             raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
-        mobility = _mobility(len(scene.meshes), parts)
+        mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
         summary = summarise(assembly, parts, scene.hidden)
-        verifier = Verifier(assembly, settings.threads)
-        return cls(assembly, parts, _session(assembly, parts, settings), summary, verifier)
+        return cls(with_bent_quads(assembly, settings.threads), parts, settings, summary)
 
     @property
     def controls(self) -> Floats:
@@ -83,7 +102,7 @@ class BlenderEdit:
         `cancel` and `progress` as of stiv.EditSession. Raises InputError for a matrix that is not finite.
         """
         self._goal = self._goal_of(_checked(matrix))
-        return self._session.drag(self._goal, **execution)
+        return self._solve(self._goal, **execution)
 
     def apply(self, matrix: ArrayLike, **execution: Any) -> stiv.EditResult:
         """Solve for the same goal given at once: approached in increments of a drag's size, then settled."""
@@ -92,35 +111,93 @@ class BlenderEdit:
         for fraction in self._fractions(target):
             results.append(self.drag(transform_at(target, fraction), **execution))
             if results[-1].status in ("cancelled", "budget"):
-                return _summed(results)
-        return _summed([*results, self.settle(**execution)])
+                return summed(results)
+        return summed([*results, self.settle(**execution)])
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
-        return self._session.settle(**execution)
+        return self._solve(None, **execution)
 
     def write(self) -> WriteReport:
-        """Write the accepted controls, read Blender's evaluation back and test it; on failure put back the last state.
+        """Write the accepted controls, read Blender's evaluation back and test it.
 
-        Raises SceneChangedError when an object is gone or was changed.
+        Faces that bent far are cut otherwise by Blender. Where that makes them meet, both cuts take part from then on,
+        and the way since the last writing is solved again from where both are free. What still fails is taken back to
+        the last state on the way that passes. Raises SceneChangedError when an object is gone or was changed.
         """
-        accepted = self._session.controls
-        self._write(accepted)
-        report = self._verifier.verify(bpy.context, self._session.surface)
-        if report.passed:
-            self._shown = accepted
-            return report
-        self._write(self._shown)
-        self._session.restore(self._shown)
-        return report
+        verification = self._show(self._session.controls)
+        solved_again = False
+        for _ in range(MOST_RECUTS):
+            if verification.passed or not self._solve_again(verification.cuts):
+                break
+            solved_again = True
+            verification = self._show(self._session.controls)
+        result = summed([leg.result for leg in self._trail.legs]) if solved_again else None
+        if not verification.passed:
+            return self._fall_back(verification, result)
+        self._trail = Trail(self._session.controls, self._goal)
+        return WriteReport(True, result=result)
 
     def restore(self) -> None:
         """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError."""
         for part in self._parts:
             part.writer.restore()
         bpy.context.view_layer.update()
-        self._session.restore(self._start)
-        self._goal = self._shown = self._start
+        self._goal = self._start
+        self._go_on_from(self._start)
+
+    def _take(self, assembly: Assembly, controls: Floats) -> None:
+        self._deformation = deformation_of(assembly, self._parts)
+        self._session = make_session(assembly, self._deformation, self._parts, controls, self._settings)
+        self._assembly = assembly
+        self._verifier = Verifier(assembly, self._settings.threads)
+
+    def _go_on_from(self, controls: Floats) -> None:
+        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known."""
+        try:
+            self._session.restore(controls, self._goal)
+        except stiv.StartIntersectsError:
+            self._take(self._at_start, controls)
+            self._session.restore(controls, self._goal)
+        self._trail = Trail(controls, self._goal)
+
+    def _solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
+        result = self._session.settle(**execution) if goal is None else self._session.drag(goal, **execution)
+        self._trail.add(goal, result)
+        return result
+
+    def _show(self, controls: Floats) -> Verification:
+        self._write(controls)
+        return self._verifier.verify(bpy.context, self._deformation.surface(controls))
+
+    def _solve_again(self, cuts: Sequence[Cut]) -> bool:
+        """With more cuts of faces; False if there are none or no state since the last writing is free with them."""
+        if not cuts:
+            return False
+        assembly = with_cuts(self._assembly, cuts)
+
+        def is_free(place: Place) -> bool:
+            q = self._deformation.surface(place.controls)
+            return len(stiv.find_intersections(q, assembly.surface, threads=self._settings.threads)) == 0
+
+        place = latest(self._trail.places(), is_free)
+        if place is None:
+            return False
+        goal = self._trail.goal_at(place)
+        self._take(assembly, place.controls)
+        self._session.restore(place.controls, goal)
+        for leg in self._trail.cut_at(place):
+            self._solve(leg.goal)
+        return True
+
+    def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
+        place = latest(self._trail.places()[:-1], lambda each: self._show(each.controls).passed)
+        controls = self._trail.shown if place is None else place.controls
+        self._write(controls)
+        self._go_on_from(controls)
+        on_the_way = place is not None and place.leg >= 0
+        message = f"stopped on the way: {failure.message}" if on_the_way else failure.message
+        return WriteReport(on_the_way, failure.intersections, message, result)
 
     def _write(self, controls: Floats) -> None:
         for part, rows, start in zip(self._parts, self._split(controls), self._split(self._start), strict=True):
@@ -135,7 +212,7 @@ class BlenderEdit:
 
     def _goal_of(self, matrix: Floats) -> Floats:
         last = self._split(self._goal)
-        return _stacked(
+        return stacked(
             [part.rule.goal(part.controls, old, matrix) for part, old in zip(self._parts, last, strict=True)]
         )
 
@@ -152,57 +229,3 @@ def _checked(matrix: ArrayLike) -> Floats:
     if checked.shape != (4, 4) or not np.isfinite(checked).all():
         raise InputError("transform: must be a matrix of 4 x 4 finite numbers")
     return checked
-
-
-def _stacked(controls: Sequence[Floats]) -> Floats:
-    return np.concatenate([np.empty((0, 3)), *controls])
-
-
-def _mobility(count: int, parts: Sequence[Part]) -> list[str]:
-    mobility = ["fixed"] * count
-    for part in parts:
-        for index in part.surfaces:
-            mobility[index] = "rigid" if part.role == "rigid" else "deformable"
-    return mobility
-
-
-def _session(assembly: Assembly, parts: Sequence[Part], settings: EditSettings) -> stiv.EditSession:
-    moved = [(part.deformation, _vertices(assembly, part)) for part in parts]
-    deformation = stiv.concatenate(moved, assembly.positions)
-    frames, first = [], 0
-    for part in parts:
-        if part.frame is not None:
-            frames.append(stiv.StorageFrame(first, len(part.controls), part.frame))
-        first += len(part.controls)
-    options = stiv.EditOptions(
-        separation=settings.separation,
-        smoothness=settings.smoothness,
-        weights=np.concatenate([part.weights for part in parts]),
-        constraints=settings.constraints,
-        single_precision=bool(frames),
-        storage=frames,
-        time_budget=settings.time_budget,
-        threads=settings.threads,
-    )
-    return stiv.EditSession(assembly.surface, deformation, _stacked([part.controls for part in parts]), options)
-
-
-def _vertices(assembly: Assembly, part: Part) -> Any:
-    return np.concatenate([assembly.vertices(index) for index in part.surfaces])
-
-
-def _summed(results: Sequence[stiv.EditResult]) -> stiv.EditResult:
-    """The last result, with the work of all; a settling that found nothing to do leaves the status before it."""
-    last = results[-1]
-    told = [result for result in results if result.status != "unchanged"]
-    with_events = [result for result in results if len(result.events)]
-    return replace(
-        last,
-        status=told[-1].status if told else last.status,
-        fraction=min(result.fraction for result in results),
-        rounds=sum(result.rounds for result in results),
-        events=with_events[-1].events if with_events else last.events,
-        patches=with_events[-1].patches if with_events else last.patches,
-        timings={name: sum(result.timings[name] for result in results) for name in last.timings},
-        counters={name: sum(result.counters[name] for result in results) for name in last.counters},
-    )

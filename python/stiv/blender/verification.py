@@ -8,11 +8,11 @@ import numpy as np
 
 import stiv
 from stiv.blender.arrays import Floats
-from stiv.blender.assembly import Assembly, Element, shifted_triangles
+from stiv.blender.assembly import Assembly, Element
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.evaluated_scene import Placed, read_placed
-from stiv.blender.mesh_reading import evaluated_mesh, read_triangles
 from stiv.blender.participants import tolerance
+from stiv.blender.recutting import Cut, PresentCut, as_shown, fresh_cuts
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,17 @@ class FacePair:
 
 
 @dataclass(frozen=True)
-class WriteReport:
-    """Did what Blender shows pass? If not, the last state that did was put back, and `message` says why."""
+class Verification:
+    """Did what Blender shows pass? If not, `message` says why, with the pairs that meet.
+
+    `cuts` are the triangles by which Blender's present cut of faces that bent makes them meet: with them in the
+    surface, an edit avoids it.
+    """
 
     passed: bool
     intersections: tuple[FacePair, ...] = ()
     message: str = ""
+    cuts: tuple[Cut, ...] = ()
 
 
 class Verifier:
@@ -41,32 +46,37 @@ class Verifier:
         self._threads = threads
         self._steps = stiv.StepCheck(assembly.surface, threads)
 
-    def verify(self, context: bpy.types.Context, accepted: Floats) -> WriteReport:
+    def verify(self, context: bpy.types.Context, accepted: Floats) -> Verification:
         """Test what Blender evaluates now against the accepted surface, (N, 3), which is free of intersections.
 
         It must be where the accepted surface is, to within single precision; the way there must be free; and it must
-        be free of intersections, in the triangulation of the start and in Blender's present one, which follows the
+        be free of intersections, in the triangles of the assembly and in Blender's present ones, which follow the
         shape. Raises SceneChangedError when other meshes are visible than at the start.
         """
         shown = read_shown(context, self._assembly)
         message = _elsewhere(self._assembly, accepted, shown)
         if message:
-            return WriteReport(False, (), message)
+            return Verification(False, (), message)
         if not self._steps.is_free(accepted, shown):
-            return self._failure(self._assembly.surface, shown)
-        present = _present_surface(context, self._assembly)
-        if present is not self._assembly.surface and not self._is_free(present, shown):
-            return self._failure(present, shown)
-        return WriteReport(True)
+            return self._failure(named_pairs(self._assembly, shown, self._threads))
+        cuts = fresh_cuts(context, self._assembly)
+        return self._verify_cuts(cuts, shown) if cuts else Verification(True)
 
-    def _is_free(self, surface: stiv.Surface, shown: Floats) -> bool:
-        return len(stiv.find_intersections(shown, surface, threads=self._threads)) == 0
-
-    def _failure(self, surface: stiv.Surface, shown: Floats) -> WriteReport:
-        pairs = named_pairs(self._assembly, surface, shown, self._threads)
+    def _verify_cuts(self, cuts: tuple[PresentCut, ...], shown: Floats) -> Verification:
+        pairs = named_pairs(as_shown(self._assembly, cuts), shown, self._threads)
         if not pairs:
-            return WriteReport(False, (), "what Blender shows comes too near; use a larger separation")
-        return WriteReport(False, pairs, _told(pairs))
+            return Verification(True)
+        meeting = {(each.object, each.number) for pair in pairs for each in (pair.first, pair.second)}
+        return self._failure(pairs, tuple(self._that_meet(cut.fresh, meeting) for cut in cuts))
+
+    def _that_meet(self, cut: Cut, meeting: set[tuple[str, int]]) -> Cut:
+        name = self._assembly.meshes[cut.mesh].owner.name
+        return cut.limited_to(np.array([(name, int(face)) in meeting for face in cut.faces]))
+
+    def _failure(self, pairs: tuple[FacePair, ...], cuts: tuple[Cut, ...] = ()) -> Verification:
+        if not pairs:
+            return Verification(False, (), "what Blender shows comes too near; use a larger separation")
+        return Verification(False, pairs, _told(pairs), cuts)
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
@@ -76,6 +86,17 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
     if [_shape(each) for each in placed] != [(len(mesh.local), mesh.owner.session_uid) for mesh in assembly.meshes]:
         raise SceneChangedError("objects were shown, hidden or changed in size during the edit")
     return np.concatenate([np.empty((0, 3)), *(each.world() for each in placed)])
+
+
+def named_pairs(assembly: Assembly, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
+    """All pairs that meet at positions `q`, (N, 3), loose edges and vertices included."""
+    faces = stiv.find_intersections(q, assembly.surface, threads=threads)
+    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
+    return (
+        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
+        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
+        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
+    )
 
 
 def _shape(placed: Placed) -> tuple[int, int]:
@@ -91,20 +112,6 @@ def _elsewhere(assembly: Assembly, accepted: Floats, shown: Floats) -> str:
     return ""
 
 
-def named_pairs(assembly: Assembly, surface: stiv.Surface, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
-    """All pairs that meet at positions `q`, (N, 3), loose edges and vertices included.
-
-    surface: the assembly's, or one that differs from it in the way faces are cut into triangles.
-    """
-    faces = stiv.find_intersections(q, surface, threads=threads)
-    edges, vertices = stiv.find_loose_intersections(q, surface, threads=threads)
-    return (
-        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
-        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
-        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
-    )
-
-
 def _told(pairs: tuple[FacePair, ...]) -> str:
     first, second = pairs[0].first, pairs[0].second
     return (
@@ -112,29 +119,3 @@ def _told(pairs: tuple[FacePair, ...]) -> str:
         f'object "{first.object}", {first.kind} {first.number} and '
         f'object "{second.object}", {second.kind} {second.number}'
     )
-
-
-def _present_surface(context: bpy.types.Context, assembly: Assembly) -> stiv.Surface:
-    """The surface with Blender's present triangles; the same one where nothing has changed.
-
-    Blender cuts concave quads and polygons as their shape wants it, so moving vertices can change the cuts. Only
-    deformable bodies change their shape.
-    """
-    surface = assembly.surface
-    mobility = [surface.bodies[surface.vertex_body[start]].mobility if start < surface.vertex_count else "fixed"
-                for start in assembly.starts[:-1]]  # fmt: skip
-    graph = context.evaluated_depsgraph_get()
-    triangles, changed = [], False
-    for mesh, kind in zip(assembly.meshes, mobility, strict=True):
-        triangles.append(mesh.triangles)
-        if kind == "deformable":
-            with evaluated_mesh(mesh.owner.find().evaluated_get(graph)) as evaluated:
-                present, _ = read_triangles(evaluated)
-            if not np.array_equal(present, mesh.triangles):
-                changed, triangles[-1] = True, present
-    if not changed:
-        return surface
-    return stiv.Surface(
-        shifted_triangles(triangles, assembly.starts), surface.vertex_count, surface.loose_edges,
-        surface.vertex_body, surface.bodies, [(int(a), int(b)) for a, b in surface.ignored],
-    )  # fmt: skip

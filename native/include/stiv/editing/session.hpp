@@ -60,8 +60,10 @@ class EditSession {
   /// Solve again from the accepted state toward the last goal until E no longer falls: never a larger E.
   EditResult settle(Execution& execution);
 
-  /// Take a state that was accepted before (undo, Esc) as the accepted one. @throws StartIntersectsError
-  void restore(const Controls& controls);
+  /// Take a state that was accepted before (undo, Esc) as the accepted one, and `goal` as the goal of the last drag,
+  /// from which the next increment counts. @throws StartIntersectsError
+  void restore(const Controls& controls, const Controls& goal);
+  void restore(const Controls& controls) { restore(controls, controls); }
 
   const Controls& controls() const;  ///< accepted, (m, 3)
   const Positions& surface() const;  ///< f(accepted), (N, 3)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The session that solves for the parts of an assembly."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import stiv
+from stiv.blender.arrays import Floats
+from stiv.blender.assembly import Assembly
+from stiv.blender.parts import Part
+from stiv.blender.settings import EditSettings
+
+
+def mobilities(count: int, parts: Sequence[Part]) -> list[str]:
+    """Of each of `count` visible meshes, as the parts let them move."""
+    mobility = ["fixed"] * count
+    for part in parts:
+        for index in part.surfaces:
+            mobility[index] = "rigid" if part.role == "rigid" else "deformable"
+    return mobility
+
+
+def make_session(
+    assembly: Assembly,
+    deformation: stiv.Deformation,
+    parts: Sequence[Part],
+    controls: ArrayLike,
+    settings: EditSettings,
+) -> stiv.EditSession:
+    """A session over all parts side by side, from their controls one after the other, (m, 3).
+
+    deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
+    """
+    frames, first = [], 0
+    for part in parts:
+        if part.frame is not None:
+            frames.append(stiv.StorageFrame(first, len(part.controls), part.frame))
+        first += len(part.controls)
+    options = stiv.EditOptions(
+        separation=settings.separation,
+        smoothness=settings.smoothness,
+        weights=np.concatenate([part.weights for part in parts]),
+        constraints=settings.constraints,
+        single_precision=bool(frames),
+        storage=frames,
+        time_budget=settings.time_budget,
+        threads=settings.threads,
+    )
+    return stiv.EditSession(assembly.surface, deformation, controls, options)
+
+
+def deformation_of(assembly: Assembly, parts: Sequence[Part]) -> stiv.Deformation:
+    """All parts side by side; what none of them moves stays where the assembly has it."""
+    return stiv.concatenate([(part.deformation, _vertices(assembly, part)) for part in parts], assembly.positions)
+
+
+def stacked(controls: Sequence[Floats]) -> Floats:
+    """Controls of several parts one after the other."""
+    return np.concatenate([np.empty((0, 3)), *controls])
+
+
+def _vertices(assembly: Assembly, part: Part) -> Any:
+    return np.concatenate([assembly.vertices(index) for index in part.surfaces])
