@@ -9,6 +9,8 @@ NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -ty
 PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready
+BENCHMARKS := $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/*.py)) \
+	$(patsubst benchmarks/%/__main__.py,%,$(wildcard benchmarks/*/__main__.py))
 BLENDER_VENVS := $(BLENDERS:%=build/venv-blender-%/ready)
 
 ifneq ($(shell command -v ccache),)
@@ -49,8 +51,8 @@ lint: build/venv/lint ## Check format, style and types
 extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as an extension
 	build/venv/bin/python tools/build_extension.py build/wheel/*.whl
 
-bench: build/venv/stiv ## Run every benchmark with its default settings
-	set -e; for name in $(basename $(notdir $(wildcard benchmarks/*.py))); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
+bench: build/venv/bench ## Run every benchmark with its default settings, beside the peers from PyPI
+	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
@@ -70,6 +72,10 @@ build/venv/ready: tools/requirements/build.txt tools/requirements/test.txt | bui
 
 build/venv/lint: tools/requirements/lint.txt build/venv/ready
 	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/lint.txt
+	touch $@
+
+build/venv/bench: tools/requirements/bench.txt build/venv/stiv
+	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/bench.txt
 	touch $@
 
 $(OPENSUBDIV): tools/opensubdiv_source.sh | build/debian

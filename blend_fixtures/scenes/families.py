@@ -14,7 +14,7 @@ import stiv
 from .cages import bent_sheet
 from .primitives import box, grid, icosphere, triangulated
 from .shape import Shape, joined
-from .sweeps import tube
+from .sweeps import trefoil, tube
 from .walls import wavy_wall
 
 Array = NDArray[np.float64]
@@ -182,24 +182,6 @@ def rigid(depth: float, size: float = 1.0) -> Edit:
     return _against_obstacle(f"rigid {depth:g}", body, "rigid", wall, stiv.rigid(body.vertices), start, goal)
 
 
-def _trefoil(rings: int, sides: int) -> Shape:
-    """A closed tube along a trefoil knot; its frames return to themselves after one round."""
-    t = 2 * np.pi * np.arange(rings) / rings
-    path = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], axis=1)
-    tangent = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
-    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    across = np.cross(tangent, [0.0, 0.0, 1.0])  # nowhere along the axis on this knot
-    across /= np.linalg.norm(across, axis=1)[:, None]
-    other = np.cross(tangent, across)
-    angle = 2 * np.pi * np.arange(sides) / sides
-    turned = np.cos(angle)[None, :, None] * across[:, None] + np.sin(angle)[None, :, None] * other[:, None]
-    faces = []
-    for i, j in np.ndindex(rings, sides):
-        ahead, beside = (i + 1) % rings, (j + 1) % sides
-        faces.append((i * sides + j, i * sides + beside, ahead * sides + beside, ahead * sides + j))
-    return Shape((path[:, None] + 0.55 * turned).reshape(-1, 3), tuple(faces))
-
-
 def _laplacian_map(shape: Shape, handles: NDArray[np.int64]) -> tuple[Array, Array]:
     """Weights (n, m) of soft handles and offset (n, 3) of Laplacian editing, by a dense solve. [App. B, Eq. 4]"""
     count = len(shape.vertices)
@@ -217,7 +199,7 @@ def _laplacian_map(shape: Shape, handles: NDArray[np.int64]) -> tuple[Array, Arr
 
 def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
     """A knotted tube under Laplacian editing: its foot is held, its top lifted by `lift`."""
-    shape = _trefoil(rings, sides)
+    shape = trefoil(rings, sides)
     y = shape.vertices[:, 1]
     foot, top = np.flatnonzero(y < np.quantile(y, 0.12)), np.flatnonzero(y > np.quantile(y, 0.9))
     handles = np.concatenate([foot, top])

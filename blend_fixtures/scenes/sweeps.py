@@ -57,3 +57,21 @@ def revolution(profile: NDArray[np.float64], sides: int) -> Shape:
         [radius * np.cos(angles), radius * np.sin(angles), np.broadcast_to(height, (len(radius), sides))], 2
     )
     return capped_rings(rings, np.array([0, 0, profile[0, 1]]), np.array([0, 0, profile[-1, 1]]))
+
+
+def trefoil(rings: int, sides: int) -> Shape:
+    """A closed tube of quads along a trefoil knot; its frames return to themselves after one round."""
+    t = 2 * np.pi * np.arange(rings) / rings
+    path = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], axis=1)
+    tangent = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    across = np.cross(tangent, [0.0, 0.0, 1.0])  # nowhere along the axis on this knot
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    other = np.cross(tangent, across)
+    angle = 2 * np.pi * np.arange(sides) / sides
+    turned = np.cos(angle)[None, :, None] * across[:, None] + np.sin(angle)[None, :, None] * other[:, None]
+    faces = []
+    for i, j in np.ndindex(rings, sides):
+        ahead, beside = (i + 1) % rings, (j + 1) % sides
+        faces.append((i * sides + j, i * sides + beside, ahead * sides + beside, ahead * sides + j))
+    return Shape((path[:, None] + 0.55 * turned).reshape(-1, 3), tuple(faces))

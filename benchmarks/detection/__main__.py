@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Detection of one step, our detector beside ipctk, and how it grows.
+
+Milliseconds, the least of the repeats, all measured in turn: processor time for one thread, the clock's for more.
+
+    build      a new detector and its first find: every event with its own time
+    first      a full detection by a detector that has its trees: every event with its own time
+    again      a further find from the same start, to a nearer end: the next round of one edit
+    broad      ipctk's LBVH: candidates only
+    earliest   that, and the quicker of ipctk's narrow phases: the earliest time only
+
+`python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--models FOLDER] [--json FILE]`. ipctk comes with
+tools/requirements/bench.txt; without it its columns stay empty.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+
+from blend_fixtures.scenes.detection_steps import STEPS, Step
+
+from . import growth, models, table
+from .ipc_toolkit import Peer, load
+from .measurement import measure
+
+GROWTH = "growth"
+
+
+def chosen(scenes: list[str], folder: Path | None) -> Iterator[Step]:
+    """Build one step after another."""
+    for name in scenes:
+        if name != GROWTH:
+            yield STEPS[name]()
+    if folder:
+        yield from models.steps(folder)
+
+
+def parse() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    names = [*STEPS, GROWTH]
+    parser.add_argument("--scenes", nargs="*", choices=names, default=names, help="default: all")
+    parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], help="default: 1 2")
+    parser.add_argument("--repeats", type=int, default=7, help="default: 7")
+    parser.add_argument("--models", type=Path, help="folder of .obj files to measure too")
+    parser.add_argument("--count", action="store_true", help="count hits with Tight-Inclusion too, pair by pair: slow")
+    parser.add_argument("--json", type=Path, help="file to write the figures to")
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Print the tables, and write them as JSON if asked."""
+    arguments = parse()
+    ipctk = load()
+    rows = []
+    print(table.HEADER)
+    for step in chosen(arguments.scenes, arguments.models):
+        for threads in arguments.threads:
+            figures = measure(step, threads, arguments.repeats, ipctk)
+            rows.append(asdict(figures))
+            print(table.line(figures), flush=True)
+        if arguments.count and ipctk:
+            peer = Peer(ipctk, step, 1)
+            peer.find_candidates()
+            rows[-1]["tight_inclusion_hits"] = hits = peer.count_hits("tight inclusion")
+            print(f"{'':18} Tight-Inclusion: {hits} hits")
+    sizes = growth.all_sizes(1, arguments.repeats) if GROWTH in arguments.scenes else []
+    for size in sizes:
+        print(
+            f"growth: {size.triangles:9,} triangles, {size.hits:7,} hits, {size.first:8.1f} ms,"
+            f" {size.megabytes:6.0f} MB ({size.before:.0f} MB before)"
+        )
+    if sizes:
+        print(f"growth: time as triangles to the power of {growth.exponent(sizes):.2f}")
+    if arguments.json:
+        content = {"steps": rows, "growth": [asdict(size) for size in sizes]}
+        arguments.json.write_text(json.dumps(content, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

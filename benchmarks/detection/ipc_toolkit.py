@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow phases."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+import numpy as np
+
+from blend_fixtures.scenes.detection_steps import Step
+
+NARROW_PHASES = ("additive", "tight inclusion")
+
+
+class Peer:
+    """One step prepared for ipctk: its mesh and column-major positions, which are not part of what is timed."""
+
+    def __init__(self, ipctk: ModuleType, step: Step, threads: int) -> None:
+        ipctk.set_num_threads(threads)
+        ipctk.set_logger_level(ipctk.off)
+        self._ipctk = ipctk
+        self._start, self._end = np.asfortranarray(step.start), np.asfortranarray(step.end)
+        self._mesh = ipctk.CollisionMesh(self._start, ipctk.edges(step.triangles), step.triangles)
+        self._narrow = dict(zip(NARROW_PHASES, (ipctk.AdditiveCCD(), ipctk.TightInclusionCCD()), strict=True))
+        self._candidates = ipctk.Candidates()
+
+    def find_candidates(self) -> None:
+        """Broad phase: all pairs of vertices and faces, and of edges, whose swept boxes overlap."""
+        self._candidates = self._ipctk.Candidates()
+        self._candidates.build(self._mesh, self._start, self._end, 0, self._ipctk.LBVH())
+
+    def earliest_time(self, narrow_phase: str) -> float:
+        """Narrow phase over the candidates found: the earliest time only, later pairs being cut short."""
+        time: float = self._candidates.compute_collision_free_stepsize(
+            self._mesh, self._start, self._end, 0, self._narrow[narrow_phase]
+        )
+        return time
+
+    @property
+    def candidate_count(self) -> int:
+        """Number of pairs that the broad phase found."""
+        return len(self._candidates.fv_candidates) + len(self._candidates.ee_candidates)
+
+    def count_hits(self, narrow_phase: str) -> int:
+        """Number of candidates that meet within the step, each asked on its own (slow)."""
+        mesh, ccd = self._mesh, self._narrow[narrow_phase]
+        hits = 0
+        for candidates in (self._candidates.fv_candidates, self._candidates.ee_candidates):
+            for pair in candidates:
+                ends = [pair.dof(positions, mesh.edges, mesh.faces) for positions in (self._start, self._end)]
+                hits += pair.ccd(*ends, 0.0, 1.0, ccd)[0]
+        return hits
+
+
+def load() -> ModuleType | None:
+    """ipctk, or None after saying how to get it."""
+    try:
+        import ipctk
+    except ImportError:
+        print("ipctk is not installed, its columns stay empty: pip install -r tools/requirements/bench.txt")
+        return None
+    module: ModuleType = ipctk
+    return module
