@@ -25,6 +25,22 @@ def read(path: Path) -> tuple[list[list[list[Fraction]]], list[bool]]:
     return [points[k : k + 8] for k in range(0, len(points), 8)], [bool(line[6]) for line in lines[::8]]
 
 
+ACCEPTED_FALSE = 0.031
+"""Of all queries: those of Tight-Inclusion in C++ on the whole published set (Wang et al. 2021, table 1)."""
+
+
+def test_few_pairs_that_only_come_near_are_reported() -> None:
+    count = false = 0
+    for path in FILES:
+        queries, answers = read(path)
+        points = np.array(queries, dtype=float)
+        times = stiv.time_of_impact(KINDS[path.parent.name], points[:, :4], points[:, 4:])
+        count += len(answers)
+        false += int(np.sum(np.isfinite(times) & ~np.array(answers)))
+    print(f"{false} of {count} queries are reported and do not meet")
+    assert false <= ACCEPTED_FALSE * count
+
+
 @pytest.mark.parametrize("path", FILES, ids=lambda path: "-".join(path.parts[-3:]))
 def test_no_query_is_missed_and_none_is_late(path: Path) -> None:
     kind = KINDS[path.parent.name]

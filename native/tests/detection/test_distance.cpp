@@ -46,16 +46,19 @@ TEST_CASE("distance: equals another evaluation in extended precision, degenerate
 
 TEST_CASE("distance: primitives without extent are points") {
   const Vector3 a(1, 2, 3), b(4, 6, 3);
-  CHECK(point_triangle({a, b, b, b}).distance == doctest::Approx(5));
-  CHECK(segment_segment({a, a, b, b}).distance == doctest::Approx(5));
-  CHECK(point_triangle({a, a, a, a}).distance == 0);
+  CHECK(point_triangle<double>({a, b, b, b}).distance == doctest::Approx(5));
+  CHECK(segment_segment<double>({a, a, b, b}).distance == doctest::Approx(5));
+  CHECK(point_triangle<double>({a, a, a, a}).distance == 0);
 }
 
 TEST_CASE("distance: parallel segments") {
-  const Witness apart = segment_segment({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(3, 4, 0), Vector3(5, 4, 0)});
+  const Witness apart =
+      segment_segment<double>({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(3, 4, 0), Vector3(5, 4, 0)});
   CHECK(apart.distance == doctest::Approx(std::sqrt(20.0)));
-  const Witness beside = segment_segment({Vector3(0, 0, 0), Vector3(4, 0, 0), Vector3(1, 2, 0), Vector3(3, 2, 0)});
+  const Witness beside =
+      segment_segment<double>({Vector3(0, 0, 0), Vector3(4, 0, 0), Vector3(1, 2, 0), Vector3(3, 2, 0)});
   CHECK(beside.distance == doctest::Approx(2));
-  const Witness along = segment_segment({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0), Vector3(3, 0, 0)});
+  const Witness along =
+      segment_segment<double>({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0), Vector3(3, 0, 0)});
   CHECK(along.distance == doctest::Approx(1));
 }

@@ -8,21 +8,30 @@
 namespace stiv {
 
 /// Nearest points of two primitives: signed weights as in Event, and the separation vector sum_k w_k x_k.
-struct Witness {
-  std::array<double, 4> weights{};
-  Vector3 separation = Vector3::Zero();
-  double distance = 0;
+template <class Scalar>
+struct WitnessOf {
+  std::array<Scalar, 4> weights{};
+  Eigen::Matrix<Scalar, 3, 1> separation = Eigen::Matrix<Scalar, 3, 1>::Zero();
+  Scalar distance = 0;
 };
+using Witness = WitnessOf<double>;
+
+/// Points in space in numbers of some kind: double, or what the narrow phase turns to where doubles cannot tell.
+template <class Scalar>
+using Quadruple = std::array<Eigen::Matrix<Scalar, 3, 1>, 4>;
 
 /// Nearest points of point x0 and triangle (x1, x2, x3), clamped; degenerate triangles are segments or points.
 /// Source: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
-Witness point_triangle(const std::array<Vector3, 4>& x);
+template <class Scalar>
+WitnessOf<Scalar> point_triangle(const Quadruple<Scalar>& x);
 
 /// Nearest points of segments (x0, x1) and (x2, x3), clamped; parallel and zero-length segments included.
-Witness segment_segment(const std::array<Vector3, 4>& x);
+template <class Scalar>
+WitnessOf<Scalar> segment_segment(const Quadruple<Scalar>& x);
 
-inline Witness witness(EventKind kind, const std::array<Vector3, 4>& x) {
-  return kind == EventKind::vertex_face ? point_triangle(x) : segment_segment(x);
+template <class Scalar>
+WitnessOf<Scalar> witness(EventKind kind, const Quadruple<Scalar>& x) {
+  return kind == EventKind::vertex_face ? point_triangle<Scalar>(x) : segment_segment<Scalar>(x);
 }
 
 }  // namespace stiv
