@@ -46,9 +46,9 @@ class TransformOperator:
         """Apply the values of the properties."""
         edit = None
         try:
-            matrix = self.given().matrix(self.frame(context))
+            transform, frame = self.given(), self.frame(context)
             edit = self._begin(context)
-            result = edit.apply(matrix)
+            result = edit.apply(transform.matrix(frame), path=lambda fraction: transform.part(fraction).matrix(frame))
             report = edit.write()
             result = report.result or result
             context.window_manager.stiv_last_edit = describe(result, report)

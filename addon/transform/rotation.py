@@ -27,6 +27,10 @@ class Rotation:
         linear = np.eye(3) + math.sin(self.angle) * cross + (1.0 - math.cos(self.angle)) * (cross @ cross)
         return about(frame.pivot, linear)
 
+    def part(self, fraction: float) -> Rotation:
+        """A fraction of the way to it, 0 to 1."""
+        return Rotation(fraction * self.angle, self.axis)
+
     def text(self) -> str:
         """For the header."""
         return f"Rotate {math.degrees(self.angle):.4g}°"

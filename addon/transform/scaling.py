@@ -28,6 +28,10 @@ class Scaling:
         """(4, 4) world matrix about the frame's pivot."""
         return about(frame.pivot, frame.axes @ np.diag(self.factors) @ frame.axes.T)
 
+    def part(self, fraction: float) -> Scaling:
+        """A fraction of the way to it, 0 to 1."""
+        return Scaling(1.0 + fraction * (self.factors - 1.0))
+
     def text(self) -> str:
         """For the header."""
         x, y, z = self.factors

@@ -31,6 +31,10 @@ class Translation:
         matrix[:3, 3] = self.vector
         return matrix
 
+    def part(self, fraction: float) -> Translation:
+        """A fraction of the way to it, 0 to 1."""
+        return Translation(fraction * self.vector)
+
     def text(self) -> str:
         """For the header."""
         x, y, z = self.vector

@@ -35,8 +35,10 @@ class RecordingEdit:
         RecordingEdit.begun = edit
         return edit
 
-    def apply(self, matrix: Any) -> Any:
+    def apply(self, matrix: Any, path: Any) -> Any:
         self.matrix = np.array(matrix)
+        assert path(1.0) == pytest.approx(self.matrix)
+        assert path(0.0) == pytest.approx(np.eye(4))
         if self.failing is not None:
             raise self.failing
         numbers = {"rounds": 3, "patches": 1, "energy": 0.5, "timings": {"total": 0.25}, "counters": {"rounds": 3}}

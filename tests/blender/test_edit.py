@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 import pytest
 from building import (
+    CUBE,
+    CUBE_FACES,
     add,
     add_cube,
     add_grid,
@@ -353,3 +355,17 @@ def test_with_a_basis_key_alone_the_cage_is_still_seen() -> None:
     assert evaluated(cube) == pytest.approx(moved(shift(z=1), start), abs=1e-6)
     edit.restore()
     assert snapshot() == before
+
+
+@pytest.mark.parametrize("angle", [1.5 * np.pi, 2 * np.pi])
+def test_more_than_half_a_turn_goes_the_way_it_was_given(angle: float) -> None:
+    """A bar that points along x, and a wall in the way at half a turn: the short way back would not meet it."""
+    bar = add("Bar", mesh("Bar", np.array(CUBE) * (1, 0.1, 0.1) + (1.5, 0, 0), CUBE_FACES))
+    add_cube("Wall", (-1.5, 0, 0), 0.5)
+    select(bar)
+    short = begin("rotate").apply(turn(angle, "Z"))
+    assert short.rounds == 0
+    edit = begin("rotate")
+    assert edit.apply(turn(angle, "Z"), path=lambda fraction: turn(fraction * angle, "Z")).rounds > 0
+    assert edit.write().passed
+    assert check_scene(bpy.context).pairs == ()

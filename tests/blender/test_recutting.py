@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A quad that bends until Blender cuts it along its other diagonal, with a post standing where that would go through."""
+"""A quad that bends until Blender cuts it along its other diagonal, with a post where that would go through."""
 
 from typing import Any
 

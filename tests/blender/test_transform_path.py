@@ -35,12 +35,22 @@ def test_the_end_is_the_matrix_itself() -> None:
     assert transform_at(matrix, 1.0) is matrix
 
 
-def test_no_increment_is_longer_than_asked() -> None:
+@pytest.mark.parametrize("angle", [2.5, 2 * np.pi])
+def test_no_increment_is_longer_than_asked(angle: float) -> None:
     points = np.random.default_rng(1).normal(size=(20, 3))
-    matrix = turn(2.5, "X", (4, 0, 0))
-    count = increments(matrix, points, 0.1, 1000)
-    path = [moved(transform_at(matrix, k / count), points) for k in range(count + 1)]
-    steps = [np.abs(b - a).max() for a, b in pairwise(path)]
-    assert max(steps) < 0.2
-    assert increments(shift(), points, 0.1, 1000) == 1
-    assert increments(shift(1e9), points, 0.1, 50) == 50
+
+    def arc(fraction: float) -> np.ndarray:
+        return turn(angle * fraction, "X", (4, 0, 0))
+
+    count = increments(arc, points, 0.1, 1000)
+    path = [moved(arc(k / count), points) for k in range(count + 1)]
+    assert max(np.linalg.norm(b - a, axis=1).max() for a, b in pairwise(path)) < 0.105
+    assert count >= angle / 0.1
+
+
+def test_increments_of_nothing_and_of_very_much() -> None:
+    points = np.eye(3)
+    assert increments(lambda fraction: shift(), points, 0.1, 1000) == 1
+    assert increments(lambda fraction: shift(fraction * 1e9), points, 0.1, 50) == 50
+    assert increments(lambda fraction: stretch(1 - fraction), points, 0.1, 1000) == 10
+    assert increments(lambda fraction: shift(fraction), np.empty((0, 3)), 0.1, 1000) == 1

@@ -25,7 +25,7 @@ from stiv.blender.sessions import deformation_of, make_session, mobilities, stac
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.blender.summary import Summary, summarise
 from stiv.blender.trail import Place, Trail, latest
-from stiv.blender.transform_path import increments, transform_at
+from stiv.blender.transform_path import Path, increments, transform_at
 from stiv.blender.verification import FacePair, Verification, Verifier
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
@@ -104,12 +104,16 @@ class BlenderEdit:
         self._goal = self._goal_of(_checked(matrix))
         return self._solve(self._goal, **execution)
 
-    def apply(self, matrix: ArrayLike, **execution: Any) -> stiv.EditResult:
-        """Solve for the same goal given at once: approached in increments of a drag's size, then settled."""
+    def apply(self, matrix: ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
+        """Solve for the same goal given at once: approached in increments of a drag's size, then settled.
+
+        path: the way to the matrix, for what it cannot tell (more than half a turn); None: the shortest.
+        """
         target = _checked(matrix)
+        way: Path = path or (lambda fraction: transform_at(target, fraction))
         results = []
-        for fraction in self._fractions(target):
-            results.append(self.drag(transform_at(target, fraction), **execution))
+        for fraction in self._fractions(way):
+            results.append(self.drag(target if fraction == 1 else way(fraction), **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return summed(results)
         return summed([*results, self.settle(**execution)])
@@ -216,11 +220,11 @@ class BlenderEdit:
             [part.rule.goal(part.controls, old, matrix) for part, old in zip(self._parts, last, strict=True)]
         )
 
-    def _fractions(self, target: Floats) -> Iterator[float]:
+    def _fractions(self, path: Path) -> Iterator[float]:
         moving = [index for part in self._parts for index in part.surfaces]
         points = np.concatenate([self._assembly.positions[self._assembly.vertices(index)] for index in moving])
         diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
-        count = increments(target, points, STEP * diagonal, MOST_STEPS)
+        count = increments(path, points, STEP * diagonal, MOST_STEPS)
         return ((k + 1) / count for k in range(count))
 
 
