@@ -19,7 +19,8 @@ def transform_at(matrix: Floats, fraction: float) -> Floats:
     """The transform, (4, 4), a fraction of the way from rest: points on arcs about the transform's fixed point.
 
     The linear part is split into rotation and stretch (polar); the fixed point, nearest to the origin, solves
-    (1 - A) x = b in the sense of least squares, and what is left of b is a translation. A rotation goes the shorter way.
+    (1 - A) x = b in the sense of least squares, and what is left of b is a translation. The rotation goes the shorter
+    way round.
     """
     if fraction >= 1:
         return matrix
