@@ -57,6 +57,7 @@ class Surface {
     return meets_[static_cast<std::size_t>(a) * definition_.bodies.size() + static_cast<std::size_t>(b)] != 0;
   }
 
+  bool has_recut_faces() const { return !recut_.empty(); }
   /// Do all these vertices belong to one recut face? Its cuts cross each other by nature, so they are not tested.
   template <std::size_t count>
   bool in_one_recut_face(const std::array<Index, count>& vertices) const {

@@ -10,8 +10,6 @@ namespace stiv {
 
 namespace {
 
-constexpr Index blocks_per_chunk = 16;
-
 GroupTable meeting_bodies(const Surface& surface) {
   const auto count = static_cast<Index>(surface.bodies().size());
   std::vector<unsigned char> meets;
@@ -25,13 +23,15 @@ class Search {
  public:
   Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
          const Positions& q)
-      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q) {}
+      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q) {
+    if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
+  }
 
   IndexPairs all(const Execution& execution) const {
-    std::vector<IndexPairs> found(static_cast<std::size_t>(Execution::chunk_count(blocks(), blocks_per_chunk)));
-    execution.for_chunks(blocks(), blocks_per_chunk, [&](Index begin, Index end, Index chunk) {
-      scan(begin, end, [&](const PrimitivePair& pair) {
-        found[static_cast<std::size_t>(chunk)].emplace_back(pair.first, pair.second);
+    std::vector<IndexPairs> found(tasks_.size());
+    execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
+      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair& pair) {
+        found[static_cast<std::size_t>(task)].emplace_back(pair.first, pair.second);
         return true;
       });
     });
@@ -40,9 +40,9 @@ class Search {
 
   bool any(const Execution& execution) const {
     std::atomic<bool> found{false};
-    execution.for_chunks(blocks(), blocks_per_chunk, [&](Index begin, Index end, Index) {
+    execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
       if (found.load(std::memory_order_relaxed)) return;
-      scan(begin, end, [&](const PrimitivePair&) {
+      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair&) {
         found.store(true, std::memory_order_relaxed);
         return false;
       });
@@ -51,20 +51,20 @@ class Search {
   }
 
  private:
-  Index blocks() const { return second_.empty() ? 0 : first_.tree().block_count(); }
-
   /// Calls `report(pair)` for what intersects, until it returns false.
   template <class Report>
-  void scan(Index begin, Index end, const Report& report) const {
+  void scan(const Bvh::Task& task, const Report& report) const {
     PairBuffer candidates;
-    for (Index block = begin; block < end; ++block) {
-      candidates.count = 0;
-      first_.tree().overlaps_of_block(block, second_.tree(), bodies_, candidates);
-      for (std::size_t k = 0; k < candidates.count; ++k) {
-        const PrimitivePair& pair = candidates.pairs[k];
-        if (meet(first_.corners(pair.first), second_.corners(pair.second)) && !report(pair)) return;
-      }
-    }
+    bool more = true;
+    candidates.limit = 4096;
+    candidates.full = [&](PairBuffer& found) {
+      for (std::size_t k = 0; k < found.count && more; ++k)
+        if (meet(first_.corners(found.first[k]), second_.corners(found.second[k]))) more = report(found[k]);
+      found.count = 0;
+      return more;
+    };
+    first_.tree().overlaps(task, second_.tree(), bodies_, candidates);
+    candidates.full(candidates);
   }
 
   bool meet(const std::array<Index, 3>& a, const std::array<Index, 3>& b) const {
@@ -85,6 +85,7 @@ class Search {
   const Primitives &first_, &second_;
   const GroupTable& bodies_;
   const Positions& q_;
+  std::vector<Bvh::Task> tasks_;
 };
 
 }  // namespace

@@ -25,12 +25,9 @@ struct Step {
   Proximity proximity;
 };
 
-/// Which vertices a step moves, (N).
-std::vector<unsigned char> moved_vertices(const Step& step);
-
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
 /// chunk do not depend on the number of threads. Candidates are relevant (see Relevance), and each comes once; pairs
-/// whose padded bounds stay apart (see sweep_bounds) may be left out.
+/// whose padded bounds stay apart (see SweptVertices) may be left out.
 class CandidateSource {
  public:
   /// Takes some of a chunk's candidates; may overwrite them, the source does not look at them again.

@@ -4,7 +4,7 @@
 
 #include "detection/cell_lists.hpp"
 #include "detection/relevance.hpp"
-#include "detection/swept_bounds.hpp"
+#include "detection/swept_vertices.hpp"
 
 namespace stiv {
 
@@ -42,16 +42,18 @@ class Batches {
 /// Deformable Objects", VMV 2003; there for tetrahedra, with cells of the mean size of an edge.
 class HashGrid final : public CandidateSource {
  public:
-  explicit HashGrid(const Surface& surface) : surface_(surface) {}
+  explicit HashGrid(const Surface& surface) : surface_(surface), swept_(surface) {}
 
   void update(const Step& step, const Execution& execution) override {
-    sweep_bounds(surface_, step, execution, swept_);
+    swept_.update(step, execution);
     relevance_.emplace(surface_, step);
-    face_cells_ = fitting_cells(swept_.faces);
-    faces_ = CellLists(face_cells_, swept_.faces);
-    vertices_ = CellLists(face_cells_, swept_.vertices);
-    edge_cells_ = fitting_cells(swept_.edges);
-    edges_ = CellLists(edge_cells_, swept_.edges);
+    const std::vector<Bounds> faces = bounds_of(surface_.triangles()), edges = bounds_of(surface_.edges());
+    std::vector<Bounds> vertices;
+    for (const PackedBox& box : swept_.boxes()) vertices.push_back(box.bounds());
+    const Cells cells = fitting_cells(faces);
+    faces_ = CellLists(cells, faces);
+    vertices_ = CellLists(cells, vertices);
+    edges_ = CellLists(fitting_cells(edges), edges);
   }
 
   Index chunk_count(EventKind kind) const override {
@@ -88,10 +90,16 @@ class HashGrid final : public CandidateSource {
     }
   }
 
+  template <class Rows>
+  std::vector<Bounds> bounds_of(const Rows& rows) const {
+    std::vector<Bounds> boxes;
+    for (const auto& row : rows.rowwise()) boxes.push_back(swept_.box_of(row).bounds());
+    return boxes;
+  }
+
   const Surface& surface_;
-  SweptBounds swept_;
+  SweptVertices swept_;
   std::optional<Relevance> relevance_;
-  Cells face_cells_, edge_cells_;
   CellLists vertices_, faces_, edges_;
 };
 

@@ -15,14 +15,11 @@ std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, const C
   return {a[0], a[1], b[0], b[1]};
 }
 
-std::vector<unsigned char> moved_vertices(const Step& step) {
-  std::vector<unsigned char> moved(static_cast<std::size_t>(step.start.rows()));
+Relevance::Relevance(const Surface& surface, const Step& step)
+    : surface_(surface), moved_(static_cast<std::size_t>(step.start.rows())) {
   for (Index vertex = 0; vertex < step.start.rows(); ++vertex)
-    moved[static_cast<std::size_t>(vertex)] = (step.start.row(vertex).array() != step.end.row(vertex).array()).any();
-  return moved;
+    moved_[static_cast<std::size_t>(vertex)] = (step.start.row(vertex).array() != step.end.row(vertex).array()).any();
 }
-
-Relevance::Relevance(const Surface& surface, const Step& step) : surface_(surface), moved_(moved_vertices(step)) {}
 
 bool Relevance::relevant(EventKind kind, const std::array<Index, 4>& v) const {
   const bool apart = kind == EventKind::vertex_face ? (v[0] != v[1]) & (v[0] != v[2]) & (v[0] != v[3])

@@ -81,9 +81,9 @@ TEST_CASE("bvh: groups that do not meet are left out") {
   const GroupTable table(3, {0, 1, 1, 1, 1, 0, 1, 0, 1});
   const Bvh tree(boxes, groups);
   PairBuffer found;
-  for (Index block = 0; block < tree.block_count(); ++block) tree.overlaps_of_block(block, tree, table, found);
+  for (const Bvh::Task& task : tree.tasks(tree, table)) tree.overlaps(task, tree, table, found);
   Pairs pairs;
-  for (std::size_t k = 0; k < found.count; ++k) pairs.emplace_back(found.pairs[k].first, found.pairs[k].second);
+  for (std::size_t k = 0; k < found.count; ++k) pairs.emplace_back(found.first[k], found.second[k]);
   CHECK(sorted(pairs, true) ==
         expected_pairs(boxes, boxes, [&](Index i, Index j) { return table.meet(i % 3, j % 3); }));
 }

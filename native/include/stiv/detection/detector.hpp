@@ -28,7 +28,7 @@ struct DetectorOptions {
 /// Finds interference along linear steps of one surface; keeps its trees between calls. [P4.1]
 /// Pairs that share a vertex, pairs of bodies that do not meet and pairs of which no vertex moves are left out.
 /// Results do not depend on the number of threads, and not on the broad phase: a narrow phase reports no pair whose
-/// bounds, padded by a little more than half of the separation, stay apart. (swept_bounds.cpp)
+/// bounds, padded by a little more than half of the separation, stay apart. (swept_vertices.cpp)
 class Detector {
  public:
   Detector(std::shared_ptr<const Surface> surface, DetectorOptions options = {});

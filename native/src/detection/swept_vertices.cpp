@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/swept_vertices.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace stiv {
+
+namespace {
+
+constexpr Index chunk_size = 4096;
+
+/// Boxes grow by this fraction of the displacement of their vertex.
+constexpr double slack_of_displacement = 1.0 / 16;
+
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+const double* row(const Positions& positions, Index vertex) {
+  return positions.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
+}
+
+bool same_bits(const Positions& a, const Positions& b, Index vertex, Index count) {
+  return std::memcmp(row(a, vertex), row(b, vertex), 3 * sizeof(double) * at(count)) == 0;
+}
+
+/// A float not above `value`, or the least one. Conversion errs by at most half a unit in the last place, which |f|
+/// 2^-23 covers; the smallest denormal does so around zero.
+float round_down(double value) {
+  using Limits = std::numeric_limits<float>;
+  constexpr auto largest = static_cast<double>(Limits::max());
+  const auto nearest = static_cast<float>(value < -largest ? -largest : value > largest ? largest : value);
+  return std::max(nearest - (std::abs(nearest) * Limits::epsilon() + Limits::denorm_min()), Limits::lowest());
+}
+
+}  // namespace
+
+/// What one pass over a step tells.
+struct SweptVertices::Survey {
+  std::vector<Index> changed;  ///< vertices whose step is not the one of their box, ascending
+  Vector3 low = Vector3::Constant(never), high = -low;
+  Vector3 sum = Vector3::Zero();  ///< of the displacements
+  double sum_of_squares = 0;
+  bool finite = true;
+
+  void include(const Survey& other) {
+    changed.insert(changed.end(), other.changed.begin(), other.changed.end());
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+    sum += other.sum;
+    sum_of_squares += other.sum_of_squares;
+    finite = finite && other.finite;
+  }
+  void include(const double* from, const double* to) {
+    for (Index k = 0; k < 3; ++k) {
+      low[k] = std::min({low[k], from[k], to[k]});
+      high[k] = std::max({high[k], from[k], to[k]});
+      const double displacement = to[k] - from[k];
+      sum[k] += displacement;
+      sum_of_squares += displacement * displacement;
+      finite = finite && std::isfinite(from[k]) && std::isfinite(to[k]);
+    }
+  }
+};
+
+// A pair is reported at most (1 + 1e-3) h + 5 * 2^-46 M apart (or where its own boxes overlap at that distance), with M
+// no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
+double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
+
+SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
+  const Index count = surface_.vertex_count();
+  const bool first = start_.rows() != count;
+  std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
+    Survey& part = parts[at(chunk)];
+    for (Index some = begin; some < end; some += run) {
+      const Index last = std::min(end, some + run);
+      if (!first && same_bits(step.start, start_, some, last - some) && same_bits(step.end, end_, some, last - some))
+        continue;
+      for (Index vertex = some; vertex < last; ++vertex) {
+        if (!first && same_bits(step.start, start_, vertex, 1) && same_bits(step.end, end_, vertex, 1)) continue;
+        part.changed.push_back(vertex);
+        part.include(row(step.start, vertex), row(step.end, vertex));
+      }
+    }
+  });
+  Survey whole;
+  for (const Survey& part : parts) whole.include(part);
+  if (!whole.finite) {
+    surface_.check_positions(step.start);
+    surface_.check_positions(step.end);
+  }
+  return whole;
+}
+
+/// The frame there is, if it serves. A frame that moves with the mean displacement makes the boxes of a common motion
+/// small, but is only chosen where it makes a great difference: in a frame at rest, what rests keeps its boxes.
+SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& survey) const {
+  constexpr double serves = 4;
+  Frame frame = frame_;
+  frame.separation = step.proximity.separation;
+  if (survey.changed.empty()) return frame;
+  const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(survey.changed.size());
+  const Vector3 reach = Vector3::Constant(frame.radius);
+  Vector3 low = survey.low, high = survey.high;
+  if (changed < count) {
+    low = low.cwiseMin(frame.centre - reach);
+    high = high.cwiseMax(frame.centre + reach);
+  }
+  const bool reaches = (high - frame.centre - reach).maxCoeff() <= 0 && (frame.centre - reach - low).maxCoeff() <= 0;
+  if (reaches && changed < count / 2) return frame;
+  const double radius = (high / 2 - low / 2).maxCoeff();
+  if (!reaches || frame.radius > 2 * serves * radius) {
+    frame.centre = low / 2 + high / 2;
+    frame.radius = 2 * radius;
+  }
+  const auto squares_seen_from = [&](const Vector3& motion) {
+    return survey.sum_of_squares - 2 * motion.dot(survey.sum) + count * motion.squaredNorm();
+  };
+  const Vector3 mean = survey.sum / count;
+  const double least = serves * std::max(0.0, squares_seen_from(mean));
+  if (squares_seen_from(frame.motion) <= least) return frame;
+  frame.motion.setZero();
+  if (!(squares_seen_from(frame.motion) <= least) && mean.allFinite()) frame.motion = mean;
+  return frame;
+}
+
+PackedBox SweptVertices::box(const Step& step, Index vertex, double slack) const {
+  const double *from = row(step.start, vertex), *to = row(step.end, vertex);
+  double start[3], end[3], reach = 0;
+  bool moves = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    start[k] = from[k] - frame_.centre[axis];
+    end[k] = to[k] - frame_.centre[axis] - frame_.motion[axis];
+    reach = std::max(reach, std::abs(end[k] - start[k]));
+    moves |= from[k] != to[k];
+  }
+  const double padding = frame_.margin() + (moves ? slack * reach : 0);
+  PackedBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.values[k] = round_down(std::min(start[k], end[k]) - padding);
+    box.values[k + 3] = round_down(-std::max(start[k], end[k]) - padding);
+  }
+  box.values[6] = moves ? -1.0F : 1.0F;
+  box.values[7] = 0;
+  return box;
+}
+
+bool SweptVertices::all_inside(const Step& step, const Execution& execution) const {
+  std::atomic<bool> inside{true};
+  execution.for_chunks(static_cast<Index>(changed_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end && inside.load(std::memory_order_relaxed); ++k) {
+      const Index vertex = changed_[at(k)];
+      if (!boxes_[at(vertex)].contains(box(step, vertex, 0))) inside.store(false, std::memory_order_relaxed);
+    }
+  });
+  return inside;
+}
+
+void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
+  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) {
+      const Index vertex = vertices[at(k)];
+      boxes_[at(vertex)] = box(step, vertex, slack_of_displacement);
+      start_.row(vertex) = step.start.row(vertex);
+      end_.row(vertex) = step.end.row(vertex);
+    }
+  });
+}
+
+SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution) {
+  const Index count = surface_.vertex_count();
+  if (step.start.rows() != count || step.end.rows() != count) {
+    surface_.check_positions(step.start);
+    surface_.check_positions(step.end);
+  }
+  Survey found = survey(step, execution);
+  const bool first = start_.rows() != count;
+  const Frame frame = frame_for(step, found);
+  changed_ = std::move(found.changed);
+  if (!first && frame == frame_ && all_inside(step, execution)) return Change::none;
+  const bool all = first || frame != frame_;
+  frame_ = frame;
+  if (all) {
+    boxes_.resize(at(count));
+    start_.resize(count, 3);
+    end_.resize(count, 3);
+    changed_.resize(at(count));
+    std::iota(changed_.begin(), changed_.end(), 0);
+  }
+  sweep(step, changed_, execution);
+  return all || changed_.size() > at(count) / 2 ? Change::all : Change::some;
+}
+
+}  // namespace stiv

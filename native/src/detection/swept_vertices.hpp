@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "detection/candidates.hpp"
+#include "stiv/detection/packed_box.hpp"
+
+namespace stiv {
+
+/// Boxes of the moving vertices, kept from step to step: only vertices whose step is another get another box, and none
+/// does as long as all of them stay within the boxes that they have. A box is active if its vertex moves.
+///
+/// Boxes are padded so that pairs that come within the separation, by whatever the narrow phase may err, overlap; and
+/// by a part of the vertex's displacement, so that slightly different ends of the same start stay inside.
+class SweptVertices {
+ public:
+  explicit SweptVertices(const Surface& surface) : surface_(surface) {}
+
+  enum class Change {
+    none,  ///< all boxes are as they were and hold the new step
+    some,  ///< those of `changed` are new
+    all
+  };
+
+  /// @throws InputError as Surface::check_positions
+  Change update(const Step& step, const Execution& execution);
+
+  const std::vector<PackedBox>& boxes() const { return boxes_; }
+  const std::vector<Index>& changed() const { return changed_; }
+
+  /// Union of the boxes of some vertices.
+  template <class Vertices>
+  PackedBox box_of(const Vertices& vertices) const {
+    PackedBox box = boxes_[static_cast<std::size_t>(vertices[0])];
+    for (Index k = 1; k < static_cast<Index>(vertices.size()); ++k)
+      box.include(boxes_[static_cast<std::size_t>(vertices[k])]);
+    return box;
+  }
+
+ private:
+  /// Where boxes are seen from. It stays the same from step to step where it can, so that boxes stay the same.
+  struct Frame {
+    Vector3 centre = Vector3::Zero();
+    Vector3 motion = Vector3::Zero();  ///< displacement in a step
+    double radius = -1;                ///< no coordinate is farther from the centre, at the start or at the end
+    double separation = 0;
+
+    bool operator==(const Frame&) const = default;
+    double margin() const;
+  };
+  struct Survey;
+
+  Survey survey(const Step& step, const Execution& execution) const;
+  Frame frame_for(const Step& step, const Survey& survey) const;
+  PackedBox box(const Step& step, Index vertex, double slack) const;
+  bool all_inside(const Step& step, const Execution& execution) const;
+  void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
+
+  const Surface& surface_;
+  Frame frame_;
+  Positions start_, end_;  // for which each box was made
+  std::vector<PackedBox> boxes_;
+  std::vector<Index> changed_;
+};
+
+}  // namespace stiv
