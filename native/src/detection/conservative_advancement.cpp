@@ -14,10 +14,17 @@ constexpr int most_trials = 12;
 /// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
 constexpr double tolerance = 1e-3;
 
+/// Of the nearest points. The difference of two points that nearly coincide is noise: within both primitives, the
+/// normal of the face or of both edges takes its place.
 template <class Scalar>
-VectorOf<Scalar> direction(const WitnessOf<Scalar>& witness) {
-  if (!(witness.distance > 0)) return VectorOf<Scalar>::Zero();
-  return witness.separation / witness.distance;
+VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& time) {
+  constexpr double noise = 0x1p24;
+  if (!(nearest.distance > 0)) return VectorOf<Scalar>::Zero();
+  if (nearest.distance < noise * motion.rounding && within_both(nearest)) {
+    const VectorOf<Scalar> normal = geometric_normal(motion, time);
+    if (!normal.isZero(0)) return normal.dot(nearest.separation) < 0 ? VectorOf<Scalar>(-normal) : normal;
+  }
+  return nearest.separation / nearest.distance;
 }
 
 template <class Scalar>
@@ -46,7 +53,7 @@ template <class Scalar>
 Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
                       const Scalar& trial, const Scalar& clearance) {
   const WitnessOf<Scalar> later = witness(motion.kind, motion.at(trial));
-  const VectorOf<Scalar> later_normal = direction(later);
+  const VectorOf<Scalar> later_normal = direction(motion, later, trial);
   const Scalar fixed = reach_of_plane(motion, later_normal, time, clearance);
   if (fixed >= trial || !turning_plane_holds(motion, normal, time, later_normal, trial, clearance)) return fixed;
   return reach_of_plane(motion, later_normal, trial, clearance);
@@ -57,9 +64,9 @@ template <class Scalar>
 Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
                  const Scalar& time) {
   const Scalar clearance = threshold + motion.rounding;
-  const VectorOf<Scalar> normal = direction(nearest);
+  const VectorOf<Scalar> normal = direction(motion, nearest, time);
   Scalar reached = reach_of_plane(motion, normal, time, clearance);
-  const Scalar aim = threshold * (1 + tolerance / 2) + 2 * motion.rounding;
+  const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
   Scalar trial = predicted_time(motion, nearest, aim, time);
   for (int k = 0; k < most_trials && trial > reached; ++k) {
     reached = std::max(reached, reach_of_trial(motion, normal, time, trial, clearance));
@@ -94,7 +101,7 @@ bool approaches(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& w
 /// Near enough to end: within rounding of the threshold, or within the tolerance and still approaching.
 template <class Scalar>
 bool arrived(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold) {
-  if (nearest.distance <= threshold + 1.25 * motion.rounding) return true;
+  if (nearest.distance <= threshold + 8 * motion.rounding) return true;
   return nearest.distance <= threshold * (1 + tolerance) && approaches(motion, nearest);
 }
 
@@ -115,7 +122,7 @@ std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, co
     if (reached <= approach.time) reached = reach_of_other_planes(motion, approach.time, clearance);
     if (reached >= 1 || reached > latest) return std::nullopt;
     if (reached <= approach.time) break;
-    approach.last_normal = direction(approach.witness);
+    approach.last_normal = direction(motion, approach.witness, approach.time);
     approach.time = reached;
   }
   if (boxes_apart(motion, clearance)) return std::nullopt;
@@ -132,7 +139,7 @@ double parting_time(const RelativeMotion<double>& motion, double threshold) {
       if (gap_of_plane(motion, side, 0.0) >= touching && gap_of_plane(motion, side, 1.0) >= touching) return 1;
   }
   for (double time = 1; time > 0x1p-24; time /= 2) {
-    const Vector3 normal = direction(witness(motion.kind, motion.at(time)));
+    const Vector3 normal = direction(motion, witness(motion.kind, motion.at(time)), time);
     if (gap_of_plane(motion, normal, 0.0) >= touching && gap_of_plane(motion, normal, time) >= apart) return time;
   }
   return 0;

@@ -15,10 +15,8 @@ Vector3 contact_direction(const RelativeMotion<double>& motion, const Approach<d
   const Witness& nearest = approach.witness;
   constexpr double noise = 1024;
   if (nearest.distance > noise * motion.rounding) return nearest.separation / nearest.distance;
-  bool interior = true;
-  for (const double weight : nearest.weights) interior = interior && weight != 0;
   const Vector3 normal = geometric_normal(motion, approach.time);
-  if (interior && !normal.isZero(0)) {
+  if (within_both(nearest) && !normal.isZero(0)) {
     const Vector3& side = approach.last_normal;
     return normal.dot(side) < 0 ? Vector3(-normal) : normal;
   }

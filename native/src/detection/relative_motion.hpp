@@ -46,6 +46,14 @@ bool turning_plane_holds(const RelativeMotion<Scalar>& motion, const VectorOf<Sc
 template <class Scalar>
 Scalar gap_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time);
 
+/// Do the nearest points lie within face, vertex and edges, off all ends and sides?
+template <class Scalar>
+bool within_both(const WitnessOf<Scalar>& nearest) {
+  for (const Scalar& weight : nearest.weights)
+    if (weight == 0) return false;
+  return true;
+}
+
 /// Unit normal of the triangle, or of the plane spanned by both edges; zero where it is degenerate.
 template <class Scalar>
 VectorOf<Scalar> geometric_normal(const RelativeMotion<Scalar>& motion, const Scalar& time);
