@@ -88,7 +88,7 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
     if (time == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   }
   const std::optional<Approach<double>> approach = advance(relative, threshold, time, latest);
-  if (!approach || apart_after_all(relative, motion, threshold, *approach, latest)) return std::nullopt;
+  if (!approach) return std::nullopt;
   return contact_of(relative, *approach, at_start.distance);
 }
 

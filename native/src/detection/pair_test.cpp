@@ -23,7 +23,7 @@ PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
 }  // namespace
 
 PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase)
-    : surface_(surface), step_(step), narrow_phase_(narrow_phase) {}
+    : surface_(surface), step_(step), narrow_phase_(narrow_phase), vertices_(step.start, step.end) {}
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
   PairBlock block;
@@ -34,7 +34,7 @@ std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candi
     const std::span<Candidate> some =
         candidates.subspan(begin, std::min(PairBlock::capacity, candidates.size() - begin));
     for (const Candidate& candidate : some) block.add(vertices_of(surface_, kind, candidate));
-    find_apart(kind, block, step_.start, step_.end, step_.proximity.separation, apart);
+    find_apart(kind, block, vertices_, step_.proximity.separation, apart);
     for (std::size_t k = 0; k < some.size(); ++k) {
       candidates[kept] = some[k];
       kept += apart[k] == 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detection/candidates.hpp"
+#include "detection/plane_filter.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 
@@ -28,6 +29,7 @@ class PairTest {
   const Surface& surface_;
   const Step& step_;
   NarrowPhase narrow_phase_;
+  VertexSteps vertices_;
 };
 
 }  // namespace stiv

@@ -14,14 +14,19 @@ struct PairStep {
   Point start[3], end[3];
 };
 
-HWY_INLINE PairStep load(const PairBlock& pairs, std::size_t first, const double* start, const double* end) {
-  const std::int32_t* const origin = pairs.vertices[0].data() + first;
-  const Point from = gather_points(start, origin), to = gather_points(end, origin);
+HWY_INLINE TwoPoints load_vertices(const VertexStep* vertices, const Index* indices) {
+  const double* rows[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) rows[lane] = vertices[indices[lane]].start;
+  return load_rows(rows);
+}
+
+HWY_INLINE PairStep load(const PairBlock& pairs, std::size_t first, const VertexStep* vertices) {
+  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0].data() + first);
   PairStep step;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::int32_t* const vertex = pairs.vertices[k + 1].data() + first;
-    step.start[k] = gather_points(start, vertex) - from;
-    step.end[k] = gather_points(end, vertex) - to;
+    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k + 1].data() + first);
+    step.start[k] = vertex.first - origin.first;
+    step.end[k] = vertex.second - origin.second;
   }
   return step;
 }
@@ -76,25 +81,24 @@ HWY_INLINE Mask apart(const PairStep& step, double separation) {
 }
 
 template <EventKind kind>
-void find_apart_of_kind(const PairBlock& pairs, const double* start, const double* end, double separation,
-                        unsigned char* result) {
+void find_apart_of_kind(const PairBlock& pairs, const VertexStep* vertices, double separation, unsigned char* result) {
   const Doubles d;
   const std::size_t width = hn::Lanes(d);
   static_assert(PairBlock::capacity % HWY_MAX_BYTES == 0);
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < pairs.count; first += width) {
-    const Mask mask = apart<kind>(load(pairs, first, start, end), separation);
+    const Mask mask = apart<kind>(load(pairs, first, vertices), separation);
     hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
     for (std::size_t lane = 0; lane < width; ++lane) result[first + lane] = flags[lane] != 0;
   }
 }
 
-void find_apart(EventKind kind, const PairBlock& pairs, const double* start, const double* end, double separation,
+void find_apart(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, double separation,
                 unsigned char* result) {
   if (kind == EventKind::vertex_face)
-    find_apart_of_kind<EventKind::vertex_face>(pairs, start, end, separation, result);
+    find_apart_of_kind<EventKind::vertex_face>(pairs, vertices, separation, result);
   else
-    find_apart_of_kind<EventKind::edge_edge>(pairs, start, end, separation, result);
+    find_apart_of_kind<EventKind::edge_edge>(pairs, vertices, separation, result);
 }
 
 }  // namespace stiv::HWY_NAMESPACE
@@ -103,9 +107,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_apart(EventKind kind, const PairBlock& pairs, const Positions& start, const Positions& end, double separation,
+VertexSteps::VertexSteps(const Positions& start, const Positions& end) : rows_(static_cast<std::size_t>(start.rows())) {
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    const double* const from = start.data() + 3 * row;
+    const double* const to = end.data() + 3 * row;
+    rows_[row] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
+  }
+}
+
+void find_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,
                 PairFlags& apart) {
-  STIV_FOR_VECTOR_TARGET(find_apart)(kind, pairs, start.data(), end.data(), separation, apart.data());
+  STIV_FOR_VECTOR_TARGET(find_apart)(kind, pairs, vertices.data(), separation, apart.data());
 }
 
 }  // namespace stiv

@@ -3,10 +3,28 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "stiv/detection/event.hpp"
 
 namespace stiv {
+
+/// Where a vertex starts and ends, in one line of the cache.
+struct alignas(64) VertexStep {
+  double start[4];  ///< x, y, z, 0
+  double end[4];
+};
+
+/// The step of all vertices, made for vector code to load.
+class VertexSteps {
+ public:
+  VertexSteps(const Positions& start, const Positions& end);  ///< (N, 3) each
+
+  const VertexStep* data() const { return rows_.data(); }
+
+ private:
+  std::vector<VertexStep> rows_;
+};
 
 /// Up to so many pairs, each of four vertices in the order of Event::vertices, as arrays over the pairs.
 struct PairBlock {
@@ -25,8 +43,8 @@ struct PairBlock {
 using PairFlags = std::array<unsigned char, PairBlock::capacity>;
 
 /// 1 for each pair that a plane shows apart for the whole step, by more than `separation` and all rounding: a quick
-/// answer for most of them. Rows of `start` and `end` are positions, (N, 3).
-void find_apart(EventKind kind, const PairBlock& pairs, const Positions& start, const Positions& end, double separation,
+/// answer for most of them.
+void find_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,
                 PairFlags& apart);
 
 }  // namespace stiv

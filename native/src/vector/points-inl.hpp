@@ -42,14 +42,58 @@ HWY_INLINE Lanes sum_norm(Point a) { return hn::Add(hn::Add(hn::Abs(a.x), hn::Ab
 HWY_INLINE Lanes min3(Lanes a, Lanes b, Lanes c) { return hn::Min(hn::Min(a, b), c); }
 HWY_INLINE Lanes max3(Lanes a, Lanes b, Lanes c) { return hn::Max(hn::Max(a, b), c); }
 
-/// Rows of an array of points, (N, 3) doubles.
-HWY_INLINE Point gather_points(const double* rows, const std::int32_t* indices) {
-  const hn::RebindToSigned<Doubles> wide;
-  const auto index = hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::int32_t, Doubles>(), indices));
-  const auto offset = hn::Add(hn::Add(index, index), index);
-  const Doubles d;
-  return {hn::GatherIndex(d, rows, offset), hn::GatherIndex(d, rows + 1, offset), hn::GatherIndex(d, rows + 2, offset)};
+/// What each of as many rows as there are lanes begins with: four doubles x, y, z and one not looked at, and after
+/// these another four.
+struct TwoPoints {
+  Point first, second;
+};
+
+#if HWY_MAX_BYTES == 64
+// Pairs of rows are interleaved, which leaves blocks of two lanes (x x | z z | x' x' | z' z') and (y y | - | y' y' | -)
+// for each pair of rows, and then the blocks of four pairs are transposed.
+HWY_INLINE Lanes first_blocks(Lanes halves01, Lanes halves23) {
+  return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(halves23), halves01);
 }
+HWY_INLINE Lanes second_blocks(Lanes halves01, Lanes halves23) {
+  return hn::OddEvenBlocks(halves23, hn::SwapAdjacentBlocks(halves01));
+}
+HWY_INLINE TwoPoints load_rows(const double* const* rows) {
+  const Doubles d;
+  Lanes xz[4], y[4];
+  for (int k = 0; k < 4; ++k) {
+    const Lanes even = hn::Load(d, rows[2 * k]), odd = hn::Load(d, rows[2 * k + 1]);
+    xz[k] = hn::InterleaveLower(d, even, odd);
+    y[k] = hn::InterleaveUpper(d, even, odd);
+  }
+  const Lanes low02 = hn::ConcatLowerLower(d, xz[2], xz[0]), low13 = hn::ConcatLowerLower(d, xz[3], xz[1]);
+  const Lanes high02 = hn::ConcatUpperUpper(d, xz[2], xz[0]), high13 = hn::ConcatUpperUpper(d, xz[3], xz[1]);
+  const Lanes y02 = hn::ConcatLowerLower(d, y[2], y[0]), y13 = hn::ConcatLowerLower(d, y[3], y[1]);
+  const Lanes z02 = hn::ConcatUpperUpper(d, y[2], y[0]), z13 = hn::ConcatUpperUpper(d, y[3], y[1]);
+  return {{first_blocks(low02, low13), first_blocks(y02, y13), second_blocks(low02, low13)},
+          {first_blocks(high02, high13), first_blocks(z02, z13), second_blocks(high02, high13)}};
+}
+#elif HWY_MAX_BYTES == 32
+HWY_INLINE Point load_four(const double* const* rows, std::size_t offset) {
+  const Doubles d;
+  const Lanes a = hn::Load(d, rows[0] + offset), b = hn::Load(d, rows[1] + offset);
+  const Lanes e = hn::Load(d, rows[2] + offset), f = hn::Load(d, rows[3] + offset);
+  const Lanes xz01 = hn::InterleaveLower(d, a, b), xz23 = hn::InterleaveLower(d, e, f);
+  const Lanes y01 = hn::InterleaveUpper(d, a, b), y23 = hn::InterleaveUpper(d, e, f);
+  return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
+}
+HWY_INLINE TwoPoints load_rows(const double* const* rows) { return {load_four(rows, 0), load_four(rows, 4)}; }
+#else
+HWY_INLINE Lanes load_column(const double* const* rows, std::size_t column) {
+  const Doubles d;
+  HWY_ALIGN double values[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) values[lane] = rows[lane][column];
+  return hn::Load(d, values);
+}
+HWY_INLINE TwoPoints load_rows(const double* const* rows) {
+  return {{load_column(rows, 0), load_column(rows, 1), load_column(rows, 2)},
+          {load_column(rows, 4), load_column(rows, 5), load_column(rows, 6)}};
+}
+#endif
 
 }  // namespace stiv::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

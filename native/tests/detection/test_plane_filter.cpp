@@ -48,7 +48,7 @@ TEST_CASE("plane filter: what it calls apart keeps the separation, and every vec
         const double separation = 0.05 * make.number(0, 1);
         const auto flags = for_each_vector_target([&] {
           PairFlags found{};
-          find_apart(kind, batch.block, batch.start, batch.end, separation, found);
+          find_apart(kind, batch.block, VertexSteps(batch.start, batch.end), separation, found);
           return std::vector<unsigned char>(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
         });
         for (const auto& other : flags) CHECK(other == flags.front());
