@@ -67,6 +67,12 @@ HWY_INLINE Point between_middles(const Point* x) {
   return kind == EventKind::vertex_face ? x[0] + x[1] + x[2] : x[1] + x[2] - x[0];
 }
 
+/// The part of a direction across an edge, times a factor: separates edges that are parallel, such as those of a flat
+/// mesh, whose common normal vanishes.
+HWY_INLINE Point across(Point edge, Point direction) {
+  return dot(edge, edge) * direction - dot(edge, direction) * edge;
+}
+
 HWY_INLINE Lanes magnitude_of(const Point* x) { return max3(sum_norm(x[0]), sum_norm(x[1]), sum_norm(x[2])); }
 
 template <EventKind kind>
@@ -77,7 +83,9 @@ HWY_INLINE Mask apart(const PairStep& step, double separation) {
   const Point middles = between_middles<kind>(step.start) + between_middles<kind>(step.end);
   const Mask between = hn::Or(at_start, plane_separates<kind>(middles, step, clearance));
   if (hn::AllTrue(Doubles(), between)) return between;
-  return hn::Or(between, plane_separates<kind>(normal_of<kind>(step.end), step, clearance));
+  const Mask apart = hn::Or(between, plane_separates<kind>(normal_of<kind>(step.end), step, clearance));
+  if constexpr (kind == EventKind::vertex_face) return apart;
+  return hn::Or(apart, plane_separates<kind>(across(step.start[0], middles), step, clearance));
 }
 
 template <EventKind kind>
