@@ -96,7 +96,8 @@ class Detector::Implementation {
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
     source_->update(step, execution);
-    const PairTest test(*surface_, step, narrow_phase_);
+    vertices_.update(step.start, step.end, execution);
+    const PairTest test(*surface_, step, narrow_phase_, vertices_);
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -126,6 +127,7 @@ class Detector::Implementation {
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
+  VertexSteps vertices_;
 };
 
 Detector::Detector(std::shared_ptr<const Surface> surface, DetectorOptions options)

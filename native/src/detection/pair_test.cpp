@@ -22,8 +22,8 @@ PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
 
 }  // namespace
 
-PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase)
-    : surface_(surface), step_(step), narrow_phase_(narrow_phase), vertices_(step.start, step.end) {}
+PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase, const VertexSteps& vertices)
+    : surface_(surface), step_(step), narrow_phase_(narrow_phase), vertices_(vertices) {}
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
   PairBlock block;

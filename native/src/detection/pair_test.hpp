@@ -15,7 +15,8 @@ namespace stiv {
 /// out, and the narrow phase decides the rest.
 class PairTest {
  public:
-  PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase);
+  /// @param vertices the same step, for vector code
+  PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase, const VertexSteps& vertices);
 
   /// Moves the candidates that need the narrow phase to the front and returns them.
   std::span<Candidate> reduce(EventKind kind, std::span<Candidate> candidates) const;
@@ -29,7 +30,7 @@ class PairTest {
   const Surface& surface_;
   const Step& step_;
   NarrowPhase narrow_phase_;
-  VertexSteps vertices_;
+  const VertexSteps& vertices_;
 };
 
 }  // namespace stiv

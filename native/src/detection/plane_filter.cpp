@@ -115,12 +115,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-VertexSteps::VertexSteps(const Positions& start, const Positions& end) : rows_(static_cast<std::size_t>(start.rows())) {
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    const double* const from = start.data() + 3 * row;
-    const double* const to = end.data() + 3 * row;
-    rows_[row] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
-  }
+void VertexSteps::update(const Positions& start, const Positions& end, const Execution& execution) {
+  constexpr Index chunk_size = 8192;
+  const auto count = static_cast<Index>(start.rows());
+  rows_.resize(static_cast<std::size_t>(count));
+  execution.for_chunks(count, chunk_size, [&](Index first, Index last, Index) {
+    for (auto row = static_cast<std::size_t>(first); row < static_cast<std::size_t>(last); ++row) {
+      const double* const from = start.data() + 3 * row;
+      const double* const to = end.data() + 3 * row;
+      rows_[row] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
+    }
+  });
 }
 
 void find_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,

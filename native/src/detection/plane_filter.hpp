@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stiv/detection/event.hpp"
+#include "stiv/execution.hpp"
 
 namespace stiv {
 
@@ -15,10 +16,11 @@ struct alignas(64) VertexStep {
   double end[4];
 };
 
-/// The step of all vertices, made for vector code to load.
+/// The step of all vertices, made for vector code to load. Keeps its memory from step to step.
 class VertexSteps {
  public:
-  VertexSteps(const Positions& start, const Positions& end);  ///< (N, 3) each
+  /// Rows of `start` and `end` are positions, (N, 3).
+  void update(const Positions& start, const Positions& end, const Execution& execution);
 
   const VertexStep* data() const { return rows_.data(); }
 

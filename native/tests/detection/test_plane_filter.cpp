@@ -15,6 +15,7 @@ struct Batch {
   std::vector<PairMotion> motions;
   Positions start, end;
   PairBlock block;
+  VertexSteps vertices;
 
   Batch(std::vector<PairMotion> of) : motions(std::move(of)) {
     start.resize(static_cast<Index>(4 * motions.size()), 3);
@@ -27,6 +28,7 @@ struct Batch {
         end.row(row) = motion.end[k];
       }
     }
+    vertices.update(start, end, Execution(1));
   }
 };
 
@@ -48,7 +50,7 @@ TEST_CASE("plane filter: what it calls apart keeps the separation, and every vec
         const double separation = 0.05 * make.number(0, 1);
         const auto flags = for_each_vector_target([&] {
           PairFlags found{};
-          find_apart(kind, batch.block, VertexSteps(batch.start, batch.end), separation, found);
+          find_apart(kind, batch.block, batch.vertices, separation, found);
           return std::vector<unsigned char>(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
         });
         for (const auto& other : flags) CHECK(other == flags.front());
