@@ -59,8 +59,9 @@ struct Traversal {
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detection/bvh_traversal.cpp"
+#include "vector/foreach_target.hpp"  // first: it includes this file again
+
 #include "vector/dispatch.hpp"
-#include "vector/foreach_target.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
