@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "detection/candidates.hpp"
+#include "detection/hull_filter.hpp"
 #include "detection/incidence.hpp"
 #include "detection/relevance.hpp"
 #include "detection/swept_vertices.hpp"
@@ -88,6 +89,8 @@ class BvhSource final : public CandidateSource {
   }
 
   void update(const Step& step, const Execution& execution) override {
+    vertex_steps_ = step.vertices;
+    separation_ = step.proximity.separation;
     const SweptVertices::Change change = swept_.update(step, execution);
     if (change == SweptVertices::Change::none && collected_) return;
     for (PrimitiveTree* primitives : {&vertices_, &edges_, &faces_}) primitives->update(swept_, change, execution);
@@ -97,21 +100,23 @@ class BvhSource final : public CandidateSource {
   Index chunk_count(EventKind kind) const override { return static_cast<Index>(of(kind).tasks.size()); }
 
   void visit(EventKind kind, Index chunk, const Sink& sink) const override {
-    std::vector<Candidate> batch;
-    batch.reserve(batch_size);
     if (collected_) {
-      hand_out(kind, of(kind).found[at(chunk)], batch, sink);
+      const std::vector<Candidate>& near = of(kind).near[at(chunk)];
+      std::vector<Candidate> batch;
+      for (std::size_t begin = 0; begin < near.size(); begin += batch_size) {
+        batch.assign(near.begin() + static_cast<std::ptrdiff_t>(begin),
+                     near.begin() + static_cast<std::ptrdiff_t>(std::min(near.size(), begin + batch_size)));
+        sink(batch);
+      }
       return;
     }
-    PairBuffer found;
-    found.limit = batch_size;
-    found.full = [&](PairBuffer& some) {
-      hand_out(kind, some, batch, sink);
-      some.count = 0;
+    std::vector<Candidate> batch;
+    traverse(kind, chunk, [&](const PairBuffer& found) {
+      batch.clear();
+      append_near(kind, found, batch);
+      if (!batch.empty()) sink(batch);
       return true;
-    };
-    first_tree(kind).overlaps(of(kind).tasks[at(chunk)], second_tree(kind), bodies_, found);
-    found.full(found);
+    });
   }
 
  private:
@@ -120,7 +125,7 @@ class BvhSource final : public CandidateSource {
   /// Work of one kind, and what it gave.
   struct Pairs {
     std::vector<Bvh::Task> tasks;
-    std::vector<PairBuffer> found;
+    std::vector<std::vector<Candidate>> near;
   };
 
   const Pairs& of(EventKind kind) const { return pairs_[static_cast<std::size_t>(kind)]; }
@@ -136,7 +141,7 @@ class BvhSource final : public CandidateSource {
     for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
       Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
-      pairs.found.resize(std::max(pairs.found.size(), pairs.tasks.size()));
+      pairs.near.resize(std::max(pairs.near.size(), pairs.tasks.size()));
     }
     std::atomic<std::int64_t> total{0};
     const Index faces = chunk_count(EventKind::vertex_face);
@@ -149,23 +154,55 @@ class BvhSource final : public CandidateSource {
     });
     collected_ = total <= most_pairs();
     if (!collected_)
-      for (Pairs& pairs : pairs_) pairs.found.clear();
+      for (Pairs& pairs : pairs_) pairs.near.clear();
   }
 
   void collect(EventKind kind, Index task, std::atomic<std::int64_t>& total) {
-    PairBuffer& found = pairs_[static_cast<std::size_t>(kind)].found[at(task)];
-    std::size_t counted = 0;
-    found.count = 0;
+    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[at(task)];
+    near.clear();
+    traverse(kind, task, [&](const PairBuffer& found) {
+      const std::size_t before = near.size();
+      append_near(kind, found, near);
+      return (total += static_cast<std::int64_t>(near.size() - before)) <= most_pairs();
+    });
+  }
+
+  /// Calls `take(some)` with the pairs of a task, some at a time, until it returns false.
+  template <class Take>
+  void traverse(EventKind kind, Index task, const Take& take) const {
+    PairBuffer found;
     found.limit = batch_size;
     found.full = [&](PairBuffer& some) {
-      total += static_cast<std::int64_t>(some.count - counted);
-      counted = some.count;
-      some.limit = counted + batch_size;
-      return total <= most_pairs();
+      const bool more = take(some);
+      some.count = 0;
+      return more;
     };
     first_tree(kind).overlaps(of(kind).tasks[at(task)], second_tree(kind), bodies_, found);
-    found.full(found);
-    found.full = nullptr;
+    if (found.count > 0) take(found);
+  }
+
+  /// Appends the pairs that may interfere in this step or in one nearby.
+  void append_near(EventKind kind, const PairBuffer& found, std::vector<Candidate>& near) const {
+    const NearbySteps steps{swept_.motion(), separation_, SweptVertices::slack};
+    PairBlock block;
+    PairFlags apart;
+    const std::size_t before = near.size();
+    near.resize(before + found.count);
+    Candidate* place = near.data() + before;
+    for (std::size_t begin = 0; begin < found.count; begin += block.count) {
+      block.count = 0;
+      const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
+      for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
+      find_hulls_apart(kind, block, *vertex_steps_, steps, apart);
+      for (std::size_t k = begin; k < end; ++k) {
+        *place = found[k];
+        place += apart[k - begin] == 0;
+      }
+    }
+    near.resize(static_cast<std::size_t>(place - near.data()));
+    if (surface_.has_recut_faces())
+      std::erase_if(
+          near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
   }
 
   /// Pairs are kept up to 64 a primitive, which takes as much memory as the trees several times over.
@@ -174,20 +211,11 @@ class BvhSource final : public CandidateSource {
     return std::max<std::int64_t>(1 << 20, 16 * primitives);
   }
 
-  void hand_out(EventKind kind, const PairBuffer& found, std::vector<Candidate>& batch, const Sink& sink) const {
-    for (std::size_t begin = 0; begin < found.count; begin += batch_size) {
-      const std::size_t end = std::min(found.count, begin + batch_size);
-      batch.clear();
-      for (std::size_t k = begin; k < end; ++k)
-        if (!surface_.has_recut_faces() || !surface_.in_one_recut_face(vertices_of(surface_, kind, found[k])))
-          batch.push_back(found[k]);
-      if (!batch.empty()) sink(batch);
-    }
-  }
-
   const Surface& surface_;
   GroupTable bodies_;
   SweptVertices swept_;
+  const VertexSteps* vertex_steps_ = nullptr;
+  double separation_ = 0;
   std::vector<Index> numbers_;  // of the vertices: their rows
   PrimitiveTree vertices_, edges_, faces_;
   std::array<Pairs, 2> pairs_;

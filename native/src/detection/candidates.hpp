@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "detection/plane_filter.hpp"
 #include "stiv/detection/bvh.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/event.hpp"
@@ -23,6 +24,7 @@ struct Step {
   const Positions& start;
   const Positions& end;
   Proximity proximity;
+  const VertexSteps* vertices = nullptr;  ///< the same for vector code to load, while a detector looks at the step
 };
 
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a

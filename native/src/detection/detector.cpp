@@ -95,8 +95,8 @@ class Detector::Implementation {
     surface_->check_positions(step.end);
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
-    source_->update(step, execution);
     vertices_.update(step.start, step.end, execution);
+    source_->update({step.start, step.end, step.proximity, &vertices_}, execution);
     const PairTest test(*surface_, step, narrow_phase_, vertices_);
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);

@@ -13,9 +13,6 @@ namespace {
 
 constexpr Index chunk_size = 4096;
 
-/// Boxes grow by this fraction of the displacement of their vertex.
-constexpr double slack_of_displacement = 1.0 / 16;
-
 std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
 const double* row(const Positions& positions, Index vertex) {
@@ -128,7 +125,7 @@ SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& su
   return frame;
 }
 
-PackedBox SweptVertices::box(const Step& step, Index vertex, double slack) const {
+PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   const double *from = row(step.start, vertex), *to = row(step.end, vertex);
   double start[3], end[3], reach = 0;
   bool moves = false;
@@ -150,22 +147,31 @@ PackedBox SweptVertices::box(const Step& step, Index vertex, double slack) const
   return box;
 }
 
-bool SweptVertices::all_inside(const Step& step, const Execution& execution) const {
-  std::atomic<bool> inside{true};
+/// Is the start that of the vertex's box, and the end within half of its slack of the segment? Half, for rounding.
+bool SweptVertices::near_segment(const Step& step, Index vertex) const {
+  if (!same_bits(step.start, start_, vertex, 1)) return false;
+  const Vector3 start = start_.row(vertex), motion = Vector3(end_.row(vertex)) - start - frame_.motion;
+  const Vector3 other = Vector3(step.end.row(vertex)) - start - frame_.motion;
+  const double length2 = motion.squaredNorm();
+  if (!(length2 > 0)) return false;
+  const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
+  return (other - along * motion).cwiseAbs().maxCoeff() <= slack / 2 * motion.cwiseAbs().maxCoeff();
+}
+
+bool SweptVertices::all_near(const Step& step, const Execution& execution) const {
+  std::atomic<bool> near{true};
   execution.for_chunks(static_cast<Index>(changed_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    for (Index k = begin; k < end && inside.load(std::memory_order_relaxed); ++k) {
-      const Index vertex = changed_[at(k)];
-      if (!boxes_[at(vertex)].contains(box(step, vertex, 0))) inside.store(false, std::memory_order_relaxed);
-    }
+    for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
+      if (!near_segment(step, changed_[at(k)])) near.store(false, std::memory_order_relaxed);
   });
-  return inside;
+  return near;
 }
 
 void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
   execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end; ++k) {
       const Index vertex = vertices[at(k)];
-      boxes_[at(vertex)] = box(step, vertex, slack_of_displacement);
+      boxes_[at(vertex)] = box(step, vertex);
       start_.row(vertex) = step.start.row(vertex);
       end_.row(vertex) = step.end.row(vertex);
     }
@@ -182,7 +188,7 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
   const bool first = start_.rows() != count;
   const Frame frame = frame_for(step, found);
   changed_ = std::move(found.changed);
-  if (!first && frame == frame_ && all_inside(step, execution)) return Change::none;
+  if (!first && frame == frame_ && all_near(step, execution)) return Change::none;
   const bool all = first || frame != frame_;
   frame_ = frame;
   if (all) {

@@ -12,19 +12,25 @@ namespace stiv {
 /// does as long as all of them stay within the boxes that they have. A box is active if its vertex moves.
 ///
 /// Boxes are padded so that pairs that come within the separation, by whatever the narrow phase may err, overlap; and
-/// by a part of the vertex's displacement, so that slightly different ends of the same start stay inside.
+/// by `slack` times the vertex's displacement, so that other ends of the same start stay inside: those within the slack
+/// of the segment that the vertex moves along.
 class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
 
   enum class Change {
-    none,  ///< all boxes are as they were and hold the new step
+    none,  ///< the start is as it was, and so are all boxes; they hold the new step
     some,  ///< those of `changed` are new
     all
   };
 
   /// @throws InputError as Surface::check_positions
   Change update(const Step& step, const Execution& execution);
+
+  /// Boxes grow by this part of the displacement of their vertex in the frame, its largest component.
+  static constexpr double slack = 1.0 / 32;
+  /// The displacement of the frame that boxes are seen from.
+  const Vector3& motion() const { return frame_.motion; }
 
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   const std::vector<Index>& changed() const { return changed_; }
@@ -53,8 +59,9 @@ class SweptVertices {
 
   Survey survey(const Step& step, const Execution& execution) const;
   Frame frame_for(const Step& step, const Survey& survey) const;
-  PackedBox box(const Step& step, Index vertex, double slack) const;
-  bool all_inside(const Step& step, const Execution& execution) const;
+  PackedBox box(const Step& step, Index vertex) const;
+  bool near_segment(const Step& step, Index vertex) const;
+  bool all_near(const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;

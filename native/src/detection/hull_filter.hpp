@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "detection/plane_filter.hpp"
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// How far other steps from the same start may differ: the end of each vertex lies within `slack` times its own
+/// displacement (the largest component, less `motion`) of the segment from its start to its end, less `motion`.
+struct NearbySteps {
+  Vector3 motion = Vector3::Zero();
+  double separation = 0;
+  double slack = 0;
+};
+
+/// 1 for each pair that the plane of the start (normal to the face, or to both edges) shows apart by more than the
+/// separation and all rounding in all nearby steps: it separates the hulls of all that each side may sweep.
+/// [docs/mathematics.md, "Rounds of one edit"]
+void find_hulls_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
+                      PairFlags& apart);
+
+}  // namespace stiv
