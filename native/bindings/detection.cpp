@@ -98,7 +98,9 @@ void bind_detection(py::module_& module) {
       .value("bvh", BroadPhase::bvh)
       .value("hash_grid", BroadPhase::hash_grid)
       .value("brute_force", BroadPhase::brute_force);
-  py::enum_<NarrowPhase>(module, "NarrowPhase").value("conservative", NarrowPhase::conservative);
+  py::enum_<NarrowPhase>(module, "NarrowPhase")
+      .value("conservative", NarrowPhase::conservative)
+      .value("polynomial", NarrowPhase::polynomial);
   module.def("times_of_impact", &times_of_impact, Release());
   py::class_<GuardedDetector>(module, "Detector")
       .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>())

@@ -52,6 +52,7 @@ class BroadPhase(enum.Enum):
 
 class NarrowPhase(enum.Enum):
     conservative = 0
+    polynomial = 1
 
 _EventArrays = tuple[NDArray[np.uint8], _Indices, _Floats, _Floats, _Floats, _Floats]
 

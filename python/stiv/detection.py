@@ -19,7 +19,10 @@ BROAD_PHASES: Mapping[str, _native.BroadPhase] = {
     "hash_grid": _native.BroadPhase.hash_grid,
     "brute_force": _native.BroadPhase.brute_force,
 }
-NARROW_PHASES: Mapping[str, _native.NarrowPhase] = {"conservative": _native.NarrowPhase.conservative}
+NARROW_PHASES: Mapping[str, _native.NarrowPhase] = {
+    "conservative": _native.NarrowPhase.conservative,
+    "polynomial": _native.NarrowPhase.polynomial,
+}
 
 Choice = TypeVar("Choice")
 
@@ -89,7 +92,9 @@ class Detector:
 
     surface       Surface, or triangles (F, 3) over as many vertices as the first step has
     broad_phase   "bvh": trees; "hash_grid": cells of equal size; "brute_force": all pairs, the oracle
-    narrow_phase  "conservative": advancement by separating planes, never late
+    narrow_phase  "conservative": advancement by separating planes, never late; "polynomial": as in the paper, roots of
+                  cubics (or of degree six, for a separation) less 1/100, which misses contacts on edges and corners
+                  and in a common plane
     threads       0: one for each processor; results are the same for any number
 
     Left out are pairs that share a vertex, pairs of which no vertex moves, and pairs of bodies that do not meet.

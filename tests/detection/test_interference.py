@@ -137,7 +137,7 @@ SHAPE = np.zeros((4, 3))
             lambda: stiv.find_interference([[0, 1, 2]], SHAPE, SHAPE, broad_phase="octree"),
             "'bvh', 'hash_grid', 'brute_force'",
         ),
-        (lambda: stiv.Detector([[0, 1, 2]], narrow_phase="cubic"), "no 'cubic', only 'conservative'"),
+        (lambda: stiv.Detector([[0, 1, 2]], narrow_phase="cubic"), "no 'cubic', only 'conservative', 'polynomial'"),
         (lambda: stiv.Detector([[0, 1, 2]], threads=-1), "threads: expected an integer"),
         (lambda: stiv.Detector([[0, 1, 2]]).find(SHAPE, SHAPE, 0, 1), "kept fraction"),
         (lambda: stiv.Detector(stiv.Surface([[0, 1, 2]], 3)).find(SHAPE, SHAPE), "start: shape is"),

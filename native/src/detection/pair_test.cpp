@@ -47,6 +47,8 @@ std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& mo
   switch (narrow_phase_) {
     case NarrowPhase::conservative:
       return first_contact(kind, motion, step_.proximity, latest);
+    case NarrowPhase::polynomial:
+      return first_contact_by_polynomial(kind, motion, step_.proximity, latest);
   }
   throw InputError("there is no such narrow phase");
 }

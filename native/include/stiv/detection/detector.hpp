@@ -17,7 +17,8 @@ enum class BroadPhase {
 };
 
 enum class NarrowPhase {
-  conservative  ///< advancement by separating planes: never late, never missed
+  conservative,  ///< advancement by separating planes: never late, never missed
+  polynomial     ///< roots of cubics or of degree-six polynomials, 1/100 early, as the paper has it: misses some
 };
 
 struct DetectorOptions {

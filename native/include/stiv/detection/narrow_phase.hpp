@@ -32,6 +32,13 @@ struct Contact {
 /// @param latest contacts after this time are not looked for; those up to it come out the same for any value.
 std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest = 1);
 
+/// The same as the paper has it, for comparison [P4.1, P5.2]: not conservative. Roots in time of the polynomial that is
+/// zero where vertex and plane (or the lines of both edges) are at the threshold's distance, of degree six, or three
+/// without a separation [Provot 1997]; the first at which the primitives themselves are that near. The time is 1/100
+/// early. Contacts on edges and corners at a distance, and within a common plane, are missed or late.
+std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMotion& motion, Proximity proximity,
+                                                   double latest = 1);
+
 /// Time at which the pair first is within `separation` (>= 0), never later than the true time; 0 if it starts so;
 /// infinity (`never`) if it never does.
 double time_of_impact(EventKind kind, const PairMotion& motion, double separation);
