@@ -163,3 +163,23 @@ def test_bad_input_is_named(vertices: Floats, faces: Integers, message: str) -> 
 def test_nothing_gives_nothing() -> None:
     assert stiv.find_intersections(np.zeros((0, 3)), np.zeros((0, 3), np.int32)).shape == (0, 2)
     assert stiv.find_intersections(np.zeros((3, 3)), np.zeros((0, 3), np.int32)).shape == (0, 2)
+
+
+def folded_sheet(seed: int, reach: int, size: int = 6) -> tuple[Floats, Integers]:
+    """Return a connected sheet on an integer grid, some corners moved: folds, collapsed faces, coincident corners."""
+    random = np.random.default_rng(seed)
+    i, j = (k.ravel() for k in np.mgrid[:size, :size])
+    vertices = np.stack([2 * i, 2 * j, np.zeros_like(i)], axis=1)
+    stirred = random.random(len(vertices)) < 0.3
+    vertices[stirred] += random.integers(-reach, reach + 1, (stirred.sum(), 3))
+    corner = (i * size + j).reshape(size, size)
+    a, b, c, d = (k.ravel() for k in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))
+    return vertices.astype(np.float64), np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32), st.integers(1, 4), st.sampled_from([2.0**-23, 1.0, 2.0**23]))
+def test_folded_sheets_equal_brute_force(seed: int, reach: int, scale: float) -> None:
+    vertices, faces = folded_sheet(seed, reach)
+    found = stiv.find_intersections(scale * vertices, faces)
+    assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)

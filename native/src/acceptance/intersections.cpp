@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "acceptance/primitives.hpp"
+#include "acceptance/pair_examination.hpp"
+#include "acceptance/stars.hpp"
 
 namespace stiv {
 
@@ -54,21 +55,17 @@ class Search {
   /// Calls `report(pair)` for what intersects, until it returns false.
   template <class Report>
   void scan(const Bvh::Task& task, const Report& report) const {
+    PairExamination examination(surface_, first_, second_, q_, report);
     PairBuffer candidates;
     bool more = true;
     candidates.limit = 4096;
     candidates.full = [&](PairBuffer& found) {
-      for (std::size_t k = 0; k < found.count && more; ++k)
-        if (meet(first_.corners(found.first[k]), second_.corners(found.second[k]))) more = report(found[k]);
+      for (std::size_t k = 0; k < found.count && more; ++k) more = examination.take(found[k]);
       found.count = 0;
       return more;
     };
     first_.tree().overlaps(task, second_.tree(), bodies_, candidates);
-    candidates.full(candidates);
-  }
-
-  bool meet(const std::array<Index, 3>& a, const std::array<Index, 3>& b) const {
-    return !surface_.in_one_recut_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q_);
+    if (candidates.full(candidates)) examination.finish();
   }
 
   IndexPairs sorted(const std::vector<IndexPairs>& parts) const {
@@ -97,6 +94,7 @@ class IntersectionTest::Implementation {
         triangles_(*surface_, triangle_corners(*surface_)),
         loose_edges_(*surface_, loose_edge_corners(*surface_)),
         loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
+        stars_(triangles_.all_corners(), surface_->vertex_count()),
         bodies_(meeting_bodies(*surface_)) {}
 
   IndexPairs find(const Positions& q, const Execution& execution) { return find(triangles_, q, execution); }
@@ -110,8 +108,7 @@ class IntersectionTest::Implementation {
   }
 
   bool is_free(const Positions& q, const std::vector<unsigned char>& moved, const Execution& execution) {
-    const std::vector<Bounds> boxes = vertex_bounds(q);
-    for (Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_}) first->update(boxes, moved);
+    update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
     for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
       if (Search(*surface_, *first, triangles_, bodies_, q).any(execution)) return false;
     return true;
@@ -119,14 +116,22 @@ class IntersectionTest::Implementation {
 
  private:
   IndexPairs find(Primitives& first, const Positions& q, const Execution& execution) {
-    const std::vector<Bounds> boxes = vertex_bounds(q);
-    first.update(boxes, {});
-    if (&first != &triangles_) triangles_.update(boxes, {});
+    update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
     return Search(*surface_, first, triangles_, bodies_, q).all(execution);
+  }
+
+  using Kinds = std::vector<Primitives*>;
+
+  void update(const Kinds& kinds, const Positions& q, const std::vector<unsigned char>& moved,
+              const Execution& execution) {
+    const std::vector<Bounds> boxes = vertex_bounds(q);
+    for (Primitives* kind : kinds) kind->update(boxes, moved);
+    triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution));
   }
 
   std::shared_ptr<const Surface> surface_;
   Primitives triangles_, loose_edges_, loose_vertices_;
+  Stars stars_;
   GroupTable bodies_;
 };
 

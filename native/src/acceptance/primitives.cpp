@@ -69,4 +69,15 @@ void Primitives::update(const std::vector<Bounds>& vertices, const std::vector<u
   tree_->refit(boxes, moved_primitives(corners_, moved));
 }
 
+// The tree leaves out primitives with a corner of one name. Where their star is not known to be free, corners get names
+// that no other has: negative numbers.
+void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars) {
+  names_.resize(3 * corners_.size());
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    const Index vertex = corners_[k / 3][k % 3];
+    names_[k] = free_stars[place(vertex)] ? vertex : -2 - static_cast<Index>(k);
+  }
+  tree_->set_corners({names_.data(), 3});
+}
+
 }  // namespace stiv

@@ -29,13 +29,18 @@ class Primitives {
   /// `moved` as in IntersectionTest::is_free.
   void update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved);
 
+  /// From now on the tree's pairs with itself leave out those that share a vertex marked in `free_stars` (N).
+  void leave_out_neighbours(const std::vector<unsigned char>& free_stars);
+
   bool empty() const { return corners_.empty(); }
   const std::array<Index, 3>& corners(Index k) const { return corners_[static_cast<std::size_t>(k)]; }
+  const CornerList& all_corners() const { return corners_; }
   const Bvh& tree() const { return *tree_; }
 
  private:
   CornerList corners_;
   std::vector<Index> bodies_;
+  std::vector<Index> names_;  // of corners as the tree knows them, three a primitive
   std::optional<Bvh> tree_;
 };
 

@@ -74,7 +74,7 @@ Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, con
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[at(order_[place])] = static_cast<Index>(place);
   reserve_levels(groups);
-  store_corners(corners);
+  set_corners(corners);
   refit(boxes);
 }
 
@@ -94,7 +94,7 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
     }
 }
 
-void Bvh::store_corners(const CornerRows& corners) {
+void Bvh::set_corners(const CornerRows& corners) {
   corner_size_ = corners.size;
   corners_.assign(order_.size() * at(corners.size), -1);
   for (std::size_t place = 0; place < order_.size(); ++place) {

@@ -200,6 +200,8 @@ void traverse_trees(const Traversal& traversal, const Bvh::Task& task) {
     descend<1, 3>(traversal, task);
   else if (a == 2 && b == 2)
     descend<2, 2>(traversal, task);
+  else if (a == 3 && b == 3)
+    descend<3, 3>(traversal, task);
   else
     descend<0, 0>(traversal, task);
 }

@@ -80,6 +80,9 @@ class Bvh {
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
+  /// Other corners for the same primitives.
+  void set_corners(const CornerRows& corners);
+
   /// Two subtrees to be compared, a unit of work.
   struct Task {
     Index level = 0, node = 0;              ///< of the tree asked
@@ -119,7 +122,6 @@ class Bvh {
   void finish_node(Level& level, std::size_t node);
   void summarise(std::size_t level, std::size_t node);
   void reserve_levels(const std::vector<Index>& groups);
-  void store_corners(const CornerRows& corners);
 
   template <class BoxOf>
   void refit_block(std::size_t block, const BoxOf& box_of);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stiv/execution.hpp"
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// Proofs, vertex by vertex, that the triangles around a vertex meet in nothing but the corners and edges they share:
+/// seen along some direction, all of them face it and they turn around the vertex less than once, or exactly once.
+/// [docs/mathematics.md, "Stars"]
+///
+/// On a smooth surface that is every vertex, and no pair of neighbours needs a test of its own.
+class Stars {
+ public:
+  /// @param triangles (F, 3) corners, repeated ones allowed
+  Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
+
+  /// Is the star of `vertex` proven free at positions q? True is certain; false means nothing.
+  bool proven_free(Index vertex, const Positions& q) const;
+
+  /// 1 for each vertex whose star is proven free. `moved` as in IntersectionTest::is_free: stars in which nothing moved
+  /// are not asked for, and get 0.
+  std::vector<unsigned char> find_free(const Positions& q, const std::vector<unsigned char>& moved,
+                                       const Execution& execution) const;
+
+ private:
+  /// The vertices around, in order: triangle k is (vertex, rim k, rim k + 1); around a closed star the last is the
+  /// first. Empty: the triangles are not a single fan, or too many.
+  std::span<const Index> rim(Index vertex) const;
+
+  std::vector<Index> start_;  // of each rim, (N + 1)
+  std::vector<Index> rims_;
+};
+
+}  // namespace stiv
