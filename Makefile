@@ -17,7 +17,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
+.PHONY: peers help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -54,6 +54,8 @@ extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as 
 bench: build/venv/bench ## Run every benchmark with its default settings, beside the peers from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
 
+peers: build/venv/bench build/cgal ## Install what benchmarks race: ipctk and libigl from PyPI, CGAL from Debian
+
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
@@ -76,6 +78,12 @@ build/venv/lint: tools/requirements/lint.txt build/venv/ready
 
 build/venv/bench: tools/requirements/bench.txt build/venv/stiv
 	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/bench.txt
+	touch $@
+
+build/cgal: tools/debian_packages_peers.txt benchmarks/intersections/cgal_self_intersections.cpp $(OPENSUBDIV)
+	tools/install_debian_packages.sh tools/debian_packages_peers.txt
+	cmake -S . -B build/bench -G Ninja -DSTIV_BUILD_BENCHMARKS=ON -DSTIV_BUILD_TESTS=OFF -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build build/bench --target cgal_self_intersections
 	touch $@
 
 $(OPENSUBDIV): tools/opensubdiv_source.sh | build/debian

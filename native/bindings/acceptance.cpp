@@ -37,6 +37,19 @@ bool step_is_free(const SurfacePointer& surface, const Positions& start, const P
   return test.is_free(start, {}, execution) && is_step_free(detector, test, start, end, {separation}, execution);
 }
 
+/// The static test of one surface, its trees kept between calls.
+struct KeptIntersectionTest {
+  KeptIntersectionTest(const SurfacePointer& surface, int thread_count) : test(surface), threads(thread_count) {}
+
+  Edges find(const Positions& q) {
+    Execution execution(threads);
+    return as_rows(test.find(q, execution));
+  }
+
+  IntersectionTest test;
+  int threads;
+};
+
 /// What a step is tested with, kept between steps of one surface.
 struct StepCheck {
   StepCheck(const SurfacePointer& surface, int thread_count)
@@ -59,6 +72,9 @@ void bind_acceptance(py::module_& module) {
   module.def("find_intersections", &find_intersections, Release());
   module.def("find_loose_intersections", &find_loose_intersections, Release());
   module.def("is_step_free", &step_is_free, Release());
+  py::class_<KeptIntersectionTest>(module, "IntersectionTest")
+      .def(py::init<const SurfacePointer&, int>())
+      .def("find", &KeptIntersectionTest::find, Release());
   py::class_<StepCheck>(module, "StepCheck")
       .def(py::init<const SurfacePointer&, int>())
       .def("is_free", &StepCheck::is_free, Release());

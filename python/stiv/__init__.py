@@ -16,7 +16,7 @@ from stiv.deformation import (
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
-from stiv.intersections import StepCheck, find_intersections, find_loose_intersections, is_step_free
+from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.subdivision import Cage, catmull_clark, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
@@ -33,6 +33,7 @@ __all__ = [
     "EditSession",
     "Events",
     "InputError",
+    "IntersectionTest",
     "StartIntersectsError",
     "StepCheck",
     "StorageFrame",

@@ -28,6 +28,23 @@ def find_intersections(
     return _native.find_intersections(surface.native, q, as_count(threads, "threads"))
 
 
+class IntersectionTest:
+    """The test of `find_intersections` for many states of one surface; keeps its trees between them.
+
+    surface  Surface
+    threads  0: one for each processor; results are the same for any number
+    """
+
+    def __init__(self, surface: Surface, threads: int = 0) -> None:
+        """Take the surface; trees are built for the first positions, and follow those that come."""
+        self._vertex_count = surface.vertex_count
+        self._native = _native.IntersectionTest(surface.native, as_count(threads, "threads"))
+
+    def find(self, vertices: ArrayLike) -> Indices:
+        """Return all pairs of triangles that intersect at `vertices`, (N, 3); see find_intersections."""
+        return self._native.find(as_floats(vertices, "vertices", (self._vertex_count, 3)))
+
+
 def find_loose_intersections(
     vertices: ArrayLike, surface: Surface, *, all_bodies: bool = False, threads: int = 0
 ) -> tuple[Indices, Indices]:

@@ -126,6 +126,18 @@ def test_linked_rings() -> None:
     assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)
 
 
+def test_kept_trees_follow_the_positions() -> None:
+    vertices, faces = soup(3)
+    test = stiv.IntersectionTest(stiv.Surface(faces, len(vertices)), threads=1)
+    random = np.random.default_rng(4)
+    for _ in range(4):
+        found = test.find(vertices)
+        assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)
+        vertices = vertices + 0.2 * random.standard_normal(vertices.shape)
+    with pytest.raises(stiv.InputError, match="vertices"):
+        test.find(vertices[1:])
+
+
 def test_bodies_that_do_not_meet_are_left_out_unless_asked_for() -> None:
     vertices, faces = shapes.linked_tori(1.2)
     body = np.repeat([0, 1], len(vertices) // 2)
