@@ -122,6 +122,17 @@ def subdivision(depth: float, levels: int = 3) -> Edit:
     return _against_obstacle(name, fine, "deformable", wall, stiv.linear(weights), cage.vertices, goal)
 
 
+def loop(depth: float, levels: int = 2) -> Edit:
+    """A Loop subdivision surface under its cage of 42 points, moved down by `depth` into a wavy sheet; not one of the
+    fourteen."""
+    cage = icosphere(1).moved((0, 0, 1.1))
+    deformation, triangles = stiv.loop(stiv.Cage.of_faces(cage.faces), levels)
+    fine = Shape(deformation.surface(cage.vertices), tuple(map(tuple, triangles.tolist())))
+    goal = cage.vertices + (0.1, 0, -depth)
+    wall = triangulated(wavy_wall()).moved((0, 0, -0.02))
+    return _against_obstacle(f"loop {depth:g}", fine, "deformable", wall, deformation, cage.vertices, goal)
+
+
 def _bspline_weights(points: Array, low: Array, high: Array, counts: tuple[int, int, int]) -> tuple[Array, Array]:
     """Tri-cubic uniform B-spline weights (n, m) over a box, and the rest positions (m, 3) that reproduce space."""
     spans = np.array(counts) - 3

@@ -120,6 +120,12 @@ BoundarySmoothing boundary_of(const std::string& name) {
   throw InputError("boundary \"" + name + "\" is unknown; choose all or preserve_corners");
 }
 
+SubdivisionScheme scheme_of(const std::string& name) {
+  if (name == "catmull_clark") return SubdivisionScheme::catmull_clark;
+  if (name == "loop") return SubdivisionScheme::loop;
+  throw InputError("scheme \"" + name + "\" is unknown; choose catmull_clark or loop");
+}
+
 Cage make_cage(Index vertex_count, const Edges& edges, std::vector<Index> corners, std::vector<Index> starts,
                std::vector<float> edge_crease, std::vector<float> vertex_crease) {
   return {vertex_count, edges, std::move(corners), std::move(starts), std::move(edge_crease), std::move(vertex_crease)};
@@ -181,10 +187,12 @@ void bind_deformation(py::module_& module) {
   });
   py::class_<Cage>(module, "Cage").def(py::init(&make_cage));
   module.def("subdivision_weights", [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple,
-                                       const std::string& boundary) {
-    return rows_of(subdivision_weights(cage, {levels, limit_surface, quality, simple, boundary_of(boundary)}));
+                                       const std::string& boundary, const std::string& scheme) {
+    return rows_of(
+        subdivision_weights(cage, {levels, limit_surface, quality, simple, boundary_of(boundary), scheme_of(scheme)}));
   });
   module.def("subdivided_faces", &subdivided_faces);
+  module.def("subdivided_triangles", &subdivided_triangles);
   module.def("lattice_weights",
              [](const std::array<Index, 3>& resolution, const std::array<std::string, 3>& interpolation, Positions rest,
                 Eigen::VectorXd point_weights, const Positions& vertices, const Eigen::VectorXd& influence) {

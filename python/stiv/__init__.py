@@ -18,7 +18,7 @@ from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
-from stiv.subdivision import Cage, catmull_clark, subdivided_faces, subdivision_weights
+from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
 from stiv.weights import Weights
 
@@ -53,6 +53,7 @@ __all__ = [
     "lattice_weights",
     "linear",
     "linear_weights",
+    "loop",
     "rigid",
     "rigid_rest_controls",
     "scaling",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Catmull-Clark subdivision of polygon cages, equal to Blender's Subdivision Surface modifier."""
+"""Subdivision of cages: by Catmull and Clark, equal to Blender's Subdivision Surface modifier, and by Loop."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -64,6 +64,7 @@ def subdivision_weights(
     quality: int = 3,
     simple: bool = False,
     boundary: str = "all",
+    scheme: str = "catmull_clark",
 ) -> Weights:
     """Return the weights of the cage's vertices in the vertices of the subdivided mesh, (n, V).
 
@@ -74,10 +75,11 @@ def subdivision_weights(
     quality        1 to 10: levels of refinement around irregular vertices and creases before the limit is taken
     simple         no smoothing: only cut
     boundary       "all": corners of the boundary are rounded; "preserve_corners": they stay
+    scheme         "catmull_clark"; or "loop" for cages of triangles, cut into triangles
 
     Raises InputError for a cage that cannot be subdivided (see `Cage`), or an option out of range.
     """
-    rows = _native.subdivision_weights(_native_cage(cage), levels, limit_surface, quality, simple, boundary)
+    rows = _native.subdivision_weights(_native_cage(cage), levels, limit_surface, quality, simple, boundary, scheme)
     return Weights(*rows)
 
 
@@ -112,6 +114,26 @@ def catmull_clark(
         cage, levels, limit_surface=limit_surface, quality=quality, simple=simple, boundary=boundary
     )
     return linear(weights), quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+
+
+def loop(
+    cage: Cage, levels: int = 1, *, limit_surface: bool = True, quality: int = 3, boundary: str = "all"
+) -> tuple[Deformation, Indices]:
+    """Return the deformation of a Loop subdivision surface by its cage of triangles, and its triangles, (T, 3).
+
+    Controls are the world positions of the cage's vertices, (V, 3). An edge is cut into 2^levels, a triangle into
+    4^levels, which stand together and keep its orientation. Creases and boundaries follow the rules of `catmull_clark`
+    (a crease of 1 is infinitely sharp), with the masks of Loop's scheme. [Loop 1987; Hoppe et al. 1994]
+
+    Arguments are those of `subdivision_weights`, with levels 1 to 6.
+
+    Raises InputError as `subdivision_weights` does, and for a face that is not a triangle.
+    """
+    triangles = _native.subdivided_triangles(_native_cage(cage), levels)
+    weights = subdivision_weights(
+        cage, levels, limit_surface=limit_surface, quality=quality, boundary=boundary, scheme="loop"
+    )
+    return linear(weights), triangles
 
 
 def _native_cage(cage: Cage) -> _native.Cage:

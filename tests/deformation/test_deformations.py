@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stiv
-from tests.deformation.cages import mixed_strip
+from tests.deformation.cages import mixed_strip, octahedron
 
 Floats = NDArray[np.float64]
 RANDOM = np.random.default_rng(2)
@@ -39,6 +39,7 @@ DEFORMATIONS: dict[str, tuple[Callable[[], stiv.Deformation], Floats]] = {
     "scaling": (lambda: stiv.scaling(POINTS, np.eye(3)[[1, 2, 0]]), np.array([[0, 0, 1], [1, 2, -0.5]])),
     "side by side": (side_by_side, np.concatenate([turned(1.0), POINTS[:7]])),
     "subdivision": (lambda: stiv.catmull_clark(stiv.Cage.of_faces(mixed_strip().faces), 1)[0], mixed_strip().vertices),
+    "loop": (lambda: stiv.loop(stiv.Cage.of_faces(octahedron().faces), 2)[0], octahedron().vertices),
     "lattice": (lambda: stiv.lattice(POINTS, (2, 3, 2)), RANDOM.normal(size=(12, 3))),
 }
 
@@ -59,7 +60,7 @@ def jacobian(f: stiv.Deformation, p: Floats) -> Floats:
     return np.stack([f.push_forward(p, unit).ravel() for unit in units], axis=1)
 
 
-@pytest.mark.parametrize("name", ["linear", "lattice", "subdivision"])
+@pytest.mark.parametrize("name", ["linear", "lattice", "subdivision", "loop"])
 @pytest.mark.parametrize("smoothness", [0.1, 0.01])
 def test_linear_metric_against_a_dense_one(name: str, smoothness: float) -> None:
     make, p = DEFORMATIONS[name]

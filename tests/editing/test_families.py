@@ -19,6 +19,7 @@ CASES = [
     (families.sheets(0.4), 0.20),
     (families.fold(), 0.22),
     (families.subdivision(0.6, levels=2), 0.12),
+    (families.loop(0.6), 0.12),
     (families.vase(1.8, count=6), 0.05),
     (families.rigid(1.0), 0.60),
     (families.knot(0.5, rings=90, sides=6), 0.05),

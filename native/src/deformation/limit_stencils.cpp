@@ -53,7 +53,7 @@ std::vector<float> corner_sharpness(const Cage& cage) {
   return least;
 }
 
-/// "Simple" is Catmull-Clark with everything infinitely sharp. Where wires meet a face, its vertex is sharp too.
+/// "Simple" is the scheme with everything infinitely sharp. Where wires meet a face, its vertex is sharp too.
 Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wires, bool simple) {
   Sharpness sharpness;
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
@@ -75,6 +75,10 @@ Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wi
   return sharpness;
 }
 
+Sdc::SchemeType scheme_of(SubdivisionScheme scheme) {
+  return scheme == SubdivisionScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
+}
+
 Sdc::Options scheme_options(BoundarySmoothing boundary) {
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(boundary == BoundarySmoothing::all ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
@@ -85,7 +89,7 @@ Sdc::Options scheme_options(BoundarySmoothing boundary) {
 }
 
 std::unique_ptr<Far::TopologyRefiner> make_refiner(const Cage& cage, const Sharpness& sharpness,
-                                                   BoundarySmoothing boundary) {
+                                                   const SubdivisionOptions& options) {
   std::vector<int> corner_counts;
   for (Index face = 0; face < face_count(cage); ++face) {
     const auto [first, last] = corner_range(cage, face);
@@ -104,7 +108,7 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const Cage& cage, const Sharp
   descriptor.cornerWeights = sharpness.vertex.data();
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
   return std::unique_ptr<Far::TopologyRefiner>(
-      Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_CATMARK, scheme_options(boundary))));
+      Factory::Create(descriptor, Factory::Options(scheme_of(options.scheme), scheme_options(options.boundary))));
 }
 
 void refine(Far::TopologyRefiner& refiner, bool adaptive, int level) {
@@ -148,7 +152,7 @@ struct LimitStencils::Tables {
 
 LimitStencils::LimitStencils(const Cage& cage, const CageEdges& edges, const Wires& wires,
                              const SubdivisionOptions& options) {
-  const auto refiner = make_refiner(cage, sharpness_of(cage, edges, wires, options.simple), options.boundary);
+  const auto refiner = make_refiner(cage, sharpness_of(cage, edges, wires, options.simple), options);
   if (!refiner) throw InputError("cage: OpenSubdiv cannot subdivide these faces; check them for degenerate ones");
   const bool adaptive = options.limit_surface;
   const int level = options.simple ? 1 : adaptive ? options.quality : options.levels;

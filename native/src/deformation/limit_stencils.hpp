@@ -10,7 +10,7 @@
 namespace stiv {
 
 /// Weights of a cage's vertices in points of its subdivision surface, through OpenSubdiv with the settings of
-/// Blender's modifier.
+/// Blender's modifier; for Loop's scheme, which the modifier does not have, with the same ones.
 class LimitStencils {
  public:
   /// @throws InputError when OpenSubdiv refuses the cage.

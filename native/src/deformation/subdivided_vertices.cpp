@@ -9,15 +9,16 @@ namespace stiv {
 
 namespace {
 
-std::int64_t inner_count(Index corners, std::int64_t segments) {
+std::int64_t inner_count(SubdivisionScheme scheme, Index corners, std::int64_t segments) {
+  if (scheme == SubdivisionScheme::loop) return (segments - 1) * (segments - 2) / 2;
   const std::int64_t half = segments / 2;
   return corners == 4 ? (segments - 1) * (segments - 1) : 1 + corners * half * (half - 1);
 }
 
 }  // namespace
 
-SubdividedVertices::SubdividedVertices(const Cage& cage, const CageEdges& edges, int levels)
-    : cage_(cage), edges_(edges), segments_(Index{1} << levels) {
+SubdividedVertices::SubdividedVertices(const Cage& cage, const CageEdges& edges, SubdivisionScheme scheme, int levels)
+    : cage_(cage), edges_(edges), scheme_(scheme), segments_(Index{1} << levels) {
   std::int64_t next = cage.vertex_count + static_cast<std::int64_t>(cage.edges.rows()) * (segments_ - 1);
   const auto append = [&] {
     if (next > std::numeric_limits<Index>::max())
@@ -27,26 +28,31 @@ SubdividedVertices::SubdividedVertices(const Cage& cage, const CageEdges& edges,
   };
   append();
   for (Index face = 0; face < face_count(cage); ++face) {
-    const auto [first, last] = corner_range(cage, face);
-    next += inner_count(last - first, segments_);
+    next += inner_count(scheme, corner_count(face), segments_);
     append();
   }
 }
 
-bool SubdividedVertices::is_quad(Index face) const {
+Index SubdividedVertices::corner_count(Index face) const {
   const auto [first, last] = corner_range(cage_, face);
-  return last - first == 4;
+  return last - first;
 }
 
-Index SubdividedVertices::grid_count(Index face) const {
-  const auto [first, last] = corner_range(cage_, face);
-  return is_quad(face) ? 1 : last - first;
+bool SubdividedVertices::has_sectors(Index face) const {
+  return scheme_ == SubdivisionScheme::catmull_clark && corner_count(face) != 4;
 }
 
-Index SubdividedVertices::grid_segments(Index face) const { return is_quad(face) ? segments_ : segments_ / 2; }
+Index SubdividedVertices::grid_count(Index face) const { return has_sectors(face) ? corner_count(face) : 1; }
+
+Index SubdividedVertices::grid_segments(Index face) const { return has_sectors(face) ? segments_ / 2 : segments_; }
+
+Index SubdividedVertices::last_in_row(Index face, Index y) const {
+  return grid_segments(face) - (scheme_ == SubdivisionScheme::loop ? y : 0);
+}
 
 Index SubdividedVertices::grid_point(Index face, Index grid, Index x, Index y) const {
-  return is_quad(face) ? quad_point(face, x, y) : sector_point(face, grid, x, y);
+  if (scheme_ == SubdivisionScheme::loop) return triangle_point(face, x, y);
+  return has_sectors(face) ? sector_point(face, grid, x, y) : quad_point(face, x, y);
 }
 
 /// The k-th point on a side of a face, counted from corner `side` of it, ends included.
@@ -66,6 +72,14 @@ Index SubdividedVertices::quad_point(Index face, Index x, Index y) const {
   if (y == segments_) return edge_point(face, 2, segments_ - x);
   if (x == 0) return edge_point(face, 3, segments_ - y);
   return face_first_[static_cast<std::size_t>(face)] + (y - 1) * (segments_ - 1) + x - 1;
+}
+
+Index SubdividedVertices::triangle_point(Index face, Index x, Index y) const {
+  if (y == 0) return edge_point(face, 0, x);
+  if (x + y == segments_) return edge_point(face, 1, y);
+  if (x == 0) return edge_point(face, 2, segments_ - y);
+  const Index below = (y - 1) * (segments_ - 1) - y * (y - 1) / 2;  // inner points of the rows 1 to y - 1
+  return face_first_[static_cast<std::size_t>(face)] + below + x - 1;
 }
 
 Index SubdividedVertices::sector_point(Index face, Index sector, Index x, Index y) const {

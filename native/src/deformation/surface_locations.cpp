@@ -14,11 +14,12 @@ std::vector<SurfaceLocation> surface_locations(const Cage& cage, const Subdivide
   for (Index face = 0; face < face_count(cage); ++face) {
     const Index side = vertices.grid_segments(face), grids = vertices.grid_count(face);
     // The far row of a sector is the far column of the one before it, except for the centre, which is the first's.
-    const Index rows = vertices.is_quad(face) ? side + 1 : side;
+    const bool sectors = vertices.has_sectors(face);
+    const Index rows = sectors ? side : side + 1;
     for (Index grid = 0; grid < grids; ++grid)
       for (Index y = 0; y < rows; ++y)
-        for (Index x = 0; x <= side; ++x) place(face, grid, x, y);
-    place(face, 0, side, side);
+        for (Index x = 0; x <= vertices.last_in_row(face, y); ++x) place(face, grid, x, y);
+    if (sectors) place(face, 0, side, side);
     ptex_face += grids;
   }
   return locations;

@@ -7,7 +7,8 @@
 
 namespace stiv {
 
-/// A point of the limit surface: a ptex face of OpenSubdiv and coordinates in [0, 1] within it.
+/// A point of the limit surface: a ptex face of OpenSubdiv and coordinates in [0, 1] within it; s + t <= 1 in a
+/// triangle of Loop's scheme.
 struct SurfaceLocation {
   Index ptex_face = -1;  ///< -1: on no face (a loose vertex, or on a loose edge)
   double s = 0, t = 0;

@@ -75,6 +75,33 @@ TEST_CASE("subdivision: faces are oriented quads over all vertices of faces") {
   CHECK(std::adjacent_find(directed.begin(), directed.end()) == directed.end());
 }
 
+TEST_CASE("subdivision: Loop cuts triangles into triangles, with weights that add up to 1") {
+  Cage cage = mixed_cage();
+  cage.face_corners = {0, 1, 3, 1, 2, 3, 1, 4, 2};
+  cage.face_starts = {0, 3, 6, 9};
+  cage.edges.conservativeResize(9, 2);
+  cage.edges.row(8) << 1, 3;
+  cage.edge_crease.push_back(0.3F);
+  for (const int levels : {1, 2, 3}) {
+    SubdivisionOptions options;
+    options.levels = levels;
+    options.scheme = SubdivisionScheme::loop;
+    const WeightMatrix weights = subdivision_weights(cage, options);
+    const Index cuts = 1 << levels;
+    CHECK(weights.rows() == 7 + 9 * (cuts - 1) + 3 * (cuts - 1) * (cuts - 2) / 2);
+    CHECK((weights * Eigen::VectorXd::Ones(7) - Eigen::VectorXd::Ones(weights.rows())).cwiseAbs().maxCoeff() < 1e-12);
+    const Triangles triangles = subdivided_triangles(cage, levels);
+    CHECK(triangles.rows() == 3 * cuts * cuts);
+    std::vector<std::pair<Index, Index>> directed;
+    for (Index face = 0; face < triangles.rows(); ++face)
+      for (Index k = 0; k < 3; ++k) directed.emplace_back(triangles(face, k), triangles(face, (k + 1) % 3));
+    std::sort(directed.begin(), directed.end());
+    CHECK(std::adjacent_find(directed.begin(), directed.end()) == directed.end());
+  }
+  CHECK_THROWS_WITH_AS(subdivided_triangles(mixed_cage(), 1), doctest::Contains("face 0: it has 4 corners"),
+                       InputError);
+}
+
 TEST_CASE("subdivision: bad cages are named") {
   const SubdivisionOptions options;
   Cage cage = mixed_cage();

@@ -8,7 +8,11 @@
 
 namespace stiv {
 
-/// Catmull-Clark subdivision as Blender's Subdivision Surface modifier does it.
+enum class SubdivisionScheme {
+  catmull_clark,  ///< polygons, as Blender's Subdivision Surface modifier does it
+  loop            ///< triangles alone [Loop 1987]; creases and boundaries by the same rules
+};
+
 enum class BoundarySmoothing {
   all,              ///< boundaries are smoothed, corners too
   preserve_corners  ///< corners of the boundary stay sharp
@@ -20,6 +24,7 @@ struct SubdivisionOptions {
   int quality = 3;            ///< 1..10, the modifier's own value; used with limit_surface
   bool simple = false;        ///< the modifier's "Simple" type: no smoothing
   BoundarySmoothing boundary = BoundarySmoothing::all;
+  SubdivisionScheme scheme = SubdivisionScheme::catmull_clark;
 };
 
 /// A polygon cage: vertices by number, edges and faces in their own order, both of which fix the vertex order of the
@@ -36,16 +41,19 @@ struct Cage {
 /// Weights of the cage's vertices in the vertices of the subdivided mesh, in the order Blender gives them:
 /// cage vertices, inner vertices of edges, inner vertices of faces. (BLENDER: OpenSubdiv Far; sharpness = 10 crease^2.)
 /// @throws InputError naming face or edge: fewer than 3 corners or one twice, index out of range, an edge missing from
-///         the list, crease out of [0, 1], levels or quality out of range.
+///         the list, crease out of [0, 1], levels or quality out of range, Loop's scheme on a face of more than 3.
 WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& options);
 
 /// Corner indices of quads, (Q, 4).
 using Quads = Eigen::Matrix<Index, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-/// The faces of the subdivided mesh, all quads, in the vertex order of `subdivision_weights` and with the orientation
-/// of the cage's faces; those of a cage face stand together.
+/// The faces of the mesh by Catmull and Clark, all quads, in the vertex order of `subdivision_weights` and with the
+/// orientation of the cage's faces; those of a cage face stand together.
 /// @param levels 1..6
 /// @throws InputError as `subdivision_weights`
 Quads subdivided_faces(const Cage& cage, int levels);
+
+/// The faces of the mesh by Loop, all triangles: otherwise as `subdivided_faces`.
+Triangles subdivided_triangles(const Cage& cage, int levels);
 
 }  // namespace stiv
