@@ -10,12 +10,12 @@ from .shoots import shoots
 from .vase import HEIGHT, vase
 
 START = HEIGHT + 0.06  # height of the bunch's foot
-LOWERED, GROWTH = 1.15, 1.18
-LOWERINGS, SCALINGS = 46, 16
+LOWERED, GROWTH = 1.2, 1.25
+LOWERINGS, SCALINGS = 48, 16
 
 
 def motion() -> tuple[Step, ...]:
-    """The bunch lowered into the vase, then scaled up there: 62 edits."""
+    """The bunch lowered into the vase, then scaled up there: 64 edits."""
     everything = on_points("Lattice")
     growth = GROWTH ** (1 / SCALINGS)
     return (
