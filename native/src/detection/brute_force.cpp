@@ -13,7 +13,11 @@ class BruteForce final : public CandidateSource {
  public:
   explicit BruteForce(const Surface& surface) : surface_(surface) {}
 
-  void update(const Step& step, const Execution&) override { relevance_.emplace(surface_, step); }
+  void update(const Step& step, const Execution&) override {
+    surface_.check_positions(step.start);
+    surface_.check_positions(step.end);
+    relevance_.emplace(surface_, step);
+  }
 
   Index chunk_count(EventKind kind) const override { return Execution::chunk_count(firsts(kind), chunk_size); }
 

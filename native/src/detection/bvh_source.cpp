@@ -29,12 +29,13 @@ GroupTable table_of_bodies(const Surface& surface) {
   return all ? GroupTable() : GroupTable(count, std::move(meets));
 }
 
-/// Primitives of one kind as rows of vertices, with a tree over them.
+/// Primitives of one kind as rows of `size` vertices, with a tree over them.
+template <Index size>
 class PrimitiveTree {
  public:
-  /// @param rows (n, size), alive as long as this
-  PrimitiveTree(const Surface& surface, const Index* rows, Index count, Index size)
-      : surface_(surface), rows_(rows), count_(count), size_(size) {}
+  /// @param rows (count, size), alive as long as this
+  PrimitiveTree(const Surface& surface, const Index* rows, Index count)
+      : surface_(surface), rows_(rows), count_(count) {}
 
   /// Brings the boxes up to date after `change` of the vertices' boxes.
   void update(const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
@@ -43,7 +44,7 @@ class PrimitiveTree {
     if (change == SweptVertices::Change::all) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
-      if (!incidence_) incidence_.emplace(rows_, count_, size_, surface_.vertex_count());
+      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
       tree_->refit_some(incidence_->rows_with(swept.changed()), box_of);
     }
   }
@@ -51,8 +52,9 @@ class PrimitiveTree {
   const Bvh& tree() const { return *tree_; }
 
  private:
-  std::span<const Index> row(Index primitive) const {
-    return {rows_ + static_cast<std::ptrdiff_t>(primitive) * size_, at(size_)};
+  std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
+    return std::span<const Index, static_cast<std::size_t>(size)>(rows_ + static_cast<std::ptrdiff_t>(primitive) * size,
+                                                                  static_cast<std::size_t>(size));
   }
 
   template <class BoxOf>
@@ -63,12 +65,12 @@ class PrimitiveTree {
       boxes[at(primitive)] = box_of(primitive).bounds();
       bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
     }
-    tree_.emplace(boxes, bodies, CornerRows{rows_, size_});
+    tree_.emplace(boxes, bodies, CornerRows{rows_, size});
   }
 
   const Surface& surface_;
   const Index* rows_;
-  Index count_, size_;
+  Index count_;
   std::optional<Bvh> tree_;
   std::optional<Incidence> incidence_;
 };
@@ -82,9 +84,9 @@ class BvhSource final : public CandidateSource {
         bodies_(table_of_bodies(surface)),
         swept_(surface),
         numbers_(at(surface.vertex_count())),
-        vertices_(surface, numbers_.data(), surface.vertex_count(), 1),
-        edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()), 2),
-        faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows()), 3) {
+        vertices_(surface, numbers_.data(), surface.vertex_count()),
+        edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows())),
+        faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows())) {
     std::iota(numbers_.begin(), numbers_.end(), 0);
   }
 
@@ -93,7 +95,9 @@ class BvhSource final : public CandidateSource {
     separation_ = step.proximity.separation;
     const SweptVertices::Change change = swept_.update(step, execution);
     if (change == SweptVertices::Change::none && collected_) return;
-    for (PrimitiveTree* primitives : {&vertices_, &edges_, &faces_}) primitives->update(swept_, change, execution);
+    vertices_.update(swept_, change, execution);
+    edges_.update(swept_, change, execution);
+    faces_.update(swept_, change, execution);
     collect(execution);
   }
 
@@ -186,20 +190,19 @@ class BvhSource final : public CandidateSource {
     const NearbySteps steps{swept_.motion(), separation_, SweptVertices::slack};
     PairBlock block;
     PairFlags apart;
-    const std::size_t before = near.size();
-    near.resize(before + found.count);
-    Candidate* place = near.data() + before;
+    std::array<Candidate, PairBlock::capacity> some;
     for (std::size_t begin = 0; begin < found.count; begin += block.count) {
       block.count = 0;
       const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
       for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
       find_hulls_apart(kind, block, *vertex_steps_, steps, apart);
+      std::size_t count = 0;
       for (std::size_t k = begin; k < end; ++k) {
-        *place = found[k];
-        place += apart[k - begin] == 0;
+        some[count] = found[k];
+        count += apart[k - begin] == 0;
       }
+      near.insert(near.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
     }
-    near.resize(static_cast<std::size_t>(place - near.data()));
     if (surface_.has_recut_faces())
       std::erase_if(
           near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
@@ -217,7 +220,9 @@ class BvhSource final : public CandidateSource {
   const VertexSteps* vertex_steps_ = nullptr;
   double separation_ = 0;
   std::vector<Index> numbers_;  // of the vertices: their rows
-  PrimitiveTree vertices_, edges_, faces_;
+  PrimitiveTree<1> vertices_;
+  PrimitiveTree<2> edges_;
+  PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
   bool collected_ = false;
 };

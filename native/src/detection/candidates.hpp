@@ -36,6 +36,7 @@ class CandidateSource {
   using Sink = std::function<void(std::span<Candidate>)>;
 
   virtual ~CandidateSource() = default;
+  /// @throws InputError as Surface::check_positions, the shape aside
   virtual void update(const Step& step, const Execution& execution) = 0;
   virtual Index chunk_count(EventKind kind) const = 0;
   virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;

@@ -91,8 +91,7 @@ class Detector::Implementation {
   /// Calls `decide(test, kind)(candidate, result)` for every candidate that needs the narrow phase.
   template <class Decide>
   std::vector<ChunkResult> search(const Step& step, Execution& execution, const Decide& decide) {
-    surface_->check_positions(step.start);
-    surface_->check_positions(step.end);
+    check_shape(step);
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
     vertices_.update(step.start, step.end, execution);
@@ -114,6 +113,12 @@ class Detector::Implementation {
     });
     count(results, execution.counters);
     return results;
+  }
+
+  /// What the numbers are is for the source to check.
+  void check_shape(const Step& step) const {
+    for (const Positions* positions : {&step.start, &step.end})
+      if (positions->rows() != surface_->vertex_count()) surface_->check_positions(*positions);
   }
 
   static void count(const std::vector<ChunkResult>& results, Counters& counters) {

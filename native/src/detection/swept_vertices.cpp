@@ -38,7 +38,8 @@ float round_down(double value) {
 struct SweptVertices::Survey {
   std::vector<Index> changed;  ///< vertices whose step is not the one of their box, ascending
   Vector3 low = Vector3::Constant(never), high = -low;
-  Vector3 sum = Vector3::Zero();  ///< of the displacements
+  Vector3 sum = Vector3::Zero();     ///< of the displacements
+  Vector3 change = Vector3::Zero();  ///< of the ends, summed
   double sum_of_squares = 0;
   bool finite = true;
 
@@ -47,6 +48,7 @@ struct SweptVertices::Survey {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
     sum += other.sum;
+    change += other.change;
     sum_of_squares += other.sum_of_squares;
     finite = finite && other.finite;
   }
@@ -81,6 +83,7 @@ SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& e
         if (!first && same_bits(step.start, start_, vertex, 1) && same_bits(step.end, end_, vertex, 1)) continue;
         part.changed.push_back(vertex);
         part.include(row(step.start, vertex), row(step.end, vertex));
+        if (!first) part.change += Vector3(step.end.row(vertex)) - Vector3(end_.row(vertex));
       }
     }
   });
@@ -99,16 +102,16 @@ SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& su
   constexpr double serves = 4;
   Frame frame = frame_;
   frame.separation = step.proximity.separation;
-  if (survey.changed.empty()) return frame;
-  const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(survey.changed.size());
-  const Vector3 reach = Vector3::Constant(frame.radius);
+  if (changed_.empty()) return frame;
+  const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(changed_.size());
+  const bool reaches =
+      (survey.high - frame.centre).maxCoeff() <= frame.radius && (frame.centre - survey.low).maxCoeff() <= frame.radius;
+  if (reaches && changed < count / 2) return frame;
   Vector3 low = survey.low, high = survey.high;
   if (changed < count) {
-    low = low.cwiseMin(frame.centre - reach);
-    high = high.cwiseMax(frame.centre + reach);
+    low = low.cwiseMin(frame.centre - Vector3::Constant(frame.radius));
+    high = high.cwiseMax(frame.centre + Vector3::Constant(frame.radius));
   }
-  const bool reaches = (high - frame.centre - reach).maxCoeff() <= 0 && (frame.centre - reach - low).maxCoeff() <= 0;
-  if (reaches && changed < count / 2) return frame;
   const double radius = (high / 2 - low / 2).maxCoeff();
   if (!reaches || frame.radius > 2 * serves * radius) {
     frame.centre = low / 2 + high / 2;
@@ -136,7 +139,7 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
     reach = std::max(reach, std::abs(end[k] - start[k]));
     moves |= from[k] != to[k];
   }
-  const double padding = frame_.margin() + (moves ? slack * reach : 0);
+  const double padding = frame_.margin() + slack * reach;
   PackedBox box;
   for (std::size_t k = 0; k < 3; ++k) {
     box.values[k] = round_down(std::min(start[k], end[k]) - padding);
@@ -147,22 +150,26 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   return box;
 }
 
-/// Is the start that of the vertex's box, and the end within half of its slack of the segment? Half, for rounding.
-bool SweptVertices::near_segment(const Step& step, Index vertex) const {
+/// Is the start that of the vertex's box, and the end, less a common motion, within the slack of the segment?
+bool SweptVertices::near_segment(const Step& step, const Vector3& common, Index vertex) const {
   if (!same_bits(step.start, start_, vertex, 1)) return false;
-  const Vector3 start = start_.row(vertex), motion = Vector3(end_.row(vertex)) - start - frame_.motion;
-  const Vector3 other = Vector3(step.end.row(vertex)) - start - frame_.motion;
+  const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
+  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - common;
   const double length2 = motion.squaredNorm();
-  if (!(length2 > 0)) return false;
+  const bool may_move = boxes_[at(vertex)].active() || start == end;
+  if (!(length2 > 0) || !may_move) return false;
   const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
-  return (other - along * motion).cwiseAbs().maxCoeff() <= slack / 2 * motion.cwiseAbs().maxCoeff();
+  const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
+  const double size = start.lpNorm<1>() + end.lpNorm<1>() + common.lpNorm<1>() + frame_.motion.lpNorm<1>();
+  return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
 }
 
-bool SweptVertices::all_near(const Step& step, const Execution& execution) const {
+bool SweptVertices::all_near(const Step& step, const std::vector<Index>& vertices, const Vector3& common,
+                             const Execution& execution) const {
   std::atomic<bool> near{true};
-  execution.for_chunks(static_cast<Index>(changed_.size()), chunk_size, [&](Index begin, Index end, Index) {
+  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
-      if (!near_segment(step, changed_[at(k)])) near.store(false, std::memory_order_relaxed);
+      if (!near_segment(step, common, vertices[at(k)])) near.store(false, std::memory_order_relaxed);
   });
   return near;
 }
@@ -178,17 +185,24 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
   });
 }
 
+/// Do the boxes hold the step? A motion common to all vertices makes no difference to any pair; in a frame that moves,
+/// there may be more or less of it.
+bool SweptVertices::holds(const Step& step, const Survey& survey, const Execution& execution) const {
+  if (step.proximity.separation != frame_.separation) return false;
+  if (all_near(step, changed_, frame_.motion, execution)) return true;
+  if (frame_.motion.isZero(0)) return false;
+  std::vector<Index> all(boxes_.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all_near(step, all, frame_.motion + survey.change / static_cast<double>(all.size()), execution);
+}
+
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution) {
   const Index count = surface_.vertex_count();
-  if (step.start.rows() != count || step.end.rows() != count) {
-    surface_.check_positions(step.start);
-    surface_.check_positions(step.end);
-  }
   Survey found = survey(step, execution);
   const bool first = start_.rows() != count;
-  const Frame frame = frame_for(step, found);
   changed_ = std::move(found.changed);
-  if (!first && frame == frame_ && all_near(step, execution)) return Change::none;
+  if (!first && holds(step, found, execution)) return Change::none;
+  const Frame frame = frame_for(step, found);
   const bool all = first || frame != frame_;
   frame_ = frame;
   if (all) {

@@ -39,7 +39,7 @@ class SweptVertices {
   template <class Vertices>
   PackedBox box_of(const Vertices& vertices) const {
     PackedBox box = boxes_[static_cast<std::size_t>(vertices[0])];
-    for (Index k = 1; k < static_cast<Index>(vertices.size()); ++k)
+    for (std::size_t k = 1; k < static_cast<std::size_t>(vertices.size()); ++k)
       box.include(boxes_[static_cast<std::size_t>(vertices[k])]);
     return box;
   }
@@ -60,8 +60,10 @@ class SweptVertices {
   Survey survey(const Step& step, const Execution& execution) const;
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
-  bool near_segment(const Step& step, Index vertex) const;
-  bool all_near(const Step& step, const Execution& execution) const;
+  bool near_segment(const Step& step, const Vector3& common, Index vertex) const;
+  bool all_near(const Step& step, const std::vector<Index>& vertices, const Vector3& common,
+                const Execution& execution) const;
+  bool holds(const Step& step, const Survey& survey, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;

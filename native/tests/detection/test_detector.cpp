@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "detection/event_bits.hpp"
 #include "detection/scenes.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/distance.hpp"
@@ -12,17 +13,6 @@
 using namespace stiv;
 
 namespace {
-
-bool same_bits(const Events& a, const Events& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const bool same = a[k].kind == b[k].kind && a[k].vertices == b[k].vertices && a[k].time == b[k].time &&
-                      a[k].weights == b[k].weights && a[k].normal == b[k].normal &&
-                      a[k].start_distance == b[k].start_distance;
-    if (!same) return false;
-  }
-  return true;
-}
 
 Events find(const MovingScene& scene, BroadPhase broad_phase, int threads, double separation) {
   Execution execution(threads);
@@ -173,6 +163,34 @@ TEST_CASE("detector: pairs of which nothing moves, and bodies that do not meet, 
   definition.ignored = {{0, 1}};
   scene.surface = std::make_shared<const Surface>(definition);
   CHECK(find(scene, BroadPhase::bvh, 1, 0.01).empty());
+}
+
+TEST_CASE("detector: faces without area and edges without length meet by their vertices and edges") {
+  // A face whose corners lie on a line, one whose corners coincide and one that repeats a corner; a net falls on them.
+  SurfaceDefinition definition;
+  definition.vertex_count = 9 + 4;
+  definition.triangles.resize(5, 3);
+  definition.triangles << 0, 1, 2, 3, 4, 5, 6, 7, 7, 9, 10, 11, 9, 11, 12;
+  MovingScene scene;
+  scene.surface = std::make_shared<const Surface>(definition);
+  scene.start.resize(13, 3);
+  scene.start << 0.2, 0.1, 0, 0.5, 0.1, 0, 0.8, 0.1, 0,  //
+      0.5, 0.5, 0, 0.5, 0.5, 0, 0.5, 0.5, 0,             //
+      0.3, 0.9, 0, 0.7, 0.9, 0, 2, 2, 2,                 //
+      0, 0, 0.3, 1, 0, 0.3, 1, 1, 0.3, 0, 1, 0.3;
+  scene.end = scene.start;
+  scene.end.bottomRows(4).col(2).array() -= 0.6;
+  for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::hash_grid, BroadPhase::brute_force}) {
+    std::array<bool, 13> met{};
+    for (const Event& event : find(scene, broad_phase, 1, 1e-3)) {
+      CHECK(event.time == doctest::Approx((0.3 - 1e-3) / 0.6).epsilon(1e-2));
+      for (const Index vertex : event.vertices) met[static_cast<std::size_t>(vertex)] = true;
+    }
+    for (std::size_t vertex = 0; vertex < 8; ++vertex) CHECK(met[vertex]);
+  }
+  const Events expected = find(scene, BroadPhase::brute_force, 1, 1e-3);
+  CHECK(same_bits(find(scene, BroadPhase::bvh, 1, 1e-3), expected));
+  CHECK(same_bits(find(scene, BroadPhase::hash_grid, 1, 1e-3), expected));
 }
 
 TEST_CASE("detector: empty surfaces and bad input") {

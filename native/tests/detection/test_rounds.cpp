@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include "detection/event_bits.hpp"
+#include "detection/scenes.hpp"
+#include "stiv/detection/detector.hpp"
+
+using namespace stiv;
+
+namespace {
+
+constexpr Proximity proximity{0.004, 0.5};
+
+Events found_by(Detector& detector, const Positions& start, const Positions& end, int threads) {
+  Execution execution(threads);
+  return detector.find(start, end, proximity, execution);
+}
+
+Events expected(const MovingScene& scene, const Positions& start, const Positions& end) {
+  Detector detector(scene.surface, {.broad_phase = BroadPhase::brute_force});
+  return found_by(detector, start, end, 1);
+}
+
+/// Ends of rounds of an edit: back towards the start, aside by more or less, carried along, and with other parts
+/// moving.
+std::vector<Positions> ends_of_rounds(const MovingScene& scene, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Positions motion = scene.end - scene.start;
+  std::vector<Positions> ends;
+  for (const double back : {0.9, 0.5, 0.0}) ends.push_back(scene.start + back * motion);
+  Positions each = scene.end;
+  for (Index vertex = 0; vertex < each.rows(); ++vertex)
+    each.row(vertex) = scene.start.row(vertex) + unit(random) * motion.row(vertex);
+  ends.push_back(each);
+  for (const double aside : {0.001, 0.02, 0.5})
+    ends.push_back(scene.end + aside * Positions(motion.rowwise().reverse()));
+  ends.push_back(scene.end.rowwise() + Eigen::RowVector3d(0.3, -0.2, 0.1));
+  Positions part = scene.end;
+  part.bottomRows(part.rows() / 3) = scene.start.bottomRows(part.rows() / 3);
+  ends.push_back(part);
+  part.row(part.rows() - 1) += Eigen::RowVector3d(0, 0, -0.2);
+  ends.push_back(part);
+  return ends;
+}
+
+void compare_rounds(const MovingScene& scene, unsigned seed) {
+  std::mt19937 random(seed);
+  Detector one(scene.surface), two(scene.surface);
+  found_by(one, scene.start, scene.end, 1);
+  found_by(two, scene.start, scene.end, 2);
+  for (const Positions& end : ends_of_rounds(scene, random)) {
+    const Events events = expected(scene, scene.start, end);
+    CHECK(same_bits(found_by(one, scene.start, end, 1), events));
+    CHECK(same_bits(found_by(two, scene.start, end, 2), events));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("rounds: a detector that keeps its pairs finds the same, bit by bit, as one that looks at all of them") {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    MovingScene scene = stirred_sheets(9, 3, 0.06, seed);
+    compare_rounds(scene, seed);
+    scene.end.topRows(81) = scene.start.topRows(81);  // one sheet rests
+    compare_rounds(scene, seed);
+    scene.end.bottomRows(162).rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.9);  // the others fall on it and through
+    compare_rounds(scene, seed);
+  }
+}
+
+TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {
+  MovingScene scene = stirred_sheets(10, 3, 0, 5);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> noise(-0.03, 0.03);
+  std::uniform_int_distribution<Index> some(0, 290);
+  Detector detector(scene.surface);
+  for (int edit = 0; edit < 12; ++edit) {
+    Positions end = scene.start;
+    const Index first = some(random);
+    for (Index vertex = first; vertex < first + 10; ++vertex)
+      for (Index axis = 0; axis < 3; ++axis) end(vertex, axis) += noise(random);
+    for (const double part : {1.0, 0.8}) {
+      const Positions to = scene.start + part * (end - scene.start);
+      CHECK(same_bits(found_by(detector, scene.start, to, 1 + edit % 2), expected(scene, scene.start, to)));
+    }
+    scene.start = end;
+  }
+}
+
+TEST_CASE("rounds: pairs are looked at again only where the step is another") {
+  const MovingScene scene = stirred_sheets(12, 3, 0.05, 7);
+  Detector detector(scene.surface);
+  found_by(detector, scene.start, scene.end, 1);
+  Execution same(1), local(1);
+  detector.find(scene.start, scene.start + 0.9 * (scene.end - scene.start), proximity, same);
+  Positions end = scene.start;
+  end.row(30) += Eigen::RowVector3d(0, 0, 0.02);
+  detector.find(scene.start, end, proximity, local);
+  CHECK(same.counters.candidate_pairs > 1000);
+  CHECK(local.counters.candidate_pairs > 0);
+  CHECK(local.counters.candidate_pairs < same.counters.candidate_pairs / 20);
+}
