@@ -8,9 +8,8 @@ namespace stiv {
 
 namespace {
 
-/// Trials of a longer step in each step. A plane may have to turn in hundreds of parts of a step in which a triangle
-/// turns by much beside another: each part holds as long as (angle)^2 times the size stays below the gap.
-constexpr int most_trials = 12;
+/// Steps from which on an advance counts as slow: most end before.
+constexpr int slow = 2;
 /// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
 constexpr double tolerance = 1e-3;
 
@@ -59,16 +58,25 @@ Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scala
   return reach_of_plane(motion, later_normal, trial, clearance);
 }
 
-/// The time to which planes show the pair apart, from `time` on.
+/// The same from the fall of the distance over the last step: right where the nearest points run along their
+/// primitives.
+template <class Scalar>
+Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scalar& time_before,
+                         const Scalar& distance_before, const Scalar& threshold) {
+  const Scalar fall = distance_before - distance;
+  if (!(fall > 0)) return time;
+  return std::min<Scalar>(1.0, time + (distance - threshold) * (time - time_before) / fall);
+}
+
+/// The time to which planes show the pair apart, from `time` on. `expected`: when it is expected within the threshold.
 template <class Scalar>
 Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
-                 const Scalar& time) {
+                 const Scalar& time, const Scalar& expected) {
   const Scalar clearance = threshold + motion.rounding;
   const VectorOf<Scalar> normal = direction(motion, nearest, time);
   Scalar reached = reach_of_plane(motion, normal, time, clearance);
-  const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
-  Scalar trial = predicted_time(motion, nearest, aim, time);
-  for (int k = 0; k < most_trials && trial > reached; ++k) {
+  Scalar trial = expected;
+  for (int k = 0; k < Precision<Scalar>::most_trials && trial > reached; ++k) {
     reached = std::max(reached, reach_of_trial(motion, normal, time, trial, clearance));
     trial = time + (trial - time) / 2;
   }
@@ -114,15 +122,23 @@ template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
                                         const Scalar& time, double latest) {
   const Scalar clearance = threshold + motion.rounding;
+  const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
   Approach<Scalar> approach{time, {}, VectorOf<Scalar>::Zero()};
+  Scalar time_before = time, distance_before = 0;
   for (int step = 0; step < Precision<Scalar>::most_steps; ++step) {
     approach.witness = witness(motion.kind, motion.at(approach.time));
+    const Scalar distance = approach.witness.distance;
     if (arrived(motion, approach.witness, threshold)) return approach;
-    Scalar reached = next_time(motion, approach.witness, threshold, approach.time);
+    Scalar expected = predicted_time(motion, approach.witness, aim, approach.time);
+    if (step >= slow)
+      expected = std::max(expected, extrapolated_time(approach.time, distance, time_before, distance_before, aim));
+    Scalar reached = next_time(motion, approach.witness, threshold, approach.time, expected);
     if (reached <= approach.time) reached = reach_of_other_planes(motion, approach.time, clearance);
     if (reached >= 1 || reached > latest) return std::nullopt;
     if (reached <= approach.time) break;
     approach.last_normal = direction(motion, approach.witness, approach.time);
+    time_before = approach.time;
+    distance_before = distance;
     approach.time = reached;
   }
   if (boxes_apart(motion, clearance)) return std::nullopt;

@@ -89,6 +89,9 @@ struct Precision<double> {
   /// Steps of one advancement. Contacts take 2 to 6; those that touch without crossing take a fixed fraction of the
   /// wait at each.
   static constexpr int most_steps = 256;
+  /// Trials of a longer step in each step. A plane may have to turn in hundreds of parts of a step in which a triangle
+  /// turns by much beside another: each part holds as long as (angle)^2 times the size stays below the gap.
+  static constexpr int most_trials = 12;
 };
 
 template <>
@@ -96,6 +99,7 @@ struct Precision<DoubleDouble> {
   /// No operation errs by more than 16 u^2, u = 2^-53, so that 2^-102 takes the place of u.
   static constexpr double gap = 0x1p-95;
   static constexpr int most_steps = 24;
+  static constexpr int most_trials = 4;
 };
 
 }  // namespace stiv

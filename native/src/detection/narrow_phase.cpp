@@ -25,14 +25,20 @@ bool crosses(const RelativeMotion<double>& motion, const Approach<double>& appro
   return beyond.separation.dot(normal) < -depth;
 }
 
-/// Is a pair that doubles could not tell from a contact shown apart by twice the digits? Only asked where all of the
-/// threshold is within rounding, and not of the many pairs that clearly cross.
-bool apart_after_all(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
-                     const Approach<double>& approach, double latest) {
+/// The largest double that is not above.
+double rounded_down(const DoubleDouble& value) {
+  return value.low < 0 ? std::nextafter(value.high, -never) : value.high;
+}
+
+/// The time of a contact that doubles could not tell from a near miss, by twice the digits; `never` if there is none.
+/// Only asked where all of the threshold is within rounding, and not of the many pairs that clearly cross.
+double refined_time(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
+                    const Approach<double>& approach) {
   constexpr double noticeable = 1024;
-  if (threshold > noticeable * motion.rounding || crosses(motion, approach)) return false;
+  if (threshold > noticeable * motion.rounding || crosses(motion, approach)) return approach.time;
   const RelativeMotion<DoubleDouble> finer(motion.kind, pair);
-  return !advance<DoubleDouble>(finer, threshold, approach.time, latest);
+  const auto found = advance<DoubleDouble>(finer, threshold, approach.time, 1);
+  return found ? rounded_down(found->time) : never;
 }
 
 bool starts_within(EventKind kind, const PairMotion& motion, const RelativeMotion<double>& relative,
@@ -67,8 +73,7 @@ double time_of_impact(EventKind kind, const PairMotion& motion, double separatio
   if (starts_within(kind, motion, relative, separation)) return 0;
   if (relative.rests()) return never;
   const std::optional<Approach<double>> approach = advance(relative, separation, 0.0, 1);
-  if (!approach || apart_after_all(relative, motion, separation, *approach, 1)) return never;
-  return approach->time;
+  return approach ? refined_time(relative, motion, separation, *approach) : never;
 }
 
 }  // namespace stiv
