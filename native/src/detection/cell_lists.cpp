@@ -54,7 +54,7 @@ Cell Cells::at(const std::array<float, 3>& point) const {
   return cell;
 }
 
-Cells fitting_cells(const std::vector<Bounds>& boxes) {
+Cells fitting_cells(const std::vector<Bounds>& boxes, const std::vector<Bounds>& others) {
   Cells cells;
   if (boxes.empty()) return cells;
   Bounds all = Bounds::empty();
@@ -63,11 +63,12 @@ Cells fitting_cells(const std::vector<Bounds>& boxes) {
     all.include(box);
     sum += largest_side(box);
   }
+  for (const Bounds& box : others) all.include(box);
   for (std::size_t axis = 0; axis < 3; ++axis) cells.origin[static_cast<Index>(axis)] = finite(all.low[axis]);
   cells.size = std::max(sum / static_cast<double>(boxes.size()), largest_side(all) / most_cells_along_an_axis);
   if (!(cells.size > 0)) cells.size = 1;
-  const double most = most_cells_of_a_box * static_cast<double>(boxes.size());
-  while (cells_reached(cells, boxes) > most) cells.size *= 2;
+  const double most = most_cells_of_a_box * static_cast<double>(boxes.size() + others.size());
+  while (cells_reached(cells, boxes) + cells_reached(cells, others) > most) cells.size *= 2;
   return cells;
 }
 

@@ -50,7 +50,7 @@ class HashGrid final : public CandidateSource {
     const std::vector<Bounds> faces = bounds_of(surface_.triangles()), edges = bounds_of(surface_.edges());
     std::vector<Bounds> vertices;
     for (const PackedBox& box : swept_.boxes()) vertices.push_back(box.bounds());
-    const Cells cells = fitting_cells(faces);
+    const Cells cells = fitting_cells(faces, vertices);
     faces_ = CellLists(cells, faces);
     vertices_ = CellLists(cells, vertices);
     edges_ = CellLists(fitting_cells(edges), edges);

@@ -59,6 +59,16 @@ TEST_CASE("cell lists: one box over all others does not fill the memory") {
   CHECK(entries <= 8 * boxes.size());
 }
 
+// Found by fuzzing: a vertex of no face moved far past faces without extent, and filled the memory.
+TEST_CASE("cell lists: boxes that are entered besides those that the cells fit do not fill the memory either") {
+  const std::vector<Bounds> faces = boxes_of_sizes(10, 1e-9, 2e-9, 6), vertices = boxes_of_sizes(1, 1, 1, 7);
+  const CellLists lists(fitting_cells(faces, vertices), vertices);
+  std::size_t entries = 0;
+  for (Index number = 0; number < lists.bucket_count(); ++number) entries += lists.bucket(number).size();
+  CHECK(entries >= 1);
+  CHECK(entries <= 8 * 11);
+}
+
 TEST_CASE("cell lists: none, points in one place, and boxes beyond single precision") {
   CHECK(pairs_by_cell({}).empty());
   Bounds point = Bounds::empty();
