@@ -63,19 +63,34 @@ void check_bodies(const SurfaceDefinition& definition) {
   }
 }
 
-Edges unique_edges(const SurfaceDefinition& definition) {
-  std::vector<std::pair<Index, Index>> found;
-  const auto add = [&](Index a, Index b) {
-    if (a != b) found.emplace_back(std::min(a, b), std::max(a, b));
+/// Calls `work(smaller, larger)` for the ends of each side of a face and each loose edge, the same ones many times.
+template <class Work>
+void for_each_side(const SurfaceDefinition& definition, const Work& work) {
+  const auto side = [&](Index a, Index b) {
+    if (a != b) work(std::min(a, b), std::max(a, b));
   };
-  for (Index face = 0; face < definition.triangles.rows(); ++face)
-    for (Index k = 0; k < 3; ++k) add(definition.triangles(face, k), definition.triangles(face, (k + 1) % 3));
-  for (Index edge = 0; edge < definition.loose_edges.rows(); ++edge)
-    add(definition.loose_edges(edge, 0), definition.loose_edges(edge, 1));
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  Edges edges(static_cast<Index>(found.size()), 2);
-  for (std::size_t k = 0; k < found.size(); ++k) edges.row(static_cast<Index>(k)) << found[k].first, found[k].second;
+  for (const auto& face : definition.triangles.rowwise())
+    for (Index k = 0; k < 3; ++k) side(face[k], face[(k + 1) % 3]);
+  for (const auto& edge : definition.loose_edges.rowwise()) side(edge[0], edge[1]);
+}
+
+/// Sorted. Few sides begin at a vertex, so that they are counted into place and sorted vertex by vertex.
+Edges unique_edges(const SurfaceDefinition& definition) {
+  std::vector<std::size_t> start(static_cast<std::size_t>(definition.vertex_count) + 1, 0);
+  for_each_side(definition, [&](Index a, Index) { ++start[static_cast<std::size_t>(a)]; });
+  std::size_t sum = 0;
+  for (std::size_t& count : start) count = sum += count;
+  std::vector<Index> ends(sum);
+  for_each_side(definition, [&](Index a, Index b) { ends[--start[static_cast<std::size_t>(a)]] = b; });
+  Edges edges(static_cast<Index>(sum), 2);
+  Index row = 0;
+  for (Index vertex = 0; vertex < definition.vertex_count; ++vertex) {
+    const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(vertex)]);
+    const auto end = ends.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(vertex) + 1]);
+    std::sort(begin, end);
+    std::for_each(begin, std::unique(begin, end), [&](Index other) { edges.row(row++) << vertex, other; });
+  }
+  edges.conservativeResize(row, 2);
   return edges;
 }
 

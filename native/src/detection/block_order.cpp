@@ -2,6 +2,7 @@
 #include "detection/block_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -23,28 +24,61 @@ Eigen::Vector3f centre(const Bounds& box) {
   return point;
 }
 
-Index longest_axis(std::span<const Index> items, const Points& centres) {
-  Eigen::AlignedBox3f box;
-  for (const Index item : items) box.extend(centres[at(item)]);
-  Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  return axis;
+/// A centre and whose it is, side by side: selection goes over all of them many times.
+struct Item {
+  std::array<float, 3> centre;
+  Index number;
+};
+
+std::vector<Item> items_of(std::span<const Index> numbers, const Points& centres) {
+  std::vector<Item> items;
+  items.reserve(numbers.size());
+  for (const Index number : numbers) {
+    const Eigen::Vector3f& point = centres[at(number)];
+    items.push_back({{point[0], point[1], point[2]}, number});
+  }
+  return items;
+}
+
+std::size_t longest_axis(std::span<const Item> items) {
+  std::array<float, 3> low = items.front().centre, high = low;
+  for (const Item& item : items)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], item.centre[axis]);
+      high[axis] = std::max(high[axis], item.centre[axis]);
+    }
+  std::size_t longest = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+  return longest;
+}
+
+/// Moves the `half` first items along an axis to the front. Equal centres are told apart by number: the order must not
+/// depend on the library's selection algorithm.
+template <std::size_t axis>
+void select_half(std::span<Item> items, std::size_t half) {
+  const auto before = [](const Item& a, const Item& b) {
+    return a.centre[axis] < b.centre[axis] || (a.centre[axis] == b.centre[axis] && a.number < b.number);
+  };
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), before);
 }
 
 /// Halves along the longest axis of the centres; the first half is as large a power of two times `run` as fits, so
 /// that the halves of all sizes end where nodes of the tree end.
-void order_spatially(std::span<Index> items, const Points& centres, std::size_t run) {
+void order_spatially(std::span<Item> items, std::size_t run) {
   if (items.size() <= run) return;
   std::size_t half = run;
   while (2 * half < items.size()) half *= 2;
-  const Index axis = longest_axis(items, centres);
-  // Equal centres are told apart by number: the order must not depend on the library's selection algorithm.
-  const auto before = [&](Index a, Index b) {
-    return std::pair(centres[at(a)][axis], a) < std::pair(centres[at(b)][axis], b);
-  };
-  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), before);
-  order_spatially(items.first(half), centres, run);
-  order_spatially(items.subspan(half), centres, run);
+  constexpr std::array select{select_half<0>, select_half<1>, select_half<2>};
+  select[longest_axis(items)](items, half);
+  order_spatially(items.first(half), run);
+  order_spatially(items.subspan(half), run);
+}
+
+void order_spatially(std::span<Index> numbers, const Points& centres, std::size_t run) {
+  std::vector<Item> items = items_of(numbers, centres);
+  order_spatially(items, run);
+  std::transform(items.begin(), items.end(), numbers.begin(), [](const Item& item) { return item.number; });
 }
 
 /// Boxes of each group in spatial order, one group after the other, each filled up to whole blocks.
