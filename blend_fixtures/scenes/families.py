@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,15 +122,27 @@ def subdivision(depth: float, levels: int = 3) -> Edit:
     return _against_obstacle(name, fine, "deformable", wall, stiv.linear(weights), cage.vertices, goal)
 
 
-def loop(depth: float, levels: int = 2) -> Edit:
-    """A Loop subdivision surface under its cage of 42 points, moved down by `depth` into a wavy sheet; not one of the
-    fourteen."""
+def _loop_ball_on_wall(name: str, depth: float, handles: NDArray[np.int64] | None) -> Edit:
+    """A ball by Loop subdivision of 42 points, moved down by `depth` into a wavy sheet; by `handles` of them alone."""
     cage = icosphere(1).moved((0, 0, 1.1))
-    deformation, triangles = stiv.loop(stiv.Cage.of_faces(cage.faces), levels)
+    deformation, triangles = stiv.loop(stiv.Cage.of_faces(cage.faces), 2)
     fine = Shape(deformation.surface(cage.vertices), tuple(map(tuple, triangles.tolist())))
-    goal = cage.vertices + (0.1, 0, -depth)
+    controls = cage.vertices if handles is None else cage.vertices[handles]
+    if handles is not None:
+        deformation = stiv.compose(deformation, stiv.laplacian(cage.vertices, cage.faces, handles))
     wall = triangulated(wavy_wall()).moved((0, 0, -0.02))
-    return _against_obstacle(f"loop {depth:g}", fine, "deformable", wall, deformation, cage.vertices, goal)
+    goal = controls + (0.1, 0, -depth)
+    return _against_obstacle(f"{name} {depth:g}", fine, "deformable", wall, deformation, controls, goal)
+
+
+def loop(depth: float) -> Edit:
+    """A Loop subdivision surface under its cage; not one of the fourteen."""
+    return _loop_ball_on_wall("loop", depth, None)
+
+
+def loop_by_handles(depth: float) -> Edit:
+    """A Loop subdivision surface whose cage is under Laplacian editing by points of it; not one of the fourteen."""
+    return _loop_ball_on_wall("loop by handles", depth, np.arange(0, 42, 3))
 
 
 def _bspline_weights(points: Array, low: Array, high: Array, counts: tuple[int, int, int]) -> tuple[Array, Array]:
@@ -221,6 +233,26 @@ def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
     surface = _surface([Shape(shape.vertices, shape.faces)], ["deformable"])
     deformation = stiv.linear(weights, offset)
     return Edit(f"knot {lift:g}", surface, deformation, shape.vertices[handles], goal, {"weights": free})
+
+
+def bulge(depth: float, cells: int = 16) -> Edit:
+    """A sheet under Laplacian editing, its rim held: a patch in the middle is moved down by `depth` into a wavy sheet,
+    half of its handles pinned; not one of the fourteen."""
+    sheet = triangulated(grid(cells, cells)).moved((0, 0, 0.5))
+    x, y = sheet.vertices[:, 0] / np.ptp(sheet.vertices[:, 0]), sheet.vertices[:, 1] / np.ptp(sheet.vertices[:, 1])
+    rim = np.flatnonzero(np.maximum(abs(x), abs(y)) > 0.49)
+    patch = np.flatnonzero(np.hypot(x, y) < 0.15)
+    pinned = np.flatnonzero((x > 0.3) & (x < 0.4) & (abs(y) < 0.2))
+    handles = np.concatenate([patch, pinned])
+    deformation = stiv.laplacian(sheet.vertices, sheet.triangles(), handles, fixed=rim, pull=None)
+    goal = sheet.vertices[handles].copy()
+    goal[: len(patch), 2] -= depth
+    free = np.repeat([1.0, 0.0], [len(patch), len(pinned)])
+    wall = triangulated(wavy_wall()).moved((0, 0, -0.02))
+    edit = _against_obstacle(
+        f"bulge {depth:g}", sheet, "deformable", wall, deformation, sheet.vertices[handles].copy(), goal
+    )
+    return replace(edit, options={"weights": free})
 
 
 def all_edits() -> list[Edit]:

@@ -9,6 +9,7 @@
 #include "stiv/deformation/composition.hpp"
 #include "stiv/deformation/concatenation.hpp"
 #include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/laplacian.hpp"
 #include "stiv/deformation/lattice.hpp"
 #include "stiv/deformation/rigid.hpp"
 #include "stiv/deformation/scaling.hpp"
@@ -131,6 +132,27 @@ Cage make_cage(Index vertex_count, const Edges& edges, std::vector<Index> corner
   return {vertex_count, edges, std::move(corners), std::move(starts), std::move(edge_crease), std::move(vertex_crease)};
 }
 
+EdgeWeights edge_weights_of(const std::string& name) {
+  if (name == "uniform") return EdgeWeights::uniform;
+  if (name == "cotangent") return EdgeWeights::cotangent;
+  throw InputError("edge weights \"" + name + "\" are unknown; choose uniform or cotangent");
+}
+
+HandleDefinition make_handles(Positions rest, Triangles triangles, std::vector<Index> handles, Eigen::VectorXd pull,
+                              std::vector<Index> fixed, const std::string& edge_weights) {
+  return {std::move(rest), std::move(triangles), std::move(handles),
+          std::move(pull), std::move(fixed),     edge_weights_of(edge_weights)};
+}
+
+/// Linear after linear is linear; linear after handles keeps the handles.
+std::shared_ptr<Deformation> compose(const std::shared_ptr<Deformation>& outer,
+                                     const std::shared_ptr<Deformation>& inner) {
+  as_linear(outer);
+  if (const auto handles = std::dynamic_pointer_cast<const HandleDeformation>(inner))
+    return shared(make_composition(std::dynamic_pointer_cast<const LinearDeformation>(outer), handles));
+  return shared(make_composition(as_linear(outer), as_linear(inner)));
+}
+
 std::shared_ptr<Deformation> concatenate(
     const std::vector<std::pair<std::shared_ptr<Deformation>, Array<Index>>>& parts, Positions start) {
   std::vector<DeformationPart> native;
@@ -182,9 +204,11 @@ void bind_deformation(py::module_& module) {
   });
   module.def("scaling_rest_controls", &scaling_rest_controls);
   module.def("concatenate", &concatenate);
-  module.def("compose", [](const std::shared_ptr<Deformation>& outer, const std::shared_ptr<Deformation>& inner) {
-    return shared(make_composition(as_linear(outer), as_linear(inner)));
-  });
+  module.def("compose", &compose);
+  py::class_<HandleDefinition>(module, "Handles").def(py::init(&make_handles));
+  module.def(
+      "laplacian", [](const HandleDefinition& handles) { return shared(make_laplacian(handles)); },
+      py::call_guard<py::gil_scoped_release>());
   py::class_<Cage>(module, "Cage").def(py::init(&make_cage));
   module.def("subdivision_weights", [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple,
                                        const std::string& boundary, const std::string& scheme) {

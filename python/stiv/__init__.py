@@ -16,6 +16,7 @@ from stiv.deformation import (
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
+from stiv.handles import laplacian
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
@@ -48,6 +49,7 @@ __all__ = [
     "find_loose_intersections",
     "identity",
     "is_step_free",
+    "laplacian",
     "lattice",
     "lattice_rest_points",
     "lattice_weights",

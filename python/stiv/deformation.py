@@ -58,7 +58,8 @@ def linear(matrix: Any, offset: ArrayLike | None = None) -> Deformation:
 def linear_weights(deformation: Deformation) -> tuple[Weights, Floats | None]:
     """Return the weights (n, m) and the offset (n, 3), None where there is none, of a linear deformation.
 
-    Raises InputError if the deformation is not linear (see `linear`, `lattice`, `catmull_clark`, `compose`).
+    Raises InputError if the deformation is not one of sparse weights (see `linear`, `lattice`, `catmull_clark`, `loop`,
+    `compose`).
     """
     parts = _native.linear_parts(deformation)
     if parts is None:
@@ -68,12 +69,13 @@ def linear_weights(deformation: Deformation) -> tuple[Weights, Floats | None]:
 
 
 def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Deformation:
-    """Return the linear deformation q = outer(inner(...(p))).
+    """Return the deformation q = outer(inner(...(p))).
 
     The last one acts first: `compose(subdivision, lattice)` subdivides what the lattice deforms. Each has as many
     controls as the next one has vertices. Weights stand for the linear deformation without offset that they describe.
+    The last one may be a deformation by handles, see `laplacian`; all others, and else all, must have sparse weights.
 
-    Raises InputError if numbers do not fit or a deformation is not linear.
+    Raises InputError if numbers do not fit or a deformation is of another kind.
     """
     chain = [linear(part) if isinstance(part, Weights) else part for part in (outer, *inner)]
     result = chain[-1]

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stiv
+from blend_fixtures.scenes.primitives import icosphere
 from tests.deformation.cages import mixed_strip, octahedron
 
 Floats = NDArray[np.float64]
@@ -29,6 +30,14 @@ def side_by_side() -> stiv.Deformation:
     return stiv.concatenate(parts, POINTS)
 
 
+BALL, HANDLES = icosphere(1), [3, 11, 4, 30]
+BALL_SUBDIVIDED, _ = stiv.loop(stiv.Cage.of_faces(BALL.faces), 1)
+
+
+def on_a_ball(pull: float | None) -> stiv.Deformation:
+    return stiv.laplacian(BALL.vertices, BALL.faces, HANDLES, fixed=[7, 8], pull=pull)
+
+
 DEFORMATIONS: dict[str, tuple[Callable[[], stiv.Deformation], Floats]] = {
     "identity": (lambda: stiv.identity(11), POINTS),
     "linear": (lambda: stiv.linear(MATRIX, RANDOM.normal(size=(9, 3))), POINTS[:5]),
@@ -40,6 +49,9 @@ DEFORMATIONS: dict[str, tuple[Callable[[], stiv.Deformation], Floats]] = {
     "side by side": (side_by_side, np.concatenate([turned(1.0), POINTS[:7]])),
     "subdivision": (lambda: stiv.catmull_clark(stiv.Cage.of_faces(mixed_strip().faces), 1)[0], mixed_strip().vertices),
     "loop": (lambda: stiv.loop(stiv.Cage.of_faces(octahedron().faces), 2)[0], octahedron().vertices),
+    "laplacian": (lambda: on_a_ball(1.0), BALL.vertices[HANDLES] + 0.2 * POINTS[:4]),
+    "laplacian, hard": (lambda: on_a_ball(None), BALL.vertices[HANDLES] + 0.2 * POINTS[:4]),
+    "laplacian, subdivided": (lambda: stiv.compose(BALL_SUBDIVIDED, on_a_ball(2.0)), BALL.vertices[HANDLES]),
     "lattice": (lambda: stiv.lattice(POINTS, (2, 3, 2)), RANDOM.normal(size=(12, 3))),
 }
 
@@ -55,12 +67,15 @@ def test_jacobian_against_differences(name: str) -> None:
     assert np.sum(f.pull_back(p, g) * d) == pytest.approx(np.sum(g * velocity), abs=1e-6)
 
 
+LINEAR = ["linear", "lattice", "subdivision", "loop", "laplacian", "laplacian, hard", "laplacian, subdivided"]
+
+
 def jacobian(f: stiv.Deformation, p: Floats) -> Floats:
     units = np.eye(3 * f.control_count).reshape(-1, f.control_count, 3)
     return np.stack([f.push_forward(p, unit).ravel() for unit in units], axis=1)
 
 
-@pytest.mark.parametrize("name", ["linear", "lattice", "subdivision", "loop"])
+@pytest.mark.parametrize("name", LINEAR)
 @pytest.mark.parametrize("smoothness", [0.1, 0.01])
 def test_linear_metric_against_a_dense_one(name: str, smoothness: float) -> None:
     make, p = DEFORMATIONS[name]

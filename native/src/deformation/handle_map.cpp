@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/handle_map.hpp"
+
+#include <algorithm>
+
+#include "deformation/checks.hpp"
+#include "deformation/gram_metric.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double, Index>>;
+
+SymmetricMatrix matrix_of(const Triplets& entries, std::size_t rows, std::size_t columns) {
+  SymmetricMatrix matrix(static_cast<Index>(rows), static_cast<Index>(columns));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// K of the free vertices, with the pulls of soft handles.
+SymmetricMatrix free_stiffness(const HandleDefinition& definition, const HandlePartition& partition,
+                               const SymmetricMatrix& stiffness) {
+  Triplets entries;
+  for (const Index vertex : partition.free)
+    for (SymmetricMatrix::InnerIterator entry(stiffness, vertex); entry; ++entry)
+      if (const Index row = partition.place[static_cast<std::size_t>(entry.row())]; row >= 0)
+        entries.emplace_back(row, partition.place[static_cast<std::size_t>(vertex)], entry.value());
+  for (Index k = 0; k < definition.pull.size(); ++k) {
+    const Index place = partition.place[static_cast<std::size_t>(definition.handles[static_cast<std::size_t>(k)])];
+    entries.emplace_back(place, place, definition.pull[k]);
+  }
+  return matrix_of(entries, partition.free.size(), partition.free.size());
+}
+
+/// A soft handle's pull; minus the columns of K of a hard one.
+SymmetricMatrix drive_of(const HandleDefinition& definition, const HandlePartition& partition,
+                         const SymmetricMatrix& stiffness) {
+  Triplets entries;
+  for (std::size_t k = 0; k < definition.handles.size(); ++k) {
+    const Index handle = definition.handles[k], control = static_cast<Index>(k);
+    const Index place = partition.place[static_cast<std::size_t>(handle)];
+    if (place >= 0) {
+      entries.emplace_back(place, control, definition.pull[control]);
+      continue;
+    }
+    for (SymmetricMatrix::InnerIterator entry(stiffness, handle); entry; ++entry)
+      if (const Index row = partition.place[static_cast<std::size_t>(entry.row())]; row >= 0)
+        entries.emplace_back(row, control, -entry.value());
+  }
+  return matrix_of(entries, partition.free.size(), definition.handles.size());
+}
+
+}  // namespace
+
+HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, const SymmetricMatrix& stiffness,
+                     const HandleMapLimits& limits)
+    : limits_(limits),
+      partition_(handle_partition(definition, mesh)),
+      handles_(definition.handles),
+      hard_(definition.pull.size() == 0),
+      drive_(drive_of(definition, partition_, stiffness)),
+      factor_(std::make_unique<SparseFactor>(free_stiffness(definition, partition_, stiffness), "handles")) {
+  if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) keep_in_full();
+}
+
+/// M d by a solve.
+template <class Block>
+Block HandleMap::solved(const Block& d) const {
+  const Block free = factor_->solve(Block(drive_ * d));
+  Block u = Block::Zero(vertex_count(), d.cols());
+  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[static_cast<std::size_t>(k)]) = free.row(k);
+  if (hard_)
+    for (Index k = 0; k < control_count(); ++k) u.row(handles_[static_cast<std::size_t>(k)]) = d.row(k);
+  return u;
+}
+
+/// M'g by a solve.
+template <class Block>
+Block HandleMap::pulled(const Block& g) const {
+  Block free(static_cast<Index>(partition_.free.size()), g.cols());
+  for (Index k = 0; k < free.rows(); ++k) free.row(k) = g.row(partition_.free[static_cast<std::size_t>(k)]);
+  Block covector = drive_.transpose() * factor_->solve(free);
+  if (hard_)
+    for (Index k = 0; k < control_count(); ++k) covector.row(k) += g.row(handles_[static_cast<std::size_t>(k)]);
+  return covector;
+}
+
+void HandleMap::keep_in_full() {
+  constexpr Index width = ColumnBlock::ColsAtCompileTime;
+  full_.resize(vertex_count(), control_count());
+  for (Index first = 0; first < control_count(); first += width) {
+    const Index count = std::min(width, control_count() - first);
+    ColumnBlock unit = ColumnBlock::Zero(control_count(), width);
+    for (Index k = 0; k < count; ++k) unit(first + k, k) = 1;
+    full_.middleCols(first, count) = solved(unit).leftCols(count);
+  }
+}
+
+Positions HandleMap::follow(const Controls& d) const {
+  if (!is_full()) return solved(d);
+  Positions u(vertex_count(), 3);
+  for (Index row = 0; row < u.rows(); ++row) {
+    Vector3 sum = Vector3::Zero();
+    const double* weight = full_.data() + static_cast<std::ptrdiff_t>(row) * full_.cols();
+    for (Index k = 0; k < control_count(); ++k) sum += weight[k] * d.row(k).transpose();
+    u.row(row) = sum;
+  }
+  return u;
+}
+
+SparseField HandleMap::pull_back(const SparseField& g) const {
+  Controls sum = Controls::Zero(control_count(), 3);
+  if (is_full()) {
+    for (std::size_t k = 0; k < g.index.size(); ++k) sum += full_.row(g.index[k]).transpose() * g.value[k].transpose();
+  } else {
+    Positions dense = Positions::Zero(vertex_count(), 3);
+    for (std::size_t k = 0; k < g.index.size(); ++k) dense.row(g.index[k]) = g.value[k];
+    sum = pulled(dense);
+  }
+  SparseField covector;
+  for (Index k = 0; k < control_count(); ++k) {
+    covector.index.push_back(k);
+    covector.value.push_back(sum.row(k));
+  }
+  return covector;
+}
+
+Positions HandleMap::answer(const Positions& right) const {
+  Positions free(static_cast<Index>(partition_.free.size()), 3);
+  for (Index k = 0; k < free.rows(); ++k) free.row(k) = right.row(partition_.free[static_cast<std::size_t>(k)]);
+  free = factor_->solve(free);
+  Positions u = Positions::Zero(vertex_count(), 3);
+  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[static_cast<std::size_t>(k)]) = free.row(k);
+  return u;
+}
+
+std::vector<Index> HandleMap::support(Index control) const {
+  const auto handle = static_cast<std::size_t>(handles_[static_cast<std::size_t>(control)]);
+  const bool drives = drive_.outerIndexPtr()[control + 1] > drive_.outerIndexPtr()[control];
+  std::vector<Index> vertices;
+  if (drives)
+    for (const Index vertex : partition_.free)
+      if (partition_.part[static_cast<std::size_t>(vertex)] == partition_.part[handle]) vertices.push_back(vertex);
+  if (hard_) vertices.insert(std::lower_bound(vertices.begin(), vertices.end(), handle), static_cast<Index>(handle));
+  return vertices;
+}
+
+ColumnBlock HandleMap::gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const {
+  const ColumnBlock u = solved(d);
+  return pulled(surface_gram == nullptr ? u : ColumnBlock(*surface_gram * u));
+}
+
+Eigen::MatrixXd HandleMap::gram(const WeightMatrix* surface_gram) const {
+  if (surface_gram != nullptr) return full_.transpose() * (*surface_gram * full_);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(control_count(), control_count());
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(full_.transpose());
+  return gram.selfadjointView<Eigen::Lower>();
+}
+
+std::unique_ptr<Metric> HandleMap::metric(const MetricOptions& options, const WeightMatrix* surface_gram) const {
+  const Eigen::VectorXd weights = checked_weights(options, control_count());
+  const double products = static_cast<double>(vertex_count()) * control_count() * control_count();
+  if (!is_full() || products > limits_.products) {
+    const auto product = [&](const ColumnBlock& d) { return gram_product(d, surface_gram); };
+    return make_low_rank_metric(product, limits_.probes, options.smoothness,
+                                active_controls(Eigen::VectorXd::Ones(control_count()), weights));
+  }
+  const Eigen::MatrixXd whole = gram(surface_gram);
+  ActiveControls active = active_controls(whole.diagonal(), weights);
+  Eigen::MatrixXd part = whole(active.control, active.control);
+  return make_gram_metric(std::move(part), options.smoothness, std::move(active));
+}
+
+}  // namespace stiv

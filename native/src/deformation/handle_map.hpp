@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "deformation/handle_partition.hpp"
+#include "deformation/sparse_factor.hpp"
+
+namespace stiv {
+
+/// From where on a handle map, M (n, m), is only approximated or not kept.
+struct HandleMapLimits {
+  double entries = 256e6 / sizeof(double);  ///< of M, if it is kept in full
+  double products = 3e10;                   ///< multiplications for the whole of M'M: a few seconds
+  Index probes = 128;                       ///< of M'M, if it is not made; a multiple of 16
+};
+
+/// How the vertices of a mesh follow its handles, u = M d: the displacements u, (n, 3), that minimise
+/// u'Ku + sum pull_k |u_h(k) - d_k|^2 for displacements d, (m, 3), of the handles, with the fixed vertices held. M is
+/// the same for x, y and z. Small ones are kept in full; for larger ones every product is a solve.
+class HandleMap {
+ public:
+  /// @param stiffness K, (n, n), positive semi-definite, and definite once a vertex of each part is held
+  /// @throws InputError: see make_laplacian
+  HandleMap(const HandleDefinition& definition, const Surface& mesh, const SymmetricMatrix& stiffness,
+            const HandleMapLimits& limits = {});
+
+  Index control_count() const { return static_cast<Index>(handles_.size()); }
+  Index vertex_count() const { return static_cast<Index>(partition_.place.size()); }
+  const HandlePartition& partition() const { return partition_; }
+
+  Positions follow(const Controls& d) const;          ///< M d
+  SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
+
+  /// The displacements that meet (K + pulls) u = right with handles and fixed vertices held: right (n, 3), of which
+  /// only the rows of free vertices count. For what else than handles moves a mesh.
+  Positions answer(const Positions& right) const;
+
+  std::vector<Index> support(Index control) const;
+
+  /// The metric with J = M, or J = S M and S'S given, (n, n).
+  std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix* surface_gram) const;
+
+ private:
+  template <class Block>
+  Block solved(const Block& d) const;
+  template <class Block>
+  Block pulled(const Block& g) const;
+  void keep_in_full();
+  ColumnBlock gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const;
+  Eigen::MatrixXd gram(const WeightMatrix* surface_gram) const;
+  bool is_full() const { return full_.rows() == vertex_count(); }
+
+  HandleMapLimits limits_;
+  HandlePartition partition_;
+  std::vector<Index> handles_;
+  bool hard_;
+  SymmetricMatrix drive_;  ///< (free, m): what a handle's displacement adds to the right side
+  std::unique_ptr<const SparseFactor> factor_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full_;  ///< M, or nothing
+};
+
+}  // namespace stiv
