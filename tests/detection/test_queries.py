@@ -10,19 +10,12 @@ import pytest
 
 import stiv
 from tests.detection.exact import WIDTH, first_contact, squared_distance
+from tests.detection.published_queries import KINDS, read
 
 FOLDER = os.environ.get("STIV_CCD_QUERIES", "")
 pytestmark = pytest.mark.skipif(not FOLDER, reason="STIV_CCD_QUERIES does not name a folder of collision queries")
 
-KINDS = {"vertex-face": "vf", "edge-edge": "ee"}
 FILES = sorted(Path(FOLDER).glob("*/*/*.csv")) if FOLDER else []
-
-
-def read(path: Path) -> tuple[list[list[list[Fraction]]], list[bool]]:
-    """Eight points a query, each of three fractions, and whether the pair meets."""
-    lines = [[int(number) for number in line.split(",")] for line in path.read_text().splitlines() if line]
-    points = [[Fraction(line[k], line[k + 1]) for k in (0, 2, 4)] for line in lines]
-    return [points[k : k + 8] for k in range(0, len(points), 8)], [bool(line[6]) for line in lines[::8]]
 
 
 ACCEPTED_FALSE = 0.031

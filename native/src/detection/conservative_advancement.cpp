@@ -69,14 +69,15 @@ Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scala
 }
 
 /// The time to which planes show the pair apart, from `time` on. `expected`: when it is expected within the threshold.
+/// Takes the trials that it makes off `budget`.
 template <class Scalar>
 Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
-                 const Scalar& time, const Scalar& expected) {
+                 const Scalar& time, const Scalar& expected, int& budget) {
   const Scalar clearance = threshold + motion.rounding;
   const VectorOf<Scalar> normal = direction(motion, nearest, time);
   Scalar reached = reach_of_plane(motion, normal, time, clearance);
   Scalar trial = expected;
-  for (int k = 0; k < Precision<Scalar>::most_trials && trial > reached; ++k) {
+  for (int k = 0; k < Precision<Scalar>::most_trials && trial > reached; ++k, --budget) {
     reached = std::max(reached, reach_of_trial(motion, normal, time, trial, clearance));
     trial = time + (trial - time) / 2;
   }
@@ -125,14 +126,15 @@ std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, co
   const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
   Approach<Scalar> approach{time, {}, VectorOf<Scalar>::Zero()};
   Scalar time_before = time, distance_before = 0;
-  for (int step = 0; step < Precision<Scalar>::most_steps; ++step) {
+  int budget = Precision<Scalar>::trials_in_all;
+  for (int step = 0; step < Precision<Scalar>::most_steps && budget > 0; ++step) {
     approach.witness = witness(motion.kind, motion.at(approach.time));
     const Scalar distance = approach.witness.distance;
     if (arrived(motion, approach.witness, threshold)) return approach;
     Scalar expected = predicted_time(motion, approach.witness, aim, approach.time);
     if (step >= slow)
       expected = std::max(expected, extrapolated_time(approach.time, distance, time_before, distance_before, aim));
-    Scalar reached = next_time(motion, approach.witness, threshold, approach.time, expected);
+    Scalar reached = next_time(motion, approach.witness, threshold, approach.time, expected, budget);
     if (reached <= approach.time) reached = reach_of_other_planes(motion, approach.time, clearance);
     if (reached >= 1 || reached > latest) return std::nullopt;
     if (reached <= approach.time) break;

@@ -92,6 +92,7 @@ struct Precision<double> {
   /// Trials of a longer step in each step. A plane may have to turn in hundreds of parts of a step in which a triangle
   /// turns by much beside another: each part holds as long as (angle)^2 times the size stays below the gap.
   static constexpr int most_trials = 12;
+  static constexpr int trials_in_all = 1024;
 };
 
 template <>
@@ -100,6 +101,7 @@ struct Precision<DoubleDouble> {
   static constexpr double gap = 0x1p-95;
   static constexpr int most_steps = 24;
   static constexpr int most_trials = 4;
+  static constexpr int trials_in_all = 64;
 };
 
 }  // namespace stiv

@@ -64,7 +64,7 @@ struct SweptVertices::Survey {
   }
 };
 
-// A pair is reported at most (1 + 1e-3) h + 5 * 2^-46 M apart (or where its own boxes overlap at that distance), with M
+// A pair is reported at most (1 + 1e-3) h + 9 * 2^-46 M apart (or where its own boxes overlap at that distance), with M
 // no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
 double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
 
