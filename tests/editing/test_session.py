@@ -28,7 +28,7 @@ def test_bare_triangles_make_a_surface() -> None:
     goal = points.copy()
     goal[3:, 2] = -1
     result = stiv.edit([[0, 1, 2], [3, 4, 5]], stiv.identity(6), points, goal)
-    assert result.status == "corrected"
+    assert result.status == "reached"  # on a way around the other, found by the edit's second sub-edit
     assert result.rounds == result.counters["rounds"] > 0
     assert set(result.timings) == {"deformation", "detection", "volumes", "response", "acceptance", "total"}
     assert len(result.events) > 0

@@ -104,6 +104,10 @@ class BlockMetric final : public Metric {
     return step;
   }
 
+  bool is_local() const override {
+    return std::all_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block->is_local(); });
+  }
+
  private:
   std::vector<std::unique_ptr<Metric>> blocks_;
   std::vector<Index> starts_;

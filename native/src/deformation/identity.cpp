@@ -27,6 +27,8 @@ class IdentityMetric final : public Metric {
     return step;
   }
 
+  bool is_local() const override { return true; }
+
  private:
   Eigen::VectorXd weights_;
 };

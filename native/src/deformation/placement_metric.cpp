@@ -29,6 +29,8 @@ class PlacementMetric final : public Metric {
     return step;
   }
 
+  bool is_local() const override { return true; }
+
  private:
   double centre_factor_;
   PlacementBlock block_;

@@ -10,7 +10,12 @@ namespace stiv {
 
 namespace {
 
-constexpr double least_gain = 1e-2;  // relative fall of E that makes another pull worth while
+/// Relative fall of E for each round of a pull that makes another one worth while.
+constexpr double least_gain_a_round = 1.5e-3;
+
+bool was_worth_while(double before, double after, std::int64_t rounds) {
+  return after < (1 - least_gain_a_round * static_cast<double>(std::max<std::int64_t>(rounds, 1))) * before;
+}
 
 }  // namespace
 
@@ -22,13 +27,14 @@ void pull(Problem& problem, State& accepted, const Aim& aim, double limit, Solve
   solve_in_turns(problem, accepted, {part, aim.surface, true}, report, execution);
 }
 
-void pull_until_settled(Problem& problem, State& accepted, const Aim& aim, double limit, int most, SolveReport& report,
-                        Execution& execution) {
-  for (int k = 0; k < most; ++k) {
+void pull_until_settled(Problem& problem, State& accepted, const Aim& aim, const PullLimits& limits,
+                        SolveReport& report, Execution& execution) {
+  for (int k = 0; k < limits.pulls && execution.counters.rounds < limits.rounds; ++k) {
+    const std::int64_t rounds = execution.counters.rounds;
     const double before = energy(accepted.surface, aim.surface);
-    pull(problem, accepted, aim, limit, report, execution);
+    pull(problem, accepted, aim, limits.distance, report, execution);
     const double after = energy(accepted.surface, aim.surface);
-    if (report.blocked || !(after < (1 - least_gain) * before)) return;
+    if (!was_worth_while(before, after, execution.counters.rounds - rounds)) return;
   }
 }
 

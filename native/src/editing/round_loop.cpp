@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editing/round_loop.hpp"
 
+#include <algorithm>
+
 #include "stiv/response/resolver.hpp"
 #include "stiv/volumes/stiv.hpp"
 
@@ -11,30 +13,49 @@ namespace {
 /// A sum over a patch can vanish while contacts in it remain, round after round. What a few rounds with patches leave
 /// are few contacts; each of them as a constraint of its own then ends the rounds, as long as the constraints kept
 /// stay few enough to solve for at once.
-constexpr int rounds_with_patches = 4;
+constexpr int rounds_with_patches = 2;
 constexpr std::size_t most_constraints = 512;
 
-bool constrains_each_contact(const EditOptions& options, int round, std::size_t kept, std::size_t regions) {
-  return options.constraints == ConstraintKind::per_patch && round >= rounds_with_patches &&
-         kept + regions <= most_constraints;
-}
+/// Where each control moves its own part of the surface alone, constraints touch few controls, so that thousands can be
+/// met together, and do not stiffen what lies between them: there each contact is one from the first round on.
+constexpr std::size_t most_local_constraints = 8192;
 
 struct Measurement {
   std::vector<Stiv> stivs;  ///< none if no event tells a way out
+  Index patches = 0;
   bool each_contact = false;
 };
+
+std::size_t most_constraints_of(const Problem& problem) {
+  return problem.metric().is_local() ? most_local_constraints : most_constraints;
+}
+
+bool may_constrain_each_contact(const Problem& problem, int round) {
+  if (problem.options().constraints != ConstraintKind::per_patch) return false;
+  return round >= rounds_with_patches || problem.metric().is_local();
+}
+
+Index patch_count(const std::vector<Index>& labels) {
+  return labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
+}
 
 Measurement measure(const Problem& problem, const State& accepted, const Eigen::VectorXd& areas, int round,
                     std::size_t kept, const RoundOutcome& outcome, Execution& execution) {
   const ScopedTimer timer(execution.timings.volumes);
-  const std::vector<Region> regions =
-      earliest_regions(problem.surface(), outcome.events, accepted.surface, outcome.candidate.surface);
+  const Surface& surface = problem.surface();
+  const Events& events = outcome.events;
+  const Positions &start = accepted.surface, &end = outcome.candidate.surface;
+  const std::size_t most = most_constraints_of(problem), room = most - std::min(kept, most);
+  std::vector<Region> regions = earliest_regions(surface, events, start, end);
+  std::vector<Index> labels = patch_labels(surface, regions, problem.options().constraints);
   Measurement measured;
-  measured.each_contact = constrains_each_contact(problem.options(), round, kept, regions.size());
-  const ConstraintKind kind = measured.each_contact ? ConstraintKind::per_contact : problem.options().constraints;
-  const std::vector<Index> labels = patch_labels(problem.surface(), regions, kind);
-  measured.stivs =
-      interference_volumes(outcome.events, regions, labels, outcome.candidate.surface, areas, problem.proximity());
+  measured.patches = patch_count(labels);
+  measured.each_contact = may_constrain_each_contact(problem, round) && regions.size() <= room;
+  if (measured.each_contact) {
+    if (problem.metric().is_local() && events.size() <= room) regions = contact_regions(surface, events, start, end);
+    labels = patch_labels(surface, regions, ConstraintKind::per_contact);
+  }
+  measured.stivs = interference_volumes(events, regions, labels, end, areas, problem.proximity());
   return measured;
 }
 
@@ -58,9 +79,9 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (outcome.clear) return outcome;
     outcome.events = std::move(events);
     ++execution.counters.rounds;
-    if (kept.size() > most_constraints / 2) kept.drop_inactive();
+    if (kept.size() > most_constraints_of(problem) / 2) kept.drop_inactive();
     const Measurement measured = measure(problem, accepted, areas, round, kept.size(), outcome, execution);
-    if (!measured.each_contact) outcome.patches = static_cast<Index>(measured.stivs.size());
+    outcome.patches = measured.patches;
     const ScopedTimer timer(execution.timings.response);
     std::vector<ControlConstraint> rows = control_constraints(
         measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(), accepted.controls);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "editing/pull.hpp"
 #include "editing/report.hpp"
@@ -14,9 +13,11 @@ namespace stiv {
 
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr int most_pulls = 12;  // of a settlement
 constexpr int most_pulls_of_drag = 12;
+
+/// An answer is linearised where the goal's surface met, which may be far from where it ends; solving again from there
+/// lowers E further. While an edit has taken fewer rounds than this, it does so without being asked.
+constexpr int rounds_of_cheap_edit = 12;
 
 }  // namespace
 
@@ -44,6 +45,7 @@ class EditSession::Implementation {
     return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
       dragging_ = false;
       solve_in_turns(problem_, accepted_, aim, report, execution);
+      if (!report.blocked) refine(aim, report, execution);
     });
   }
 
@@ -53,14 +55,17 @@ class EditSession::Implementation {
       const Controls increment = incremented(aim.controls);
       if (problem_.stored(increment) != accepted_.controls)
         solve_in_turns(problem_, accepted_, {increment, aim.surface, false}, report, execution);
-      pull_until_settled(problem_, accepted_, aim, pull_limit(), pulls_after(aim), report, execution);
+      const PullLimits limits{.distance = pull_limit(), .pulls = pulls_after(aim)};
+      pull_until_settled(problem_, accepted_, aim, limits, report, execution);
     });
   }
 
   EditResult settle(Execution& execution) {
     const Controls goal = goal_.controls;
     return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
-      pull_until_settled(problem_, accepted_, aim, dragging_ ? pull_limit() : unlimited, most_pulls, report, execution);
+      PullLimits limits;
+      if (dragging_) limits.distance = pull_limit();
+      pull_until_settled(problem_, accepted_, aim, limits, report, execution);
     });
   }
 
@@ -68,6 +73,13 @@ class EditSession::Implementation {
   const State& accepted() const { return accepted_; }
 
  private:
+  /// Further sub-edits while they are cheap. The answer has settled; that these may not does not make it blocked.
+  void refine(const Aim& aim, SolveReport& report, Execution& execution) {
+    const PullLimits limits{.pulls = problem_.options().max_sub_edits - 1, .rounds = rounds_of_cheap_edit};
+    pull_until_settled(problem_, accepted_, aim, limits, report, execution);
+    report.blocked = false;
+  }
+
   double pull_limit() const { return problem_.options().pull_limit * problem_.diagonal(); }
 
   /// Enough pulls to go back all the way that the increment came, and one more: a mouse that returns from deep inside

@@ -27,8 +27,9 @@ void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& accept
 }  // namespace
 
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
+  const int most = aim.must_improve ? 1 : problem.options().max_sub_edits;  // pulls go on by themselves
   double before = energy(accepted.surface, aim.surface);
-  for (int sub_edit = 0; sub_edit < problem.options().max_sub_edits; ++sub_edit) {
+  for (int sub_edit = 0; sub_edit < most; ++sub_edit) {
     ++execution.counters.sub_edits;
     RoundOutcome outcome = run_rounds(problem, accepted, aim.controls, execution);
     // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.

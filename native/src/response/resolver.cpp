@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "response/row_projection.hpp"
+#include "response/sparse_fields.hpp"
 #include "stiv/response/lcp.hpp"
 
 namespace stiv {
@@ -12,40 +14,6 @@ namespace {
 /// In the metric J'J a row's squared length is at most that of the volume's gradient. A smaller part than this is what
 /// rounding leaves where free controls move all corners of the contacts alike, or move none.
 constexpr double least_squared_length = 1e-24;
-
-double squared_norm(const SparseField& field) {
-  double sum = 0;
-  for (const Vector3& value : field.value) sum += value.squaredNorm();
-  return sum;
-}
-
-/// Product of two sparse fields; both are ascending.
-double dot(const SparseField& a, const SparseField& b) {
-  double sum = 0;
-  for (std::size_t i = 0, j = 0; i < a.index.size() && j < b.index.size();) {
-    if (a.index[i] == b.index[j])
-      sum += a.value[i++].dot(b.value[j++]);
-    else if (a.index[i] < b.index[j])
-      ++i;
-    else
-      ++j;
-  }
-  return sum;
-}
-
-double dot(const SparseField& a, const Controls& p) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.index.size(); ++k) sum += a.value[k].dot(p.row(a.index[k]).transpose());
-  return sum;
-}
-
-void add_scaled(Controls& p, double factor, const SparseField& field) {
-  for (std::size_t k = 0; k < field.index.size(); ++k) p.row(field.index[k]) += factor * field.value[k].transpose();
-}
-
-void scale(SparseField& field, double factor) {
-  for (Vector3& value : field.value) value *= factor;
-}
 
 }  // namespace
 
@@ -68,9 +36,11 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
 }
 
 void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
-  const auto before = static_cast<Eigen::Index>(constraints_.size());
   for (ControlConstraint& constraint : constraints) constraints_.push_back(std::move(constraint));
-  const auto after = static_cast<Eigen::Index>(constraints_.size());
+}
+
+void ConstraintSet::complete_gram() {
+  const auto before = gram_.rows(), after = static_cast<Eigen::Index>(constraints_.size());
   gram_.conservativeResize(after, after);
   for (Eigen::Index row = before; row < after; ++row)
     for (Eigen::Index column = 0; column <= row; ++column)
@@ -78,10 +48,13 @@ void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
 }
 
 void ConstraintSet::drop_inactive() {
-  std::vector<Eigen::Index> active;
-  for (Eigen::Index r = 0; r < multipliers_.size(); ++r)
-    if (multipliers_[r] > 0) active.push_back(r);
-  const Eigen::MatrixXd gram = gram_(active, active);
+  std::vector<Eigen::Index> active, in_gram;
+  for (Eigen::Index r = 0; r < multipliers_.size(); ++r) {
+    if (!(multipliers_[r] > 0)) continue;
+    active.push_back(r);
+    if (r < gram_.rows()) in_gram.push_back(r);
+  }
+  const Eigen::MatrixXd gram = gram_(in_gram, in_gram);
   const Eigen::VectorXd multipliers = multipliers_(active);
   for (std::size_t k = 0; k < active.size(); ++k)
     if (static_cast<Eigen::Index>(k) != active[k]) constraints_[k] = std::move(constraints_[active[k]]);
@@ -91,10 +64,13 @@ void ConstraintSet::drop_inactive() {
 }
 
 Controls ConstraintSet::project(const Controls& from, const Execution& execution) {
-  Eigen::VectorXd excess(static_cast<Eigen::Index>(constraints_.size()));
-  for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, from) - constraints_[r].bound;
   LcpOptions options;
   options.execution = &execution;
+  if (sweep_cost(constraints_) < constraints_.size() * constraints_.size())
+    return project_by_rows(constraints_, from, multipliers_, options);
+  complete_gram();
+  Eigen::VectorXd excess(static_cast<Eigen::Index>(constraints_.size()));
+  for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, from) - constraints_[r].bound;
   multipliers_ = solve_lcp(gram_, excess, multipliers_, options);
   Controls p = from;
   for (Eigen::Index r = 0; r < excess.size(); ++r)

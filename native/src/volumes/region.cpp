@@ -104,12 +104,10 @@ std::vector<Region> thinned(const Surface& surface, const Events& events, const 
   return kept;
 }
 
-}  // namespace
-
-std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
-                                     const Positions& end) {
+/// The regions on either side of the chosen events; of those of one vertex the earliest, of equals the first.
+std::vector<Region> earliest_of(const Surface& surface, const Events& events, const std::vector<Index>& chosen) {
   std::vector<Region> regions;
-  for (const Index k : without_consequences(surface, events, telling_events(events, start, end))) {
+  for (const Index k : chosen) {
     const Event& event = events[k];
     const int split = first_side_size(event.kind);
     const bool rigid = is_rigid(surface, bodies_of(surface, event));
@@ -122,6 +120,24 @@ std::vector<Region> earliest_regions(const Surface& surface, const Events& event
   const auto same_vertex = [](const Region& a, const Region& b) { return a.vertex == b.vertex; };
   regions.erase(std::unique(regions.begin(), regions.end(), same_vertex), regions.end());
   return thinned(surface, events, regions);
+}
+
+}  // namespace
+
+std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
+                                     const Positions& end) {
+  return earliest_of(surface, events, without_consequences(surface, events, telling_events(events, start, end)));
+}
+
+std::vector<Region> contact_regions(const Surface& surface, const Events& events, const Positions& start,
+                                    const Positions& end) {
+  std::vector<Index> of_rigid_bodies, others;
+  for (const Index k : without_consequences(surface, events, telling_events(events, start, end)))
+    (is_rigid(surface, bodies_of(surface, events[k])) ? of_rigid_bodies : others).push_back(k);
+  std::vector<Region> regions = earliest_of(surface, events, of_rigid_bodies);
+  for (const Index k : others)
+    regions.push_back({heaviest_vertex(events[k], 0, first_side_size(events[k].kind)), k, false});
+  return regions;
 }
 
 }  // namespace stiv

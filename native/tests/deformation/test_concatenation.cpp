@@ -69,6 +69,18 @@ TEST_CASE("concatenation: each part keeps its own metric") {
   CHECK(found.row(5) == g.value[5].transpose());
 }
 
+TEST_CASE("concatenation: its metric is local if that of every part is") {
+  const Positions start = random_positions(12, 1);
+  const auto is_local = [&](std::vector<DeformationPart> parts) {
+    return make_concatenation(std::move(parts), start)->metric({0.1, {}})->is_local();
+  };
+  const DeformationPart points{make_identity(2), {0, 1}};
+  const DeformationPart body{make_rigid(start.topRows(4)), {2, 3, 4, 5}};
+  const DeformationPart cage{make_linear(two_control_weights(4)), {6, 7, 8, 9}};
+  CHECK(is_local({points, body}));
+  CHECK_FALSE(is_local({points, cage}));
+}
+
 TEST_CASE("concatenation: bad input is named") {
   const Positions start = random_positions(4, 1);
   CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 1}}, {make_identity(2), {2, 1}}}, start),

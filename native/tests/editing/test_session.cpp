@@ -62,6 +62,21 @@ TEST_CASE("session: a sheet pushed fully through another in one edit ends on its
   CHECK(result.surface.bottomRows(result.surface.rows() - upper_sheet).col(2).minCoeff() < -0.1);
 }
 
+TEST_CASE("session: an edit goes on from its first answer while that is cheap, and comes nearer to the goal") {
+  const Scene scene = two_sheets();
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0, 0, -1));
+  EditOptions first_answer;
+  first_answer.max_sub_edits = 1;
+  EditSession once = session_of(scene, first_answer), again = session_of(scene);
+  const EditResult first = edit(once, goal), refined = edit(again, goal);
+  CHECK(first.counters.sub_edits == 1);
+  CHECK(refined.counters.sub_edits > 1);
+  CHECK(refined.status == EditStatus::corrected);
+  CHECK(refined.path.front() == first.controls);
+  CHECK(refined.energy < 0.99 * first.energy);
+  CHECK(is_free(scene, refined.surface));
+}
+
 TEST_CASE("session: a common motion of all is the goal as stored, to the last bit, near contact too") {
   Scene scene = two_sheets();
   scene.controls.topRows(upper_sheet).col(2).array() -= 0.49999;

@@ -90,6 +90,25 @@ TEST_CASE("region: edges that are nearly parallel or meet at an end count only w
   CHECK(earliest_regions(points(8), {parallel, face}, start, end).front().vertex == 4);
 }
 
+TEST_CASE("region: contact by contact, every usable event is one region, that of its first side") {
+  Positions start(4, 3);
+  start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  Positions end = start;
+  end(0, 2) = 0;
+  Event sliding = vertex_on_face(0.1);
+  sliding.normal = Vector3::UnitX();
+  const Events events{vertex_on_face(0.7), sliding, vertex_on_face(0.3)};
+  const auto regions = contact_regions(points(4), events, start, end);
+  REQUIRE(regions.size() == 2);
+  CHECK(regions[0].event == 0);
+  CHECK(regions[1].event == 2);
+  for (const Region& region : regions) CHECK(region.vertex == 0);
+  const auto rigid = contact_regions(points(4, Mobility::rigid), events, start, end);
+  const auto earliest = earliest_regions(points(4, Mobility::rigid), events, start, end);
+  REQUIRE(rigid.size() == earliest.size());
+  for (std::size_t k = 0; k < rigid.size(); ++k) CHECK(rigid[k].event == earliest[k].event);
+}
+
 TEST_CASE("region: what happens to a rigid body after its first contact is left out, and many contacts are thinned") {
   Positions start(4, 3);
   start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;

@@ -13,7 +13,7 @@
 namespace stiv {
 
 enum class EditStatus {
-  reached,    ///< the goal itself, no correction needed
+  reached,    ///< the goal itself
   corrected,  ///< interference was resolved; the controls are as near to the goal as the response brought them
   blocked,    ///< stopped at the last clear state before the response could settle; `blocking` names the bodies
   budget,     ///< the time budget ended first; the last accepted state is returned
@@ -49,7 +49,7 @@ class EditSession {
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
 
-  /// One edit from the accepted controls toward `goal`, (m, 3).
+  /// One edit from the accepted controls toward `goal`, (m, 3). Goes on from its first answer while that is cheap.
   EditResult edit(const Controls& goal, Execution& execution);
 
   /// One mouse move of a drag: the increment since the last move's goal, then a pull toward the absolute goal, so that

@@ -22,8 +22,8 @@ struct ControlConstraint {
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
                                                    const Controls& p, const Metric& metric, const Controls& metric_at);
 
-/// Constraints that are met together. Their Gram matrix grows with them and the last multipliers are the next first
-/// guess, so that adding a few rows and projecting again is cheap.
+/// Constraints that are met together. The last multipliers are the next first guess and the Gram matrix, where it is
+/// used, grows with the constraints, so that adding a few rows and projecting again is cheap.
 class ConstraintSet {
  public:
   void add(std::vector<ControlConstraint> constraints);
@@ -37,8 +37,10 @@ class ConstraintSet {
   Controls project(const Controls& from, const Execution& execution);
 
  private:
+  void complete_gram();
+
   std::vector<ControlConstraint> constraints_;
-  Eigen::MatrixXd gram_;  ///< row_r . step_s
+  Eigen::MatrixXd gram_;  ///< row_r . step_s, of the first constraints: as far as it was needed
   Eigen::VectorXd multipliers_;
 };
 

@@ -28,4 +28,9 @@ struct Region {
 std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
                                      const Positions& end);
 
+/// The same events, but all of them, each in the region of its first side alone; those of rigid bodies as above. For
+/// deformations in which each contact can be answered by itself. Not in the order of vertices.
+std::vector<Region> contact_regions(const Surface& surface, const Events& events, const Positions& start,
+                                    const Positions& end);
+
 }  // namespace stiv
