@@ -80,6 +80,8 @@ HWY_INLINE Mask apart(const PairStep& step, double separation) {
   const Lanes magnitude = hn::Max(magnitude_of(step.start), magnitude_of(step.end));
   const Lanes clearance = hn::Add(all(separation), hn::Mul(all(0x1p-46), magnitude));
   const Mask at_start = plane_separates<kind>(normal_of<kind>(step.start), step, clearance);
+  constexpr bool few_lanes = HWY_MAX_BYTES <= 2 * sizeof(double);  // of many, some always need another plane
+  if (few_lanes && hn::AllTrue(Doubles(), at_start)) return at_start;
   const Point middles = between_middles<kind>(step.start) + between_middles<kind>(step.end);
   const Mask between = hn::Or(at_start, plane_separates<kind>(middles, step, clearance));
   if (hn::AllTrue(Doubles(), between)) return between;

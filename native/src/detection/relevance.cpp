@@ -1,19 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detection/relevance.hpp"
 
-#include <algorithm>
-
 namespace stiv {
-
-std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, const Candidate& candidate) {
-  if (kind == EventKind::vertex_face) {
-    const auto face = surface.triangles().row(candidate.second);
-    return {candidate.first, face[0], face[1], face[2]};
-  }
-  const auto a = surface.edges().row(std::min(candidate.first, candidate.second));
-  const auto b = surface.edges().row(std::max(candidate.first, candidate.second));
-  return {a[0], a[1], b[0], b[1]};
-}
 
 Relevance::Relevance(const Surface& surface, const Step& step)
     : surface_(surface), moved_(static_cast<std::size_t>(step.start.rows())) {
