@@ -65,12 +65,12 @@ def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) ->
     peer = Peer(ipctk, step, threads) if ipctk else None
     detector = stiv.Detector(step.triangles, threads=threads)
     detector.find(step.start, step.end)
-    aside = 0.01 * np.ptp(step.start, axis=0)  # far more than any bound is padded by
-    nearer = step.start + 0.9 * (step.end - step.start)
+    motion = step.end - step.start
+    nearer = step.start + 0.9 * motion
     earliest: dict[str, float] = {}
     for _ in range(repeats):
         watch.run("build", lambda: stiv.Detector(step.triangles, threads=threads).find(step.start, step.end))
-        detector.find(step.start + aside, step.end + aside)  # so that nothing of the step is known
+        detector.find(step.start - 3 * motion, step.start - 2 * motion)  # an edit before: nothing of this one is known
         watch.run("first", lambda: detector.find(step.start, step.end))
         watch.run("again", lambda: detector.find(step.start, nearer))
         if peer:
