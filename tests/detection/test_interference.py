@@ -100,6 +100,23 @@ def test_common_motion_gives_no_event() -> None:
         assert len(stiv.find_interference(corners, start, start + np.array(shift), separation=0.02)) == 0
 
 
+@pytest.mark.parametrize("separation", [0.0, 0.1])
+@pytest.mark.parametrize("narrow_phase", ["conservative", "polynomial"])
+def test_a_flat_mesh_that_turns_in_its_plane_has_no_event(separation: float, narrow_phase: str) -> None:
+    size = 40
+    x, y = np.meshgrid(np.arange(size, dtype=float), np.arange(size, dtype=float), indexing="ij")
+    start = np.column_stack([x.ravel(), y.ravel(), np.zeros(size * size)])
+    corner = (np.arange(size - 1)[:, None] * size + np.arange(size - 1)).ravel()
+    triangles = np.concatenate([corner[:, None] + [0, size, size + 1], corner[:, None] + [0, size + 1, 1]])
+    turn = np.array([[np.cos(0.01), np.sin(0.01), 0], [-np.sin(0.01), np.cos(0.01), 0], [0, 0, 1]])
+    aslant = np.array([[2, 2, 1], [-2, 1, 2], [1, -2, 2]]) / 3
+    for frame in (np.eye(3), aslant):
+        events = stiv.Detector(triangles, narrow_phase=narrow_phase).find(
+            start @ frame, start @ turn @ frame, separation
+        )
+        assert len(events) == 0
+
+
 def test_a_detector_is_used_by_one_thread_at_a_time() -> None:
     corners, start, end = soup(11, 300, 0.5)
     detector = stiv.Detector(corners, broad_phase="brute_force", threads=1)

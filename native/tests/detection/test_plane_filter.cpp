@@ -4,6 +4,8 @@
 #include "detection/motions.hpp"
 #include "detection/plane_filter.hpp"
 #include "detection/reference.hpp"
+#include "detection/scenes.hpp"
+#include "stiv/detection/detector.hpp"
 #include "vector_targets.hpp"
 
 using namespace stiv;
@@ -63,4 +65,24 @@ TEST_CASE("plane filter: what it calls apart keeps the separation, and every vec
       }
   CHECK(apart > all / 8);
   CHECK(apart < all);
+}
+
+TEST_CASE("plane filter: a whole detection gives the same bits with every vector target") {
+  const MovingScene scene = stirred_sheets(12, 3, 0.15, 41);
+  for (const double separation : {0.0, 0.02}) {
+    const auto found = for_each_vector_target([&] {
+      Execution execution(2);
+      return Detector(scene.surface).find(scene.start, scene.end, {separation, 0.5}, execution);
+    });
+    REQUIRE(found.front().size() > 50);
+    for (const Events& other : found) {
+      REQUIRE(other.size() == found.front().size());
+      for (std::size_t k = 0; k < other.size(); ++k) {
+        CHECK(other[k].vertices == found.front()[k].vertices);
+        CHECK(other[k].time == found.front()[k].time);
+        CHECK(other[k].weights == found.front()[k].weights);
+        CHECK(other[k].normal == found.front()[k].normal);
+      }
+    }
+  }
 }
