@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "stiv/detection/detector.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
+#include "stiv/response/resolver.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv {
@@ -18,6 +20,15 @@ namespace stiv {
 struct State {
   Controls controls;
   Positions surface;
+};
+
+/// Where the rounds of a sub-edit stand, so that one that the time budget ended can be taken up again.
+struct RoundProgress {
+  Controls accepted, goal;  ///< of the sub-edit
+  ConstraintSet kept;
+  Controls p;  ///< next candidate, before it is rounded
+  bool accumulate = true;
+  int round = 0;
 };
 
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
@@ -45,6 +56,9 @@ class Problem {
   /// @throws StartIntersectsError
   void check_start(const Positions& q, Execution& execution);
 
+  /// Rounds begun and not ended by an acceptance; the session forgets them unless the time budget ended the call.
+  std::optional<RoundProgress>& unfinished_rounds() { return unfinished_rounds_; }
+
   Controls stored(const Controls& controls) const;
   Positions surface_at(const Controls& controls, Execution& execution) const;
 
@@ -66,6 +80,7 @@ class Problem {
   IntersectionTest intersections_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
+  std::optional<RoundProgress> unfinished_rounds_;
 };
 
 }  // namespace stiv

@@ -59,16 +59,23 @@ Measurement measure(const Problem& problem, const State& accepted, const Eigen::
   return measured;
 }
 
+/// Those that the time budget ended, if they are of the same sub-edit; new ones else.
+RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal) {
+  std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
+  if (!rounds || rounds->accepted != accepted.controls || rounds->goal != goal)
+    rounds = RoundProgress{accepted.controls, goal, {}, goal};
+  return *rounds;
+}
+
 }  // namespace
 
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Execution& execution) {
   const EditOptions& options = problem.options();
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
-  ConstraintSet kept;
-  Controls p = goal;
-  bool accumulate = true;
-  for (int round = 0;; ++round) {
+  RoundProgress& progress = rounds_toward(problem, accepted, goal);
+  auto& [from, to, kept, p, accumulate, round] = progress;
+  for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);

@@ -36,6 +36,7 @@ class EditSession::Implementation {
     Execution execution(problem_.options().threads);
     State state{controls, problem_.surface_at(controls, execution)};
     if (!problem_.is_empty()) problem_.check_start(state.surface, execution);
+    problem_.unfinished_rounds().reset();
     goal_ = {goal, problem_.surface_at(goal, execution)};
     accepted_ = std::move(state);
     dragging_ = goal != controls;
@@ -103,6 +104,7 @@ class EditSession::Implementation {
     problem_.check_controls(goal, "goal");
     const State before = accepted_, goal_before = goal_;
     SolveReport report;
+    bool resumable = false;
     EditStatus status = EditStatus::unchanged;
     State target{goal, before.surface};
     {
@@ -121,11 +123,14 @@ class EditSession::Implementation {
           report.path.clear();
         } else {
           goal_ = target;
+          resumable = true;
         }
       } catch (...) {
         accepted_ = before;
+        problem_.unfinished_rounds().reset();
         throw;
       }
+      if (!resumable) problem_.unfinished_rounds().reset();
     }
     EditResult result = make_result(problem_, accepted_, target.surface, std::move(report), status);
     result.counters = execution.counters;
