@@ -235,22 +235,31 @@ def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
     return Edit(f"knot {lift:g}", surface, deformation, shape.vertices[handles], goal, {"weights": free})
 
 
-def bulge(depth: float, cells: int = 16) -> Edit:
-    """A sheet under Laplacian editing, its rim held: a patch in the middle is moved down by `depth` into a wavy sheet,
-    half of its handles pinned; not one of the fourteen."""
+def bulge(depth: float, cells: int = 16, rigid: bool = False) -> Edit:
+    """A sheet moved by handles, its rim held: a patch in the middle goes down by `depth` into a wavy sheet.
+
+    Handles beside the patch are pinned. Laplacian editing, or as rigid as possible. Not one of the fourteen.
+    """
     sheet = triangulated(grid(cells, cells)).moved((0, 0, 0.5))
     x, y = sheet.vertices[:, 0] / np.ptp(sheet.vertices[:, 0]), sheet.vertices[:, 1] / np.ptp(sheet.vertices[:, 1])
     rim = np.flatnonzero(np.maximum(abs(x), abs(y)) > 0.49)
     patch = np.flatnonzero(np.hypot(x, y) < 0.15)
     pinned = np.flatnonzero((x > 0.3) & (x < 0.4) & (abs(y) < 0.2))
     handles = np.concatenate([patch, pinned])
-    deformation = stiv.laplacian(sheet.vertices, sheet.triangles(), handles, fixed=rim, pull=None)
+    make = stiv.arap if rigid else stiv.laplacian
+    deformation = make(sheet.vertices, sheet.triangles(), handles, fixed=rim, pull=None)
     goal = sheet.vertices[handles].copy()
     goal[: len(patch), 2] -= depth
     free = np.repeat([1.0, 0.0], [len(patch), len(pinned)])
     wall = triangulated(wavy_wall()).moved((0, 0, -0.02))
     edit = _against_obstacle(
-        f"bulge {depth:g}", sheet, "deformable", wall, deformation, sheet.vertices[handles].copy(), goal
+        f"{'rigid ' if rigid else ''}bulge {depth:g}",
+        sheet,
+        "deformable",
+        wall,
+        deformation,
+        sheet.vertices[handles].copy(),
+        goal,
     )
     return replace(edit, options={"weights": free})
 

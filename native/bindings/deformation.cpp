@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "module.hpp"
+#include "stiv/deformation/arap.hpp"
 #include "stiv/deformation/composition.hpp"
 #include "stiv/deformation/concatenation.hpp"
 #include "stiv/deformation/identity.hpp"
@@ -208,6 +209,9 @@ void bind_deformation(py::module_& module) {
   py::class_<HandleDefinition>(module, "Handles").def(py::init(&make_handles));
   module.def(
       "laplacian", [](const HandleDefinition& handles) { return shared(make_laplacian(handles)); },
+      py::call_guard<py::gil_scoped_release>());
+  module.def(
+      "arap", [](const HandleDefinition& handles) { return shared(make_arap(handles)); },
       py::call_guard<py::gil_scoped_release>());
   py::class_<Cage>(module, "Cage").def(py::init(&make_cage));
   module.def("subdivision_weights", [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple,

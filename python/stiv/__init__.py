@@ -16,7 +16,7 @@ from stiv.deformation import (
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
-from stiv.handles import laplacian
+from stiv.handles import arap, laplacian
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
@@ -40,6 +40,7 @@ __all__ = [
     "StorageFrame",
     "Surface",
     "Weights",
+    "arap",
     "catmull_clark",
     "compose",
     "concatenate",

@@ -73,7 +73,7 @@ def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Defo
 
     The last one acts first: `compose(subdivision, lattice)` subdivides what the lattice deforms. Each has as many
     controls as the next one has vertices. Weights stand for the linear deformation without offset that they describe.
-    The last one may be a deformation by handles, see `laplacian`; all others, and else all, must have sparse weights.
+    The last one may be a deformation by handles (`laplacian`, `arap`); all others must have sparse weights.
 
     Raises InputError if numbers do not fit or a deformation is of another kind.
     """

@@ -41,6 +41,28 @@ def laplacian(
     return _native.laplacian(_handles(vertices, triangles, handles, fixed, pull, edge_weights))
 
 
+def arap(
+    vertices: ArrayLike,
+    triangles: ArrayLike,
+    handles: ArrayLike,
+    *,
+    fixed: ArrayLike = (),
+    pull: ArrayLike | float | None = 1.0,
+    edge_weights: str = "cotangent",
+) -> Deformation:
+    """Return as-rigid-as-possible editing: a mesh whose neighbourhoods turn, but stretch as little as they can.
+
+    The surface q and a rotation R_i for each vertex minimise
+    1/4 sum_i sum_j w_ij |(q_i - q_j) - R_i (vertices_i - vertices_j)|^2 + 1/2 sum pull_k |q[handles[k]] - p_k|^2.
+    [Sorkine and Alexa 2007] Not linear in the controls: each surface is a search from the rest positions, some 20 to
+    100 times as long as a surface of `laplacian`. The same controls give the same surface, whatever came before; where
+    several surfaces are as good, a small change of the controls can lead to another one.
+
+    Arguments and errors are those of `laplacian`.
+    """
+    return _native.arap(_handles(vertices, triangles, handles, fixed, pull, edge_weights))
+
+
 def _handles(
     vertices: ArrayLike,
     triangles: ArrayLike,

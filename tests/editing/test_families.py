@@ -23,6 +23,7 @@ CASES = [
     (families.vase(1.8, count=6), 0.05),
     (families.rigid(1.0), 0.60),
     (families.bulge(0.8), 0.5),
+    (families.bulge(0.8, cells=10, rigid=True), 0.7),
     (families.loop_by_handles(0.6), 0.2),
     (families.knot(0.5, rings=90, sides=6), 0.05),
 ]

@@ -50,6 +50,7 @@ class HandleMap {
   void keep_in_full();
   ColumnBlock gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const;
   Eigen::MatrixXd gram(const WeightMatrix* surface_gram) const;
+  bool product_is_cheaper() const;
   bool is_full() const { return full_.rows() == vertex_count(); }
 
   HandleMapLimits limits_;

@@ -21,7 +21,7 @@ template <class Block>
 Block SparseFactor::solve_block(const Block& right) const {
   using Row = Eigen::Matrix<double, 1, Block::ColsAtCompileTime>;
   if (right.rows() == 0) return right;
-  const SymmetricMatrix& lower = factor_.matrixL().nestedExpression();
+  const SymmetricMatrix& lower = this->lower();
   const auto& place = factor_.permutationP().indices();
   const auto diagonal = factor_.vectorD();
   Block x(right.rows(), right.cols());

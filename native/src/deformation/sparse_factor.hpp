@@ -21,10 +21,12 @@ class SparseFactor {
   SparseFactor(const SymmetricMatrix& matrix, const char* what);
 
   Index size() const { return static_cast<Index>(factor_.rows()); }
+  Index entries() const { return size() == 0 ? 0 : static_cast<Index>(lower().nonZeros()); }  ///< of L
   Positions solve(const Positions& right) const;
   ColumnBlock solve(const ColumnBlock& right) const;
 
  private:
+  const SymmetricMatrix& lower() const { return factor_.matrixL().nestedExpression(); }
   template <class Block>
   Block solve_block(const Block& right) const;
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/rigid_cells.hpp"
+
+#include <utility>
+
+#include "deformation/rotation.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Edge = SymmetricMatrix::InnerIterator;
+
+/// The edge from its neighbour to a vertex.
+Vector3 across(const Positions& q, Index vertex, const Edge& edge) {
+  return (q.row(vertex) - q.row(edge.row())).transpose();
+}
+
+}  // namespace
+
+RigidCells::RigidCells(SymmetricMatrix weights, Positions rest)
+    : weights_(std::move(weights)), rest_(std::move(rest)) {}
+
+std::vector<RotationFit> RigidCells::fit(const Positions& u) const {
+  std::vector<RotationFit> fits(static_cast<std::size_t>(weights_.cols()));
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (Edge edge(weights_, vertex); edge; ++edge) {
+      const Vector3 at_rest = across(rest_, vertex, edge);
+      spread += edge.value() * (at_rest + across(u, vertex, edge)) * at_rest.transpose();
+    }
+    fits[static_cast<std::size_t>(vertex)] = fit_rotation(spread);
+  }
+  return fits;
+}
+
+double RigidCells::energy(const Positions& u, const std::vector<RotationFit>& fits) const {
+  double sum = 0;
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
+    const Eigen::Matrix3d& rotation = fits[static_cast<std::size_t>(vertex)].rotation;
+    for (Edge edge(weights_, vertex); edge; ++edge) {
+      const Vector3 at_rest = across(rest_, vertex, edge);
+      sum += edge.value() * (at_rest + across(u, vertex, edge) - rotation * at_rest).squaredNorm();
+    }
+  }
+  return sum / 4;
+}
+
+Positions RigidCells::load_of(const std::vector<Eigen::Matrix3d>& change) const {
+  Positions load = Positions::Zero(weights_.cols(), 3);
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex)
+    for (Edge edge(weights_, vertex); edge; ++edge) {
+      const Eigen::Matrix3d both =
+          change[static_cast<std::size_t>(vertex)] + change[static_cast<std::size_t>(edge.row())];
+      load.row(vertex) += edge.value() / 2 * (both * across(rest_, vertex, edge)).transpose();
+    }
+  return load;
+}
+
+Positions RigidCells::load(const std::vector<RotationFit>& fits) const {
+  std::vector<Eigen::Matrix3d> change;
+  change.reserve(fits.size());
+  for (const RotationFit& fit : fits) change.push_back(fit.rotation - Eigen::Matrix3d::Identity());
+  return load_of(change);
+}
+
+Positions RigidCells::load_change(const std::vector<RotationFit>& fits, const Positions& du) const {
+  std::vector<Eigen::Matrix3d> change;
+  change.reserve(fits.size());
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
+    const RotationFit& fit = fits[static_cast<std::size_t>(vertex)];
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (Edge edge(weights_, vertex); edge; ++edge)
+      spread += edge.value() * across(du, vertex, edge) * across(rest_, vertex, edge).transpose();
+    const Vector3 turn = fit.response * axial(fit.rotation.transpose() * spread);
+    change.push_back(fit.rotation * cross_matrix(turn));
+  }
+  return load_of(change);
+}
+
+}  // namespace stiv

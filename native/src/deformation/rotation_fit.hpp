@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// The rotation R nearest to a matrix A, and how it answers: a change dA turns it by dR = R [w]x,
+/// w = response (X - X')_axial, X = R' dA. Directions in which A does not tell the rotation have no response.
+struct RotationFit {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d response = Eigen::Matrix3d::Zero();
+};
+
+RotationFit fit_rotation(const Eigen::Matrix3d& matrix);
+
+/// (S - S')_axial: the vector v with [v]x = S - S'.
+inline Vector3 axial(const Eigen::Matrix3d& s) { return {s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1)}; }
+
+}  // namespace stiv
