@@ -38,9 +38,9 @@ class PrimitiveTree {
       : surface_(surface), rows_(rows), count_(count) {}
 
   /// Brings the boxes up to date after `change` of the vertices' boxes.
-  void update(const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
+  void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
-    if (!tree_) build(box_of);
+    if (!tree_) build(step.start);
     if (change == SweptVertices::Change::all) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
@@ -57,12 +57,13 @@ class PrimitiveTree {
                                                                   static_cast<std::size_t>(size));
   }
 
-  template <class BoxOf>
-  void build(const BoxOf& box_of) {
+  /// Sorted by where things are at the start: a first step may take them anywhere.
+  void build(const Positions& start) {
     std::vector<Bounds> boxes(at(count_));
     std::vector<Index> bodies(at(count_));
     for (Index primitive = 0; primitive < count_; ++primitive) {
-      boxes[at(primitive)] = box_of(primitive).bounds();
+      boxes[at(primitive)] = Bounds::empty();
+      for (const Index vertex : row(primitive)) boxes[at(primitive)].include(start.row(vertex) - start.row(0), 0);
       bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
     }
     tree_.emplace(boxes, bodies, CornerRows{rows_, size});
@@ -93,13 +94,15 @@ class BvhSource final : public CandidateSource {
   void update(const Step& step, const Execution& execution) override {
     vertex_steps_ = step.vertices;
     separation_ = step.proximity.separation;
-    const SweptVertices::Change change = swept_.update(step, execution);
-    if (change == SweptVertices::Change::none && collected_) return;
-    vertices_.update(swept_, change, execution);
-    edges_.update(swept_, change, execution);
-    faces_.update(swept_, change, execution);
+    const SweptVertices::Change change = swept_.update(step, execution, collected_);
+    if (change == SweptVertices::Change::none) return;
+    vertices_.update(step, swept_, change, execution);
+    edges_.update(step, swept_, change, execution);
+    faces_.update(step, swept_, change, execution);
     collect(execution);
   }
+
+  bool manageable() const override { return collected_; }
 
   Index chunk_count(EventKind kind) const override { return static_cast<Index>(of(kind).tasks.size()); }
 
@@ -147,27 +150,30 @@ class BvhSource final : public CandidateSource {
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
       pairs.near.resize(std::max(pairs.near.size(), pairs.tasks.size()));
     }
-    std::atomic<std::int64_t> total{0};
+    compared_ = near_ = 0;
     const Index faces = chunk_count(EventKind::vertex_face);
     const Index count = faces + chunk_count(EventKind::edge_edge);
     execution.for_chunks(count, 1, [&](Index task, Index, Index) {
       if (task < faces)
-        collect(EventKind::vertex_face, task, total);
+        collect(EventKind::vertex_face, task);
       else
-        collect(EventKind::edge_edge, task - faces, total);
+        collect(EventKind::edge_edge, task - faces);
     });
-    collected_ = total <= most_pairs();
+    collected_ = few_enough();
     if (!collected_)
       for (Pairs& pairs : pairs_) pairs.near.clear();
   }
 
-  void collect(EventKind kind, Index task, std::atomic<std::int64_t>& total) {
+  void collect(EventKind kind, Index task) {
     std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[at(task)];
     near.clear();
+    if (!few_enough()) return;
     traverse(kind, task, [&](const PairBuffer& found) {
       const std::size_t before = near.size();
       append_near(kind, found, near);
-      return (total += static_cast<std::int64_t>(near.size() - before)) <= most_pairs();
+      compared_ += static_cast<std::int64_t>(found.count);
+      near_ += static_cast<std::int64_t>(near.size() - before);
+      return few_enough();
     });
   }
 
@@ -208,10 +214,13 @@ class BvhSource final : public CandidateSource {
           near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
   }
 
-  /// Pairs are kept up to 64 a primitive, which takes as much memory as the trees several times over.
-  std::int64_t most_pairs() const {
+  /// Dense scenes compare four pairs a primitive and keep three; these bounds make for a fraction of a second, and for
+  /// less memory than the trees take. Counts only grow, so whether they exceed a bound does not depend on who counts
+  /// first.
+  bool few_enough() const {
     const std::int64_t primitives = surface_.vertex_count() + surface_.edges().rows() + surface_.triangles().rows();
-    return std::max<std::int64_t>(1 << 20, 16 * primitives);
+    return compared_ <= std::max<std::int64_t>(1 << 21, 16 * primitives) &&
+           near_ <= std::max<std::int64_t>(1 << 18, 4 * primitives);
   }
 
   const Surface& surface_;
@@ -224,6 +233,7 @@ class BvhSource final : public CandidateSource {
   PrimitiveTree<2> edges_;
   PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
+  std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
   bool collected_ = false;
 };
 

@@ -38,6 +38,9 @@ class CandidateSource {
   virtual ~CandidateSource() = default;
   /// @throws InputError as Surface::check_positions, the shape aside
   virtual void update(const Step& step, const Execution& execution) = 0;
+  /// Are the candidates of the step few enough to be looked at in bounded time and memory? Depends on the step alone.
+  /// Visits go through all of them either way.
+  virtual bool manageable() const { return true; }
   virtual Index chunk_count(EventKind kind) const = 0;
   virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;
 };

@@ -60,29 +60,36 @@ class Detector::Implementation {
         narrow_phase_(options.narrow_phase),
         source_(make_source(options.broad_phase, *surface_)) {}
 
-  Events find(const Step& step, Execution& execution) {
-    std::vector<ChunkResult> results = search(step, execution, [](const PairTest& test, EventKind kind) {
-      return [&test, kind](const Candidate& candidate, ChunkResult& result) {
-        if (auto event = test.event(kind, candidate, 1)) result.events.push_back(*event);
-      };
-    });
+  /// Nothing if the step is not `manageable` though asked to be.
+  std::optional<Events> find(const Step& step, bool manageable, Execution& execution) {
+    std::optional<std::vector<ChunkResult>> results =
+        search(step, manageable, execution, [](const PairTest& test, EventKind kind) {
+          return [&test, kind](const Candidate& candidate, ChunkResult& result) {
+            if (auto event = test.event(kind, candidate, 1)) result.events.push_back(*event);
+          };
+        });
+    if (!results) return std::nullopt;
     Events events;
-    for (const ChunkResult& result : results) events.insert(events.end(), result.events.begin(), result.events.end());
+    for (ChunkResult& result : *results) {
+      events.insert(events.end(), result.events.begin(), result.events.end());
+      result.events = Events();  // there may be millions
+    }
     std::sort(events.begin(), events.end(), comes_before);
     execution.counters.events += static_cast<std::int64_t>(events.size());
     return events;
   }
 
-  double earliest_time(const Step& step, Execution& execution) {
+  std::optional<double> earliest_time(const Step& step, bool manageable, Execution& execution) {
     std::atomic<double> earliest{never};
-    search(step, execution, [&](const PairTest& test, EventKind kind) {
+    const auto results = search(step, manageable, execution, [&](const PairTest& test, EventKind kind) {
       return [&test, &earliest, kind](const Candidate& candidate, ChunkResult&) {
         const double latest = std::min(1.0, earliest.load(std::memory_order_relaxed));
         if (latest == 0) return;
         if (const auto event = test.event(kind, candidate, latest)) lower(earliest, event->time);
       };
     });
-    return earliest;
+    if (!results) return std::nullopt;
+    return earliest.load();
   }
 
   const Surface& surface() const { return *surface_; }
@@ -90,12 +97,15 @@ class Detector::Implementation {
  private:
   /// Calls `decide(test, kind)(candidate, result)` for every candidate that needs the narrow phase.
   template <class Decide>
-  std::vector<ChunkResult> search(const Step& step, Execution& execution, const Decide& decide) {
+  std::optional<std::vector<ChunkResult>> search(const Step& step, bool manageable, Execution& execution,
+                                                 const Decide& decide) {
     check_shape(step);
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
     vertices_.update(step.start, step.end, execution);
     source_->update({step.start, step.end, step.proximity, &vertices_}, execution);
+    ++execution.counters.detections;
+    if (manageable && !source_->manageable()) return std::nullopt;
     const PairTest test(*surface_, step, narrow_phase_, vertices_);
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
@@ -122,7 +132,6 @@ class Detector::Implementation {
   }
 
   static void count(const std::vector<ChunkResult>& results, Counters& counters) {
-    ++counters.detections;
     for (const ChunkResult& result : results) {
       counters.candidate_pairs += result.candidates;
       counters.pairs_tested += result.tested;
@@ -142,12 +151,22 @@ Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
 Events Detector::find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution) {
-  return implementation_->find({start, end, proximity}, execution);
+  return *implementation_->find({start, end, proximity}, false, execution);
 }
 
 double Detector::earliest_time(const Positions& start, const Positions& end, Proximity proximity,
                                Execution& execution) {
-  return implementation_->earliest_time({start, end, proximity}, execution);
+  return *implementation_->earliest_time({start, end, proximity}, false, execution);
+}
+
+std::optional<Events> Detector::find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
+                                                   Execution& execution) {
+  return implementation_->find({start, end, proximity}, true, execution);
+}
+
+std::optional<double> Detector::earliest_time_if_manageable(const Positions& start, const Positions& end,
+                                                            Proximity proximity, Execution& execution) {
+  return implementation_->earliest_time({start, end, proximity}, true, execution);
 }
 
 const Surface& Detector::surface() const { return implementation_->surface(); }

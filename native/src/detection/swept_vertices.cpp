@@ -196,12 +196,12 @@ bool SweptVertices::holds(const Step& step, const Survey& survey, const Executio
   return all_near(step, all, frame_.motion + survey.change / static_cast<double>(all.size()), execution);
 }
 
-SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution) {
+SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
   const Index count = surface_.vertex_count();
   Survey found = survey(step, execution);
   const bool first = start_.rows() != count;
   changed_ = std::move(found.changed);
-  if (!first && holds(step, found, execution)) return Change::none;
+  if (!first && may_stay && holds(step, found, execution)) return Change::none;
   const Frame frame = frame_for(step, found);
   const bool all = first || frame != frame_;
   frame_ = frame;

@@ -24,8 +24,9 @@ class SweptVertices {
     all
   };
 
+  /// @param may_stay false: boxes that hold the step are made anew all the same
   /// @throws InputError as Surface::check_positions
-  Change update(const Step& step, const Execution& execution);
+  Change update(const Step& step, const Execution& execution, bool may_stay = true);
 
   /// Boxes grow by this part of the displacement of their vertex in the frame, its largest component.
   static constexpr double slack = 1.0 / 32;

@@ -83,14 +83,20 @@ Positions Problem::surface_at(const Controls& controls, Execution& execution) co
   return deformation_->surface(controls);
 }
 
-Events Problem::find_events(const Positions& from, const Positions& to, Execution& execution) {
+std::optional<Events> Problem::find_events(const Positions& from, const Positions& to, bool at_any_cost,
+                                           Execution& execution) {
   const ScopedTimer timer(execution.timings.detection);
-  return detector_.find(centred(from), centred(to), proximity(), execution);
+  const Positions start = centred(from), end = centred(to);
+  if (at_any_cost) return detector_.find(start, end, proximity(), execution);
+  return detector_.find_if_manageable(start, end, proximity(), execution);
 }
 
-double Problem::earliest_time(const Positions& from, const Positions& to, Execution& execution) {
+std::optional<double> Problem::earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
+                                             Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  return detector_.earliest_time(centred(from), centred(to), proximity(), execution);
+  const Positions start = centred(from), end = centred(to);
+  if (at_any_cost) return detector_.earliest_time(start, end, proximity(), execution);
+  return detector_.earliest_time_if_manageable(start, end, proximity(), execution);
 }
 
 bool Problem::is_free(const Positions& from, const Positions& to, Execution& execution) {

@@ -62,9 +62,11 @@ class Problem {
   Controls stored(const Controls& controls) const;
   Positions surface_at(const Controls& controls, Execution& execution) const;
 
-  /// Events on the way from one surface to the other, and the earliest time of any.
-  Events find_events(const Positions& from, const Positions& to, Execution& execution);
-  double earliest_time(const Positions& from, const Positions& to, Execution& execution);
+  /// Events on the way from one surface to the other, and the earliest time of any. Nothing if the way is too far to
+  /// be looked at in bounded time and memory; `at_any_cost`: never so.
+  std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
+  std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
+                                      Execution& execution);
   /// Exact static test; `from` is known to be free.
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "stiv/editing/goal.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/volumes/stiv.hpp"
 
@@ -19,6 +20,9 @@ constexpr std::size_t most_constraints = 512;
 /// Where each control moves its own part of the surface alone, constraints touch few controls, so that thousands can be
 /// met together, and do not stiffen what lies between them: there each contact is one from the first round on.
 constexpr std::size_t most_local_constraints = 8192;
+
+/// Where even this part of the way has too many pairs near each other, it is not the motion that makes them.
+constexpr double shortest_part = 0x1p-16;
 
 struct Measurement {
   std::vector<Stiv> stivs;  ///< none if no event tells a way out
@@ -69,10 +73,12 @@ RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Cont
 
 }  // namespace
 
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Execution& execution) {
+RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, bool at_any_cost,
+                        Execution& execution) {
   const EditOptions& options = problem.options();
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
+  outcome.at_any_cost = at_any_cost;
   RoundProgress& progress = rounds_toward(problem, accepted, goal);
   auto& [from, to, kept, p, accumulate, round] = progress;
   for (;; ++round) {
@@ -81,10 +87,13 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     outcome.candidate.controls = problem.stored(p);
     outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
     if (round == options.max_rounds) return outcome;
-    Events events = problem.find_events(accepted.surface, outcome.candidate.surface, execution);
-    outcome.clear = events.empty();
+    std::optional<Events> events =
+        problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
+    outcome.too_far = !events;
+    if (outcome.too_far) return outcome;
+    outcome.clear = events->empty();
     if (outcome.clear) return outcome;
-    outcome.events = std::move(events);
+    outcome.events = std::move(*events);
     ++execution.counters.rounds;
     if (kept.size() > most_constraints_of(problem) / 2) kept.drop_inactive();
     const Measurement measured = measure(problem, accepted, areas, round, kept.size(), outcome, execution);
@@ -98,6 +107,17 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     kept.add(std::move(rows));
     p = kept.project(accumulate ? goal : outcome.candidate.controls, execution);
   }
+}
+
+RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal, double& part,
+                                     Execution& execution) {
+  for (part = std::min(1.0, 2 * part); part >= shortest_part; part /= 2) {
+    const Controls aim = interpolate(accepted.controls, goal, part, problem.rotation_rows());
+    RoundOutcome outcome = run_rounds(problem, accepted, aim, false, execution);
+    if (!outcome.too_far) return outcome;
+  }
+  return run_rounds(problem, accepted, interpolate(accepted.controls, goal, part, problem.rotation_rows()), true,
+                    execution);
 }
 
 }  // namespace stiv

@@ -7,9 +7,11 @@ namespace stiv {
 
 /// What the rounds of one sub-edit came to.
 struct RoundOutcome {
-  State candidate;     ///< controls as stored, and their surface
-  bool clear = false;  ///< the step from the accepted state to the candidate was detected to be without events
-  Events events;       ///< of the last round that had any
+  State candidate;           ///< controls as stored, and their surface
+  bool clear = false;        ///< the step from the accepted state to the candidate was detected to be without events
+  bool too_far = false;      ///< the step to the candidate was too far to be looked at: no round took place
+  bool at_any_cost = false;  ///< steps were looked at however far
+  Events events;             ///< of the last round that had any
   Index patches = 0;
 };
 
@@ -18,6 +20,12 @@ struct RoundOutcome {
 /// left (or from the start, where the metric is local), then Algorithm 1 from where that came to.
 /// Candidates are rounded as they will be stored *before* they are looked at, so that the round without events is
 /// itself the check of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Execution& execution);
+RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, bool at_any_cost,
+                        Execution& execution);
+
+/// The same toward `part` of the way to the goal: of twice the part given, or of half, a quarter and so on of that, the
+/// farthest that detection can look at in bounded time and memory, so that no motion, however far, exceeds them.
+RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal, double& part,
+                                     Execution& execution);
 
 }  // namespace stiv

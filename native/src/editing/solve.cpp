@@ -12,6 +12,7 @@ namespace stiv {
 
 namespace {
 
+constexpr int most_cuts = 256;        // parts of a motion that is too far to be looked at in one piece
 constexpr double least_gain = 1e-3;   // relative fall of E that makes another sub-edit worth while
 constexpr double largest_turn = 0.3;  // radians a step; the chord of an arc then leaves it by 1.1 % of the radius
 
@@ -28,10 +29,10 @@ void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& accept
 
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
   const int most = aim.must_improve ? 1 : problem.options().max_sub_edits;  // pulls go on by themselves
-  double before = energy(accepted.surface, aim.surface);
-  for (int sub_edit = 0; sub_edit < most; ++sub_edit) {
+  double before = energy(accepted.surface, aim.surface), part = 1;
+  for (int sub_edit = 0, cuts = 0; sub_edit < most; ++sub_edit) {
     ++execution.counters.sub_edits;
-    RoundOutcome outcome = run_rounds(problem, accepted, aim.controls, execution);
+    RoundOutcome outcome = run_rounds_within_reach(problem, accepted, aim.controls, part, execution);
     // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
     const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
     const auto agreeable = [&](const State& state) {
@@ -43,9 +44,16 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
     accepted = std::move(acceptance.state);
     report.path.push_back(accepted.controls);
     const double after = energy(accepted.surface, aim.surface);
-    if (!report.blocked || after > (1 - least_gain) * before) return;
+    if (part == 1 && !report.blocked) return;
+    if (part < 1 && !report.blocked && after < before && cuts < most_cuts) {
+      ++cuts;
+      --sub_edit;  // settled as far as was looked: no try at the whole goal yet
+    } else if (after > (1 - least_gain) * before) {
+      break;
+    }
     before = after;
   }
+  report.blocked = true;  // short of the goal, and not for having settled
 }
 
 void solve_in_turns(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {

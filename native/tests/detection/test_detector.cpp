@@ -209,6 +209,26 @@ TEST_CASE("detector: empty surfaces and bad input") {
   CHECK_THROWS_WITH_AS(detector.find(scene.start, scene.end, {}, execution), doctest::Contains("vertex 2"), InputError);
 }
 
+TEST_CASE("detector: a motion that brings too many pairs near each other is told, a part of it is not") {
+  MovingScene scene = stirred_sheets(45, 1, 0, 10);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> far(-10, 10);
+  const Positions motion = Positions::NullaryExpr(scene.start.rows(), 3, [&] { return far(random); });
+  const Proximity proximity{1e-3, 0.5};
+  for (const int threads : {1, 2}) {
+    Execution execution(threads);
+    Detector detector(scene.surface);
+    CHECK_FALSE(detector.find_if_manageable(scene.start, scene.start + motion, proximity, execution));
+    CHECK_FALSE(detector.earliest_time_if_manageable(scene.start, scene.start + motion, proximity, execution));
+    CHECK(execution.counters.candidate_pairs == 0);
+    const Positions end = scene.start + motion / 1024;
+    const auto part = detector.find_if_manageable(scene.start, end, proximity, execution);
+    REQUIRE(part);
+    CHECK(same_bits(*part, Detector(scene.surface).find(scene.start, end, proximity, execution)));
+    CHECK(detector.find_if_manageable(scene.start, end, proximity, execution)->size() > 20);
+  }
+}
+
 TEST_CASE("detector: coordinates beyond single precision") {
   MovingScene scene = falling_vertex();
   scene.start *= 1e60;

@@ -52,6 +52,24 @@ TEST_CASE("session: a free goal is reached as it will be stored") {
   CHECK(edit(session, result.controls).status == EditStatus::unchanged);
 }
 
+TEST_CASE("session: a way too far to be looked at in one piece is gone in parts, free or through a wall") {
+  const Scene scene = two_sheets(45);
+  constexpr Index upper = 46 * 46;
+  EditOptions options;
+  options.max_sub_edits = 2;
+  options.max_rounds = 4;
+  EditSession session = session_of(scene, options);
+  const EditResult up = edit(session, moved(scene.controls, upper, Vector3(1.1, 1.2, 1.3)));
+  CHECK(up.status == EditStatus::reached);
+  CHECK(up.path.size() > 1);
+  const EditResult back = edit(session, scene.controls);
+  CHECK(back.status == EditStatus::reached);
+  const EditResult down = edit(session, moved(scene.controls, upper, Vector3(0.1, 0.2, -1)));
+  CHECK(is_free(scene, down.surface));
+  CHECK(down.energy < 0.5 * upper * (0.01 + 0.04 + 1));
+  CHECK(down.counters.candidate_pairs < (1 << 18) * (down.counters.detections + 1));
+}
+
 TEST_CASE("session: a sheet pushed fully through another in one edit ends on its side") {
   const Scene scene = two_sheets();
   EditSession session = session_of(scene);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "stiv/detection/event.hpp"
 #include "stiv/detection/proximity.hpp"
@@ -40,8 +41,17 @@ class Detector {
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
   Events find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
 
+  /// The same, or nothing if the step brings more pairs near each other than can be looked at in bounded time and
+  /// memory: then look at a shorter one. Whether it does depends on the step alone. Only trees refuse; they do so
+  /// however short the step, where so much lies in one place at the start.
+  std::optional<Events> find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
+                                           Execution& execution);
+
   /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
   double earliest_time(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
+
+  std::optional<double> earliest_time_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
+                                                    Execution& execution);
 
   const Surface& surface() const;
 
