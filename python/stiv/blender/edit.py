@@ -30,6 +30,7 @@ from stiv.blender.verification import FacePair, Verification, Verifier
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
 MOST_STEPS = 200
+MOST_HALVINGS = 8  # of a step that Blender's evaluation does not pass
 MOST_RECUTS = 4  # times that an edit is solved again because Blender cut bent faces otherwise
 
 
@@ -195,13 +196,26 @@ class BlenderEdit:
         return True
 
     def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
-        place = latest(self._trail.places()[:-1], lambda each: self._show(each.controls).passed)
+        places = self._trail.places()
+        place = latest(places[:-1], lambda each: self._show(each.controls).passed)
+        if place is not None and place.leg < 0:
+            place = self._part_of_step(place, places[1])
         controls = self._trail.shown if place is None else place.controls
         self._write(controls)
         self._go_on_from(controls)
         on_the_way = place is not None and place.leg >= 0
         message = f"stopped on the way: {failure.message}" if on_the_way else failure.message
         return WriteReport(on_the_way, failure.intersections, message, result)
+
+    def _part_of_step(self, start: Place, end: Place) -> Place:
+        """A place between two that follow each other which Blender shows free; the first if none is found."""
+        for halvings in range(1, MOST_HALVINGS + 1):
+            self._go_on_from(start.controls)
+            self._session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
+            between = self._session.controls
+            if not np.array_equal(between, start.controls) and self._show(between).passed:
+                return Place(between, end.leg, end.step)
+        return start
 
     def _write(self, controls: Floats) -> None:
         for part, rows, start in zip(self._parts, self._split(controls), self._split(self._start), strict=True):
