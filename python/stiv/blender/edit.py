@@ -198,7 +198,7 @@ class BlenderEdit:
     def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         places = self._trail.places()
         place = latest(places[:-1], lambda each: self._show(each.controls).passed)
-        if place is not None and place.leg < 0:
+        if place is not None and place.leg < 0 and failure.intersections:
             place = self._part_of_step(place, places[1])
         controls = self._trail.shown if place is None else place.controls
         self._write(controls)
