@@ -90,6 +90,9 @@ def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: floa
 class Detector:
     """Finds interference along steps of one surface; keeps its trees between calls.
 
+    What rests from call to call costs next to nothing, and so does a step from the same start to a nearby end: the next
+    round of an edit. Events are those of a new detector, bit for bit.
+
     surface       Surface, or triangles (F, 3) over as many vertices as the first step has
     broad_phase   "bvh": trees; "hash_grid": cells of equal size; "brute_force": all pairs, the oracle
     narrow_phase  "conservative": advancement by separating planes, never late; "polynomial": as in the paper, roots of
