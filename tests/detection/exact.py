@@ -3,7 +3,7 @@
 
 Two primitives touch for the first time at 0, or when a polynomial in time changes sign or touches zero: the volume of
 the four points (cubic), or, for pairs that stay in one plane, an area of three of them (quadratic). At each root,
-isolated to 2^-80, the squared distance is compared. Doubles are integers over a common power of two.
+isolated to 2^-160, the squared distance is compared. Doubles are integers over a common power of two.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,9 +14,9 @@ from math import comb, gcd, lcm
 Polynomial = list[int]  # lowest power first, no zeros last
 Vector = tuple[int, int, int]
 
-BITS = 80
+BITS = 160
 WIDTH = Fraction(1, 2**BITS)
-NEAR = 60
+NEAR = 140
 """Primitives count as touching within 2^-NEAR of the largest coordinate, which the isolation of roots cannot tell."""
 
 

@@ -13,17 +13,36 @@ constexpr int slow = 2;
 /// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
 constexpr double tolerance = 1e-3;
 
-/// Of the nearest points. The difference of two points that nearly coincide is noise: within both primitives, the
-/// normal of the face or of both edges takes its place.
+/// The edge, if any, within which exactly one of the nearest points lies.
+template <class Scalar>
+VectorOf<Scalar> edge_of(EventKind kind, const WitnessOf<Scalar>& nearest, const Quadruple<Scalar>& x) {
+  const auto& w = nearest.weights;
+  const bool first = kind == EventKind::edge_edge && w[0] != 0 && w[1] != 0;
+  if (first) return x[1] - x[0];
+  for (const auto& [a, b] : {std::pair(2, 3), std::pair(1, 3), std::pair(1, 2)}) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    if (w[i] != 0 && w[j] != 0 && (i == 2 || kind == EventKind::vertex_face)) return x[j] - x[i];
+  }
+  return VectorOf<Scalar>::Zero();
+}
+
+/// Of the nearest points. The difference of two points that nearly coincide is noise. Within both primitives, the
+/// normal of the face or of both edges takes its place; within an edge, what it has along the edge is taken away, which
+/// its far ends would turn into distance.
 template <class Scalar>
 VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& time) {
-  constexpr double noise = 0x1p24;
   if (!(nearest.distance > 0)) return VectorOf<Scalar>::Zero();
-  if (nearest.distance < noise * motion.rounding && within_both(nearest)) {
+  if (nearest.distance >= Precision<Scalar>::noise * motion.rounding) return nearest.separation / nearest.distance;
+  if (within_both(nearest)) {
     const VectorOf<Scalar> normal = geometric_normal(motion, time);
     if (!normal.isZero(0)) return normal.dot(nearest.separation) < 0 ? VectorOf<Scalar>(-normal) : normal;
   }
-  return nearest.separation / nearest.distance;
+  const VectorOf<Scalar> edge = edge_of(motion.kind, nearest, motion.at(time));
+  const Scalar length2 = edge.squaredNorm();
+  if (!(length2 > 0)) return nearest.separation / nearest.distance;
+  const VectorOf<Scalar> across = nearest.separation - (edge.dot(nearest.separation) / length2) * edge;
+  const Scalar length = across.norm();
+  return length > 0 ? VectorOf<Scalar>(across / length) : VectorOf<Scalar>(VectorOf<Scalar>::Zero());
 }
 
 template <class Scalar>

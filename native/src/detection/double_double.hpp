@@ -86,6 +86,9 @@ template <>
 struct Precision<double> {
   /// Bound of the rounding error of a projected gap, over the pair's largest coordinate: 128 u.
   static constexpr double gap = 0x1p-46;
+  /// Nearest points nearer than so many of these have a difference whose direction is doubtful by more than their
+  /// distance over the pair's size: about the root of u.
+  static constexpr double noise = 0x1p24;
   /// Steps of one advancement. Contacts take 2 to 6; those that touch without crossing take a fixed fraction of the
   /// wait at each.
   static constexpr int most_steps = 256;
@@ -99,6 +102,7 @@ template <>
 struct Precision<DoubleDouble> {
   /// No operation errs by more than 16 u^2, u = 2^-53, so that 2^-102 takes the place of u.
   static constexpr double gap = 0x1p-95;
+  static constexpr double noise = 0x1p48;
   static constexpr int most_steps = 24;
   static constexpr int most_trials = 4;
   static constexpr int trials_in_all = 64;
