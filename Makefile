@@ -9,6 +9,7 @@ NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -ty
 PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready
+FUZZ_SECONDS := 30
 BENCHMARKS := $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/*.py)) \
 	$(patsubst benchmarks/%/__main__.py,%,$(wildcard benchmarks/*/__main__.py))
 BLENDER_VENVS := $(BLENDERS:%=build/venv-blender-%/ready)
@@ -17,7 +18,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: peers help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
+.PHONY: peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -55,6 +56,20 @@ bench: build/venv/bench ## Run every benchmark with its default settings, beside
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
 
 peers: build/venv/bench build/cgal ## Install what benchmarks race: ipctk and libigl from PyPI, CGAL from Debian
+
+fuzz: $(OPENSUBDIV) ## Fuzz pair tests, detection and the static test: make fuzz FUZZ_SECONDS=600 (each; default 30)
+	tools/install_debian_packages.sh tools/debian_packages_fuzz.txt
+	cmake --preset fuzz -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset fuzz
+	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
+
+coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection and acceptance need 95 %
+	tools/install_debian_packages.sh tools/debian_packages_coverage.txt
+	cmake --preset coverage -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset coverage --target stiv_tests
+	find build/coverage -name '*.gcda' -delete
+	build/coverage/native/tests/stiv_tests
+	$(PYTHON) tools/coverage.py build/coverage --at-least 95 detection acceptance
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix

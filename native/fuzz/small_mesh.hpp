@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "input.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv::fuzz {
+
+/// A few vertices and triangles, corners repeated or shared at random, and a few loose edges.
+inline std::shared_ptr<const Surface> small_surface(Input& input) {
+  SurfaceDefinition definition;
+  definition.vertex_count = 3 + input.below(14);
+  definition.triangles.resize(1 + input.below(14), 3);
+  // Fans around a vertex, as meshes have them, or any three.
+  const bool fans = input.below(2) == 0;
+  for (Index face = 0; face < definition.triangles.rows(); ++face) {
+    for (Index k = 0; k < 3; ++k) definition.triangles(face, k) = input.below(definition.vertex_count);
+    if (fans && face > 0) {
+      definition.triangles(face, 0) = definition.triangles(face - 1, 0);
+      definition.triangles(face, 1) = definition.triangles(face - 1, 2);
+    }
+  }
+  definition.loose_edges.resize(input.below(3), 2);
+  for (Index edge = 0; edge < definition.loose_edges.rows(); ++edge)
+    for (Index k = 0; k < 2; ++k) definition.loose_edges(edge, k) = input.below(definition.vertex_count);
+  return std::make_shared<const Surface>(definition);
+}
+
+}  // namespace stiv::fuzz

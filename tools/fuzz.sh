@@ -1,0 +1,15 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# fuzz.sh BUILD_FOLDER SECONDS: runs each fuzz target so long, from the committed inputs on. What it finds new is kept under
+# BUILD_FOLDER/corpus; an input that fails is written to BUILD_FOLDER, and ends the run.
+set -eu
+build=$1
+seconds=$2
+for program in "$build"/native/fuzz/fuzz_*; do
+    [ -f "$program" ] && [ -x "$program" ] || continue
+    target=$(basename "$program" | sed 's/^fuzz_//')
+    echo "== $target, $seconds s"
+    mkdir -p "$build/corpus/$target"
+    "$program" "$build/corpus/$target" "native/fuzz/corpus/$target" -max_total_time="$seconds" -max_len=512 \
+        -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -artifact_prefix="$build/$target-"
+done
