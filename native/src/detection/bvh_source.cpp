@@ -4,6 +4,7 @@
 #include <atomic>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "detection/candidates.hpp"
 #include "detection/hull_filter.hpp"
@@ -94,11 +95,18 @@ class BvhSource final : public CandidateSource {
   void update(const Step& step, const Execution& execution) override {
     vertex_steps_ = step.vertices;
     separation_ = step.proximity.separation;
-    const SweptVertices::Change change = swept_.update(step, execution, collected_);
-    if (change == SweptVertices::Change::none) return;
+    // Whatever is cancelled half way counts as not done: then everything is made anew.
+    const bool refitted = std::exchange(refitted_, false), collected = std::exchange(collected_, false);
+    SweptVertices::Change change = swept_.update(step, execution, collected);
+    if (!refitted) change = SweptVertices::Change::all;
+    if (change == SweptVertices::Change::none) {
+      refitted_ = collected_ = true;
+      return;
+    }
     vertices_.update(step, swept_, change, execution);
     edges_.update(step, swept_, change, execution);
     faces_.update(step, swept_, change, execution);
+    refitted_ = true;
     collect(execution);
   }
 
@@ -234,7 +242,8 @@ class BvhSource final : public CandidateSource {
   PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
   std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
-  bool collected_ = false;
+  bool refitted_ = false;                            // the trees are those of the boxes
+  bool collected_ = false;                           // the pairs kept are all that matter
 };
 
 }  // namespace

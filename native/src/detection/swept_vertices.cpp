@@ -70,7 +70,7 @@ double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42
 
 SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
-  const bool first = start_.rows() != count;
+  const bool first = !complete_;
   std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
@@ -199,11 +199,12 @@ bool SweptVertices::holds(const Step& step, const Survey& survey, const Executio
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
   const Index count = surface_.vertex_count();
   Survey found = survey(step, execution);
-  const bool first = start_.rows() != count;
+  const bool first = !complete_;
   changed_ = std::move(found.changed);
   if (!first && may_stay && holds(step, found, execution)) return Change::none;
   const Frame frame = frame_for(step, found);
   const bool all = first || frame != frame_;
+  complete_ = false;  // until all is done: it may be cancelled half way
   frame_ = frame;
   if (all) {
     boxes_.resize(at(count));
@@ -213,6 +214,7 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
     std::iota(changed_.begin(), changed_.end(), 0);
   }
   sweep(step, changed_, execution);
+  complete_ = true;
   return all || changed_.size() > at(count) / 2 ? Change::all : Change::some;
 }
 

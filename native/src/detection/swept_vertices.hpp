@@ -72,6 +72,7 @@ class SweptVertices {
   Positions start_, end_;  // for which each box was made
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
+  bool complete_ = false;  // there is a box for each vertex, all seen from the frame
 };
 
 }  // namespace stiv
