@@ -48,9 +48,10 @@ py::tuple rows_of(const WeightMatrix& matrix) {
                         array_of(matrix.valuePtr(), matrix.nonZeros()), py::make_tuple(matrix.rows(), matrix.cols()));
 }
 
-SparseField all_rows(const Positions& values) {
+SparseField nonzero_rows(const Positions& values) {
   SparseField field;
   for (Index row = 0; row < values.rows(); ++row) {
+    if (values.row(row).isZero(0)) continue;
     field.index.push_back(row);
     field.value.push_back(values.row(row));
   }
@@ -72,7 +73,7 @@ void check_rows(const Positions& values, Index count, const char* name) {
 Positions pull_back(const Deformation& deformation, const Controls& p, const Positions& g) {
   check_rows(p, deformation.control_count(), "controls");
   check_rows(g, deformation.vertex_count(), "covector");
-  return dense(deformation.pull_back(p, all_rows(g)), deformation.control_count());
+  return dense(deformation.pull_back(p, nonzero_rows(g)), deformation.control_count());
 }
 
 Positions push_forward(const Deformation& deformation, const Controls& p, const Controls& d) {
@@ -85,7 +86,7 @@ Positions apply_inverse_metric(const Deformation& deformation, const Controls& p
   check_rows(p, deformation.control_count(), "controls");
   check_rows(g, deformation.control_count(), "covector");
   const auto metric = deformation.metric({smoothness, weights});
-  return dense(metric->apply_inverse(p, all_rows(g)), deformation.control_count());
+  return dense(metric->apply_inverse(p, nonzero_rows(g)), deformation.control_count());
 }
 
 std::vector<Index> support(const Deformation& deformation, Index control) {
