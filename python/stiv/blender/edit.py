@@ -18,11 +18,11 @@ from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
-from stiv.blender.recutting import Cut, with_bent_quads, with_cuts
 from stiv.blender.results import summed
 from stiv.blender.roles import find_movers
-from stiv.blender.sessions import deformation_of, make_session, mobilities, stacked
+from stiv.blender.sessions import mobilities, stacked
 from stiv.blender.settings import EditSettings, check_kind
+from stiv.blender.solving import Solving
 from stiv.blender.summary import Summary, summarise
 from stiv.blender.trail import Place, Trail, latest
 from stiv.blender.transform_path import Path, increments, transform_at
@@ -58,12 +58,11 @@ class BlenderEdit:
         """Use `begin`."""
         self.summary = summary
         self._parts = tuple(parts)
-        self._settings = settings
+        self._threads = settings.threads
         self._start = stacked([part.controls for part in parts])
         self._goal = self._start
-        self._at_start = assembly
-        self._take(assembly, self._start)
-        self._trail = Trail(self._start, self._start)
+        self._solving = Solving(assembly, self._parts, self._start, settings)
+        self._verifier = Verifier(self.assembly, settings.threads)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -79,23 +78,22 @@ class BlenderEdit:
             raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
         mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
-        summary = summarise(assembly, parts, scene.hidden)
-        return cls(with_bent_quads(assembly, settings.threads), parts, settings, summary)
+        return cls(assembly, parts, settings, summarise(assembly, parts, scene.hidden))
 
     @property
     def controls(self) -> Floats:
         """Accepted controls of all parts, (m, 3)."""
-        return self._session.controls
+        return self._solving.session.controls
 
     @property
     def surface(self) -> Floats:
         """The accepted surface, (N, 3)."""
-        return self._session.surface
+        return self._solving.session.surface
 
     @property
     def assembly(self) -> Assembly:
-        """The surface's objects and faces."""
-        return self._assembly
+        """The surface's objects and faces, with the cuts of bent faces that are kept free."""
+        return self._solving.assembly
 
     def drag(self, matrix: ArrayLike, **execution: Any) -> stiv.EditResult:
         """Solve for an absolute goal: `matrix`, (4, 4), moves what is selected from where it was at the beginning.
@@ -103,7 +101,7 @@ class BlenderEdit:
         `cancel` and `progress` as of stiv.EditSession. Raises InputError for a matrix that is not finite.
         """
         self._goal = self._goal_of(_checked(matrix))
-        return self._solve(self._goal, **execution)
+        return self._solving.solve(self._goal, **execution)
 
     def apply(self, matrix: ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for the same goal given at once: approached in increments of a drag's size, then settled.
@@ -121,7 +119,7 @@ class BlenderEdit:
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
-        return self._solve(None, **execution)
+        return self._solving.solve(None, **execution)
 
     def write(self) -> WriteReport:
         """Write the accepted controls, read Blender's evaluation back and test it.
@@ -130,17 +128,17 @@ class BlenderEdit:
         and the way since the last writing is solved again from where both are free. What still fails is taken back to
         the last state on the way that passes. Raises SceneChangedError when an object is gone or was changed.
         """
-        verification = self._show(self._session.controls)
+        verification = self._show(self.controls)
         solved_again = False
         for _ in range(MOST_RECUTS):
-            if verification.passed or not self._solve_again(verification.cuts):
+            if verification.passed or not self._solving.solve_again(verification.cuts):
                 break
             solved_again = True
-            verification = self._show(self._session.controls)
-        result = summed([leg.result for leg in self._trail.legs]) if solved_again else None
+            verification = self._show(self.controls)
+        result = summed([leg.result for leg in self._solving.trail.legs]) if solved_again else None
         if not verification.passed:
             return self._fall_back(verification, result)
-        self._trail = Trail(self._session.controls, self._goal)
+        self._solving.trail = Trail(self.controls, self._goal)
         return WriteReport(True, result=result)
 
     def restore(self) -> None:
@@ -149,60 +147,22 @@ class BlenderEdit:
             part.writer.restore()
         bpy.context.view_layer.update()
         self._goal = self._start
-        self._go_on_from(self._start)
-
-    def _take(self, assembly: Assembly, controls: Floats) -> None:
-        self._deformation = deformation_of(assembly, self._parts)
-        self._session = make_session(assembly, self._deformation, self._parts, controls, self._settings)
-        self._assembly = assembly
-        self._verifier = Verifier(assembly, self._settings.threads)
-
-    def _go_on_from(self, controls: Floats) -> None:
-        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known."""
-        try:
-            self._session.restore(controls, self._goal)
-        except stiv.StartIntersectsError:
-            self._take(self._at_start, controls)
-            self._session.restore(controls, self._goal)
-        self._trail = Trail(controls, self._goal)
-
-    def _solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
-        result = self._session.settle(**execution) if goal is None else self._session.drag(goal, **execution)
-        self._trail.add(goal, result)
-        return result
+        self._solving.go_on_from(self._start, self._goal)
 
     def _show(self, controls: Floats) -> Verification:
         self._write(controls)
-        return self._verifier.verify(bpy.context, self._deformation.surface(controls))
-
-    def _solve_again(self, cuts: Sequence[Cut]) -> bool:
-        """With more cuts of faces; False if there are none or no state since the last writing is free with them."""
-        if not cuts:
-            return False
-        assembly = with_cuts(self._assembly, cuts)
-
-        def is_free(place: Place) -> bool:
-            q = self._deformation.surface(place.controls)
-            return len(stiv.find_intersections(q, assembly.surface, threads=self._settings.threads)) == 0
-
-        place = latest(self._trail.places(), is_free)
-        if place is None:
-            return False
-        goal = self._trail.goal_at(place)
-        self._take(assembly, place.controls)
-        self._session.restore(place.controls, goal)
-        for leg in self._trail.cut_at(place):
-            self._solve(leg.goal)
-        return True
+        if self._verifier.assembly is not self.assembly:  # more cuts were taken in
+            self._verifier = Verifier(self.assembly, self._threads)
+        return self._verifier.verify(bpy.context, self._solving.deformation.surface(controls))
 
     def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
-        places = self._trail.places()
+        places = self._solving.trail.places()
         place = latest(places[:-1], lambda each: self._show(each.controls).passed)
         if place is not None and place.leg < 0 and failure.intersections:
             place = self._part_of_step(place, places[1])
-        controls = self._trail.shown if place is None else place.controls
+        controls = places[0].controls if place is None else place.controls
         self._write(controls)
-        self._go_on_from(controls)
+        self._solving.go_on_from(controls, self._goal)
         on_the_way = place is not None and place.leg >= 0
         message = f"stopped on the way: {failure.message}" if on_the_way else failure.message
         return WriteReport(on_the_way, failure.intersections, message, result)
@@ -210,9 +170,9 @@ class BlenderEdit:
     def _part_of_step(self, start: Place, end: Place) -> Place:
         """A place between two that follow each other which Blender shows free; the first if none is found."""
         for halvings in range(1, MOST_HALVINGS + 1):
-            self._go_on_from(start.controls)
-            self._session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
-            between = self._session.controls
+            self._solving.go_on_from(start.controls, self._goal)
+            self._solving.session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
+            between = self.controls
             if not np.array_equal(between, start.controls) and self._show(between).passed:
                 return Place(between, end.leg, end.step)
         return start
@@ -236,7 +196,7 @@ class BlenderEdit:
 
     def _fractions(self, path: Path) -> Iterator[float]:
         moving = [index for part in self._parts for index in part.surfaces]
-        points = np.concatenate([self._assembly.positions[self._assembly.vertices(index)] for index in moving])
+        points = np.concatenate([self.assembly.positions[self.assembly.vertices(index)] for index in moving])
         diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
         count = increments(path, points, STEP * diagonal, MOST_STEPS)
         return ((k + 1) / count for k in range(count))

@@ -38,11 +38,11 @@ class Verification:
 
 
 class Verifier:
-    """Tests what Blender evaluates against accepted surfaces; keeps its trees."""
+    """Tests what Blender evaluates against accepted surfaces of an `assembly`; keeps its trees."""
 
     def __init__(self, assembly: Assembly, threads: int = 0) -> None:
         """For the meshes of an assembly; threads 0 for all."""
-        self._assembly = assembly
+        self.assembly = assembly
         self._threads = threads
         self._steps = stiv.StepCheck(assembly.surface, threads)
 
@@ -53,24 +53,24 @@ class Verifier:
         be free of intersections, in the triangles of the assembly and in Blender's present ones, which follow the
         shape. Raises SceneChangedError when other meshes are visible than at the start.
         """
-        shown = read_shown(context, self._assembly)
-        message = _elsewhere(self._assembly, accepted, shown)
+        shown = read_shown(context, self.assembly)
+        message = _elsewhere(self.assembly, accepted, shown)
         if message:
             return Verification(False, (), message)
         if not self._steps.is_free(accepted, shown):
-            return self._failure(named_pairs(self._assembly, shown, self._threads))
-        cuts = fresh_cuts(context, self._assembly)
+            return self._failure(named_pairs(self.assembly, shown, self._threads))
+        cuts = fresh_cuts(context, self.assembly)
         return self._verify_cuts(cuts, shown) if cuts else Verification(True)
 
     def _verify_cuts(self, cuts: tuple[PresentCut, ...], shown: Floats) -> Verification:
-        pairs = named_pairs(as_shown(self._assembly, cuts), shown, self._threads)
+        pairs = named_pairs(as_shown(self.assembly, cuts), shown, self._threads)
         if not pairs:
             return Verification(True)
         meeting = {(each.object, each.number) for pair in pairs for each in (pair.first, pair.second)}
         return self._failure(pairs, tuple(self._that_meet(cut.fresh, meeting) for cut in cuts))
 
     def _that_meet(self, cut: Cut, meeting: set[tuple[str, int]]) -> Cut:
-        name = self._assembly.meshes[cut.mesh].owner.name
+        name = self.assembly.meshes[cut.mesh].owner.name
         return cut.limited_to(np.array([(name, int(face)) in meeting for face in cut.faces]))
 
     def _failure(self, pairs: tuple[FacePair, ...], cuts: tuple[Cut, ...] = ()) -> Verification:

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The session of an edit and the trail of what it accepted; made anew when more cuts of bent faces must stay free."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import stiv
+from stiv.blender.arrays import Floats
+from stiv.blender.assembly import Assembly
+from stiv.blender.parts import Part
+from stiv.blender.recutting import Cut, with_bent_quads, with_cuts
+from stiv.blender.sessions import deformation_of, make_session
+from stiv.blender.settings import EditSettings
+from stiv.blender.trail import Place, Trail, latest
+
+
+class Solving:
+    """Attributes: `assembly` with the cuts that are kept free, `session`, `deformation`, and the `trail`."""
+
+    def __init__(self, assembly: Assembly, parts: Sequence[Part], controls: Floats, settings: EditSettings) -> None:
+        """Begin at controls of all parts, (m, 3). Raises InputError, StartIntersectsError."""
+        self._parts = parts
+        self._settings = settings
+        self._at_start = with_bent_quads(assembly, settings.threads)
+        self._take(self._at_start, controls)
+        self.trail = Trail(controls, controls)
+
+    def solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
+        """Drag to a goal, (m, 3), or settle (None)."""
+        result = self.session.settle(**execution) if goal is None else self.session.drag(goal, **execution)
+        self.trail.add(goal, result)
+        return result
+
+    def go_on_from(self, controls: Floats, goal: Floats) -> None:
+        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known."""
+        try:
+            self.session.restore(controls, goal)
+        except stiv.StartIntersectsError:
+            self._take(self._at_start, controls)
+            self.session.restore(controls, goal)
+        self.trail = Trail(controls, goal)
+
+    def solve_again(self, cuts: Sequence[Cut]) -> bool:
+        """Take in more cuts, go back to where they are free, and solve from there for what the trail was to do.
+
+        False, with nothing done, if there are no cuts, or nothing of the trail is free with them.
+        """
+        if not cuts:
+            return False
+        assembly = with_cuts(self.assembly, cuts)
+
+        def is_free(place: Place) -> bool:
+            q = self.deformation.surface(place.controls)
+            return len(stiv.find_intersections(q, assembly.surface, threads=self._settings.threads)) == 0
+
+        place = latest(self.trail.places(), is_free)
+        if place is None:
+            return False
+        goal = self.trail.goal_at(place)
+        self._take(assembly, place.controls)
+        self.session.restore(place.controls, goal)
+        for leg in self.trail.cut_at(place):
+            self.solve(leg.goal)
+        return True
+
+    def _take(self, assembly: Assembly, controls: Floats) -> None:
+        self.deformation = deformation_of(assembly, self._parts)
+        self.session = make_session(assembly, self.deformation, self._parts, controls, self._settings)
+        self.assembly = assembly
