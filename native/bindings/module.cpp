@@ -58,4 +58,5 @@ PYBIND11_MODULE(_native, module) {
   stiv::bindings::bind_detection(module);
   stiv::bindings::bind_acceptance(module);
   stiv::bindings::bind_editing(module);
+  stiv::bindings::bind_repair(module);
 }

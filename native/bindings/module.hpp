@@ -10,6 +10,7 @@ void bind_deformation(pybind11::module_& module);
 void bind_detection(pybind11::module_& module);
 void bind_acceptance(pybind11::module_& module);
 void bind_editing(pybind11::module_& module);
+void bind_repair(pybind11::module_& module);
 void bind_vector_target(pybind11::module_& module);
 
 }  // namespace stiv::bindings

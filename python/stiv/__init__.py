@@ -2,6 +2,7 @@
 """Interference-aware geometric modeling: surfaces that do not go through each other."""
 
 from stiv._native import InputError, StartIntersectsError
+from stiv.contraction import ContractionOptions, ContractionResult, contract, contraction_step, expand
 from stiv.deformation import (
     Deformation,
     compose,
@@ -19,14 +20,18 @@ from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, Stor
 from stiv.handles import arap, laplacian
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
+from stiv.repairing import RepairOptions, RepairResult, repair
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
 from stiv.weights import Weights
+from stiv.welding import Welded, weld
 
 __all__ = [
     "Body",
     "Cage",
     "CancelToken",
+    "ContractionOptions",
+    "ContractionResult",
     "Deformation",
     "Detector",
     "EditOptions",
@@ -35,16 +40,22 @@ __all__ = [
     "Events",
     "InputError",
     "IntersectionTest",
+    "RepairOptions",
+    "RepairResult",
     "StartIntersectsError",
     "StepCheck",
     "StorageFrame",
     "Surface",
     "Weights",
+    "Welded",
     "arap",
     "catmull_clark",
     "compose",
     "concatenate",
+    "contract",
+    "contraction_step",
     "edit",
+    "expand",
     "find_interference",
     "find_intersections",
     "find_loose_intersections",
@@ -57,6 +68,7 @@ __all__ = [
     "linear",
     "linear_weights",
     "loop",
+    "repair",
     "rigid",
     "rigid_rest_controls",
     "scaling",
@@ -64,4 +76,5 @@ __all__ = [
     "subdivided_faces",
     "subdivision_weights",
     "time_of_impact",
+    "weld",
 ]

@@ -177,3 +177,43 @@ class EditSession:
     def surface(self) -> _Floats: ...
     @property
     def separation(self) -> float: ...
+
+class ContractionOptions:
+    storage: list[StorageFrame]
+    def __init__(self) -> None: ...
+
+class RepairOptions:
+    contraction: ContractionOptions
+    edit: EditOptions
+    moves: list[int]
+    good_deviation: float
+    max_deviation: float
+    def __init__(self) -> None: ...
+
+def contraction_step(
+    surface: Surface, start: _Floats, positions: _Floats, moves: list[int], smoothing: float
+) -> _Floats: ...
+def contract(
+    surface: Surface,
+    positions: _Floats,
+    moves: list[int],
+    options: ContractionOptions,
+    threads: int,
+    cancel: CancelToken | None,
+    progress: Callable[[str, float], None] | None,
+) -> dict[str, Any]: ...
+def expand(
+    surface: Surface,
+    positions: _Floats,
+    target: _Floats,
+    options: EditOptions,
+    cancel: CancelToken | None,
+    progress: Callable[[str, float], None] | None,
+) -> dict[str, Any]: ...
+def repair(
+    surface: Surface,
+    positions: _Floats,
+    options: RepairOptions,
+    cancel: CancelToken | None,
+    progress: Callable[[str, float], None] | None,
+) -> dict[str, Any]: ...

@@ -94,7 +94,8 @@ def _native_value(name: str, value: Any) -> Any:
     return choices[value]
 
 
-def _native_options(options: EditOptions) -> _native.EditOptions:
+def native_options(options: EditOptions) -> _native.EditOptions:
+    """Return the options as the core takes them."""
     native = _native.EditOptions()
     for option in fields(options):
         value = _native_value(option.name, getattr(options, option.name))
@@ -113,7 +114,8 @@ def _as_doubles(value: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name}: expected an array of real numbers") from error
 
 
-def _result(values: dict[str, Any], surface: Surface) -> EditResult:
+def result_of(values: dict[str, Any], surface: Surface) -> EditResult:
+    """Return the core's account of an edit as a result."""
     values["events"] = Events(*values["events"])
     values["blocking"] = tuple(surface.bodies[body].name for body in values["blocking"])
     return EditResult(rounds=values["counters"]["rounds"], **values)
@@ -148,7 +150,7 @@ class EditSession:
             self._topology.native,
             deformation,
             _as_doubles(controls, "controls"),
-            _native_options(options or EditOptions()),
+            native_options(options or EditOptions()),
         )
 
     @property
@@ -175,7 +177,7 @@ class EditSession:
         before the edit. ``progress(phase, fraction)`` is called between rounds; an exception in it cancels, and is
         raised again.
         """
-        return _result(self._session.edit(_as_doubles(goal, "goal"), cancel, progress), self._topology)
+        return result_of(self._session.edit(_as_doubles(goal, "goal"), cancel, progress), self._topology)
 
     def drag(
         self, goal: ArrayLike, *, cancel: CancelToken | None = None, progress: Progress | None = None
@@ -185,11 +187,11 @@ class EditSession:
         First the increment since the goal before, then a pull toward what is missing, so that goals deep inside an
         obstacle neither lose travel nor drag sideways, and the shape comes back with the mouse.
         """
-        return _result(self._session.drag(_as_doubles(goal, "goal"), cancel, progress), self._topology)
+        return result_of(self._session.drag(_as_doubles(goal, "goal"), cancel, progress), self._topology)
 
     def settle(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
         """Solve again toward the last goal until the energy no longer falls; it never grows."""
-        return _result(self._session.settle(cancel, progress), self._topology)
+        return result_of(self._session.settle(cancel, progress), self._topology)
 
     def restore(self, controls: ArrayLike, goal: ArrayLike | None = None) -> None:
         """Take ``controls``, (m, 3), accepted earlier, as the accepted ones (undo, cancel).

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/editing/repair.hpp"
+
+#include "calls.hpp"
+#include "module.hpp"
+#include "stiv/editing/expansion.hpp"
+
+namespace stiv::bindings {
+
+namespace {
+
+using SurfacePointer = std::shared_ptr<Surface>;
+
+const char* name_of(RepairStatus status) {
+  switch (status) {
+    case RepairStatus::already_free:
+      return "already_free";
+    case RepairStatus::repaired:
+      return "repaired";
+    case RepairStatus::refused:
+      return "refused";
+    case RepairStatus::cancelled:
+      return "cancelled";
+    case RepairStatus::budget:
+      return "budget";
+  }
+  return "";
+}
+
+const char* name_of(RepairRefusal refusal) {
+  switch (refusal) {
+    case RepairRefusal::none:
+      return "";
+    case RepairRefusal::coincident:
+      return "coincident";
+    case RepairRefusal::held:
+      return "held";
+    case RepairRefusal::not_freed:
+      return "not_freed";
+    case RepairRefusal::too_far:
+      return "too_far";
+  }
+  return "";
+}
+
+Edges as_rows(const IndexPairs& pairs) {
+  Edges rows(static_cast<Index>(pairs.size()), 2);
+  for (std::size_t k = 0; k < pairs.size(); ++k) rows.row(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
+  return rows;
+}
+
+py::dict dict_of(const ContractionResult& result) {
+  py::dict values;
+  values["positions"] = result.positions;
+  values["free"] = result.free;
+  values["pairs"] = result.pairs;
+  return values;
+}
+
+py::dict dict_of(const RepairResult& result) {
+  py::dict values;
+  values["status"] = name_of(result.status);
+  values["refusal"] = name_of(result.refusal);
+  values["positions"] = result.positions;
+  values["pairs"] = as_rows(result.pairs.faces);
+  values["loose_edge_pairs"] = as_rows(result.pairs.loose_edges);
+  values["loose_vertex_pairs"] = as_rows(result.pairs.loose_vertices);
+  values["pairs_before"] = result.pairs_before;
+  values["fewest_pairs"] = result.fewest_pairs;
+  values["steps"] = result.steps;
+  values["deviation"] = result.deviation;
+  values["contracted"] = result.contracted;
+  values["counters"] = bindings::dict_of(result.counters);
+  values["timings"] = bindings::dict_of(result.timings);
+  return values;
+}
+
+/// Runs work of the core without Python's lock, with its progress and cancellation.
+template <class Work>
+auto call(int threads, const CancelToken* cancel, const py::object& progress, const Work& work) {
+  Execution execution(threads);
+  if (cancel != nullptr) execution.watch(&cancel->cancelled);
+  const ProgressCall progress_call(progress, execution);
+  auto result = [&] {
+    const py::gil_scoped_release unlocked;
+    return work(execution);
+  }();
+  progress_call.rethrow();
+  return result;
+}
+
+Positions step(const SurfacePointer& surface, const Positions& start, const Positions& q,
+               const std::vector<unsigned char>& moves, double smoothing) {
+  surface->check_positions(q);
+  return contraction_step(*surface, contraction_system(*surface, start, moves), q, smoothing);
+}
+
+py::dict run_contraction(const SurfacePointer& surface, const Positions& q, const std::vector<unsigned char>& moves,
+                         const ContractionOptions& options, int threads, const CancelToken* cancel,
+                         const py::object& progress) {
+  return dict_of(call(threads, cancel, progress, [&](Execution& execution) {
+    try {
+      return contract(surface, q, moves, options, execution);
+    } catch (const Interrupted&) {
+      return ContractionResult{q, false, {}};
+    }
+  }));
+}
+
+py::dict run_expansion(const SurfacePointer& surface, const Positions& from, const Positions& target,
+                       const EditOptions& options, const CancelToken* cancel, const py::object& progress) {
+  return bindings::dict_of(call(options.threads, cancel, progress, [&](Execution& execution) {
+    return expand(surface, from, target, options, execution);
+  }));
+}
+
+py::dict run_repair(const SurfacePointer& surface, const Positions& q, const RepairOptions& options,
+                    const CancelToken* cancel, const py::object& progress) {
+  return dict_of(call(options.edit.threads, cancel, progress,
+                      [&](Execution& execution) { return repair(surface, q, options, execution); }));
+}
+
+}  // namespace
+
+void bind_repair(py::module_& module) {
+  py::class_<ContractionOptions>(module, "ContractionOptions")
+      .def(py::init<>())
+      .def_readwrite("smoothing", &ContractionOptions::smoothing)
+      .def_readwrite("growth", &ContractionOptions::growth)
+      .def_readwrite("max_steps", &ContractionOptions::max_steps)
+      .def_readwrite("tolerance", &ContractionOptions::tolerance)
+      .def_readwrite("storage", &ContractionOptions::storage);
+  py::class_<RepairOptions>(module, "RepairOptions")
+      .def(py::init<>())
+      .def_readwrite("contraction", &RepairOptions::contraction)
+      .def_readwrite("edit", &RepairOptions::edit)
+      .def_readwrite("moves", &RepairOptions::moves)
+      .def_readwrite("good_deviation", &RepairOptions::good_deviation)
+      .def_readwrite("max_deviation", &RepairOptions::max_deviation);
+  module.def("contraction_step", &step, py::call_guard<py::gil_scoped_release>());
+  module.def("contract", &run_contraction);
+  module.def("expand", &run_expansion);
+  module.def("repair", &run_repair);
+}
+
+}  // namespace stiv::bindings

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Contraction of a surface toward its skeleton, and expansion back with interference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stiv import _native
+from stiv.arrays import Floats, as_count, as_floats, as_number
+from stiv.editing import CancelToken, EditOptions, EditResult, Progress, native_options, result_of
+from stiv.surface import Surface, as_surface
+
+
+@dataclass(frozen=True)
+class ContractionOptions:
+    """How a contraction goes on. Every default is the one recommended."""
+
+    smoothing: float = 1.0  #: w of the first step, whatever the size of the shape
+    growth: float = 2.0  #: factor on w from step to step, above 1
+    max_steps: int = 16
+    tolerance: float = 2.0  #: stops at so many times the fewest pairs so far, at least 1
+
+
+@dataclass(frozen=True)
+class ContractionResult:
+    """What a contraction came to."""
+
+    positions: NDArray[np.float64]  #: (N, 3) of the step that left the fewest pairs; the start if none left fewer
+    free: bool  #: nothing intersects there
+    pairs: list[int]  #: number of intersecting pairs at the start and after each step
+
+
+def contraction_step(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    smoothing: float = 1.0,
+    moves: ArrayLike | None = None,
+) -> Floats:
+    """Return `positions` after one step of contraction toward the skeleton, (N, 3).
+
+    surface    Surface, or its triangles (F, 3)
+    positions  (N, 3)
+    start      (N, 3) shape that the contraction began with, which gives weights and areas; None: `positions`
+    smoothing  w: how strong the step is, above 0, the same for any size; double it from step to step
+    moves      (N,) of bool: vertices that move; None: all
+
+    Constrained Laplacian smoothing [Au et al., Skeleton extraction by mesh contraction, 2008]: shrinks along the
+    normals, thin parts first, while what has shrunk holds on to its place. Intersections may come and go.
+    """
+    q = as_floats(positions, "positions", (None, 3))
+    whole = as_surface(surface, len(q))
+    first = q if start is None else as_floats(start, "start", (len(q), 3))
+    strength = as_number(smoothing, "smoothing", 0)
+    if strength == 0:
+        raise _native.InputError("smoothing must be above 0")
+    return _native.contraction_step(whole.native, first, q, as_marks(moves, len(q)), strength)
+
+
+def contract(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    options: ContractionOptions | None = None,
+    *,
+    moves: ArrayLike | None = None,
+    single_precision: bool = True,
+    threads: int = 0,
+    cancel: CancelToken | None = None,
+    progress: Progress | None = None,
+) -> ContractionResult:
+    """Contract until the exact test finds nothing that intersects, or until intersections grow.
+
+    surface           Surface, or its triangles (F, 3)
+    positions         (N, 3)
+    moves             (N,) of bool: vertices that move; None: all
+    single_precision  positions are rounded as float32 will store them, before they are tested
+    cancel, progress  as for EditSession.edit; a cancelled contraction gives the start, and no counts of pairs
+    """
+    q = as_floats(positions, "positions", (None, 3))
+    whole = as_surface(surface, len(q))
+    native = native_contraction(options or ContractionOptions())
+    native.storage = [_native.StorageFrame(0, len(q), np.eye(4))] if single_precision else []
+    marks = as_marks(moves, len(q))
+    values = _native.contract(whole.native, q, marks, native, as_count(threads, "threads"), cancel, progress)
+    return ContractionResult(**values)
+
+
+def expand(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    target: ArrayLike,
+    options: EditOptions | None = None,
+    *,
+    cancel: CancelToken | None = None,
+    progress: Progress | None = None,
+) -> EditResult:
+    """Take a surface free of intersections toward any `target` with the same vertices, with interference on.
+
+    surface            Surface, or its triangles (F, 3)
+    positions, target  (N, 3) each; every vertex is a control
+    cancel, progress   as for EditSession.edit
+
+    One edit, then settling: what a contraction is undone with. Raises StartIntersectsError if `positions` intersect.
+    """
+    q = as_floats(positions, "positions", (None, 3))
+    whole = as_surface(surface, len(q))
+    goal = as_floats(target, "target", (len(q), 3))
+    native = native_options(options or EditOptions())
+    return result_of(_native.expand(whole.native, q, goal, native, cancel, progress), whole)
+
+
+def as_marks(moves: ArrayLike | None, count: int) -> list[int]:
+    """Return `moves`, (count,) of bool, as the core takes it."""
+    if moves is None:
+        return []
+    marks = np.asarray(moves)
+    if marks.dtype != bool or marks.shape != (count,):
+        raise _native.InputError(f"moves: expected ({count},) of bool, not {marks.shape} of {marks.dtype}")
+    result: list[int] = marks.astype(int).tolist()
+    return result
+
+
+def native_contraction(options: ContractionOptions) -> Any:
+    """Return the options as the core takes them."""
+    native = _native.ContractionOptions()
+    for option in fields(options):
+        value = getattr(options, option.name)
+        try:
+            setattr(native, option.name, value)
+        except TypeError as error:
+            raise _native.InputError(f"{option.name}: {value!r} is of the wrong type") from error
+    return native
