@@ -115,11 +115,14 @@ class Repair {
       if (is_good()) return conclude();
     }
     // What no try freed from the start, parts around what is left may free from the best of them.
-    if (!best_found_ && fewest != start_) follow(last_try(), fewest, fewest);
+    if (!best_found_ && fewest != start_) {
+      const Positions best = fewest;
+      follow(regions_try(), best, fewest);
+    }
     conclude();
   }
 
-  ContractionTry last_try() const {
+  ContractionTry regions_try() const {
     return contraction_tries(surface_, result_.pairs, movable_, options_.contraction).back();
   }
 

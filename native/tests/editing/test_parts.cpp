@@ -12,14 +12,14 @@ using namespace stiv::tests;
 
 namespace {
 
-/// Two tetrahedra and a triangle, one body each; the triangle cuts both.
-std::shared_ptr<const Surface> three_bodies(Mobility mobility = Mobility::deformable) {
+/// A triangle and two tetrahedra, one body each; which of their triangles meet, each test says.
+std::shared_ptr<const Surface> three_bodies() {
   SurfaceDefinition definition;
   definition.vertex_count = 11;
   definition.triangles.resize(9, 3);
   definition.triangles << 0, 1, 2, 3, 4, 5, 3, 6, 4, 4, 6, 5, 5, 6, 3, 7, 8, 9, 7, 10, 8, 8, 10, 9, 9, 10, 7;
   definition.vertex_body = {0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
-  definition.bodies = {{"leaf", mobility}, {"first", mobility}, {"second", mobility}};
+  definition.bodies = {{"leaf"}, {"first"}, {"second"}};
   return std::make_shared<Surface>(definition);
 }
 
