@@ -16,14 +16,6 @@ Array = NDArray[np.float64]
 CONTACT, BEYOND = 0.98, 1.012  #: the step starts at this share of the size of first contact and grows to that one
 
 
-def welded(vertices: Array, triangles: NDArray[np.int32]) -> tuple[Array, NDArray[np.int32]]:
-    """Vertices at the same place made one (files repeat them along seams), triangles of repeated corners left out."""
-    places, index = np.unique(vertices, axis=0, return_inverse=True)
-    corners = index.reshape(-1)[triangles].astype(np.int32)
-    proper = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    return places, corners[proper]
-
-
 def free_triangles(vertices: Array, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
     """The triangles that no other one meets; what a mesh as shipped has of self-intersections is left out."""
     pairs = stiv.find_intersections(vertices, triangles)
@@ -57,7 +49,8 @@ def steps(folder: Path) -> list[Step]:
     meshes: dict[str, tuple[Array, NDArray[np.int32]]] = {}
     for path in sorted(folder.glob("*.obj")):
         mesh = read_mesh(path)
-        vertices, triangles = welded(_centred(np.asarray(mesh.vertices, float)), mesh.triangles)
+        welded = stiv.weld(mesh.triangles, _centred(np.asarray(mesh.vertices, float)))
+        vertices, triangles = welded.positions, welded.surface.triangles
         kept = free_triangles(vertices, triangles)
         print(f"{path.name}: {len(mesh.triangles)} triangles, {len(mesh.triangles) - len(kept)} of them left out")
         meshes[path.stem] = vertices, kept

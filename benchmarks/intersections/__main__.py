@@ -27,7 +27,6 @@ from numpy.typing import NDArray
 
 import stiv
 from benchmarks.detection.measurement import Stopwatch
-from benchmarks.detection.models import welded
 from blend_fixtures.scenes.detection_steps import STEPS
 from stiv.mesh_files import read_mesh
 
@@ -53,7 +52,8 @@ def meshes(folder: Path | None) -> Iterator[Mesh]:
         yield Mesh(step.name, step.start, step.triangles)
     for path in sorted(folder.glob("*.obj")) if folder else []:
         mesh = read_mesh(path)
-        yield Mesh(path.stem, *welded(np.asarray(mesh.vertices, float), mesh.triangles))
+        welded = stiv.weld(mesh.triangles, np.asarray(mesh.vertices, float))
+        yield Mesh(path.stem, welded.positions, welded.surface.triangles)
 
 
 def measure(mesh: Mesh, repeats: int, cgal: Path) -> dict[str, object]:
