@@ -7,6 +7,7 @@ import json
 import subprocess
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,9 @@ Faces = NDArray[np.int32]
 CGAL = Path("build/bench/benchmarks/intersections/cgal_self_intersections")
 
 
+@cache
 def missing(name: str, way: str) -> None:
-    """Say how to get a peer that is not there."""
+    """Say how to get a peer that is not there, once."""
     print(f"{name} is not there, its column stays empty: {way}")
 
 
