@@ -3,9 +3,9 @@
 
 import bpy
 
-from . import keymap, menus, operators, panel, properties
+from . import keymap, menus, operators, panels, properties
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *panel.CLASSES)
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:

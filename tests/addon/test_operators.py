@@ -15,9 +15,10 @@ bpy = pytest.importorskip("bpy")
 import mathutils  # noqa: E402
 
 import stiv_addon  # noqa: E402
-from stiv_addon import availability, panel  # noqa: E402
+from stiv_addon import availability  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES  # noqa: E402
+from stiv_addon.panels.drawing import draw_problem  # noqa: E402
 
 
 class RecordingEdit:
@@ -168,7 +169,7 @@ def test_the_panel_says_why_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         availability, "problem", lambda: "The native module of STIV is missing.\nInstall the extension."
     )
-    panel.draw_problem(Layout())
+    draw_problem(Layout())
     assert "Install the extension." in lines
 
 

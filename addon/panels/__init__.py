@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tab "STIV" in the sidebar of the 3D view: one panel a file, the others within the first."""
+
+from .check import STIV_PT_check
+from .edit import STIV_PT_edit
+from .roles import STIV_PT_roles
+
+CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_check)
