@@ -24,7 +24,8 @@ from pathlib import Path
 from blend_fixtures.scenes.detection_steps import STEPS, Step
 
 from . import growth, models, table
-from .ipc_toolkit import Peer, load
+from .hits import count_hits
+from .ipc_toolkit import load
 from .measurement import measure
 
 GROWTH = "growth"
@@ -47,7 +48,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], help="default: 1 2")
     parser.add_argument("--repeats", type=int, default=7, help="default: 7")
     parser.add_argument("--models", type=Path, help="folder of .obj files to measure too")
-    parser.add_argument("--count", action="store_true", help="count hits with Tight-Inclusion too, pair by pair: slow")
+    parser.add_argument("--count", action="store_true", help="tell which hits really meet, ours and the peer's: slow")
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     return parser.parse_args()
 
@@ -64,10 +65,9 @@ def main() -> None:
             rows.append(asdict(figures))
             print(table.line(figures), flush=True)
         if arguments.count and ipctk:
-            peer = Peer(ipctk, step, 1)
-            peer.find_candidates()
-            rows[-1]["tight_inclusion_hits"] = hits = peer.count_hits("tight inclusion")
-            print(f"{'':18} Tight-Inclusion: {hits} hits")
+            hits = count_hits(step, ipctk)
+            rows[-1]["pairs_that_meet"] = asdict(hits)
+            print(f"{'':18} {hits}")
     sizes = growth.all_sizes(1, arguments.repeats) if GROWTH in arguments.scenes else []
     for size in sizes:
         print(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import ModuleType
 
 import numpy as np
@@ -41,15 +42,14 @@ class Peer:
         """Number of pairs that the broad phase found."""
         return len(self._candidates.fv_candidates) + len(self._candidates.ee_candidates)
 
-    def count_hits(self, narrow_phase: str) -> int:
-        """Number of candidates that meet within the step, each asked on its own (slow)."""
+    def hits(self, narrow_phase: str) -> Iterator[tuple[str, list[int]]]:
+        """Candidates that meet within the step, each asked on its own (slow): kind and the four vertices."""
         mesh, ccd = self._mesh, self._narrow[narrow_phase]
-        hits = 0
-        for candidates in (self._candidates.fv_candidates, self._candidates.ee_candidates):
+        for kind, candidates in (("vf", self._candidates.fv_candidates), ("ee", self._candidates.ee_candidates)):
             for pair in candidates:
                 ends = [pair.dof(positions, mesh.edges, mesh.faces) for positions in (self._start, self._end)]
-                hits += pair.ccd(*ends, 0.0, 1.0, ccd)[0]
-        return hits
+                if pair.ccd(*ends, 0.0, 1.0, ccd)[0]:
+                    yield kind, pair.vertex_ids(mesh.edges, mesh.faces)
 
 
 def load() -> ModuleType | None:

@@ -30,15 +30,19 @@ double rounded_down(const DoubleDouble& value) {
   return value.low < 0 ? std::nextafter(value.high, -never) : value.high;
 }
 
-/// The time of a contact that doubles could not tell from a near miss, by twice the digits; `never` if there is none.
-/// Only asked where all of the threshold is within rounding, and not of the many pairs that clearly cross.
-double refined_time(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
-                    const Approach<double>& approach) {
+/// What is left of a contact that doubles could not tell from a near miss, by twice the digits. Only asked where all of
+/// the threshold is within rounding, and not of the many pairs that clearly cross.
+std::optional<Approach<double>> refined(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
+                                        const Approach<double>& approach) {
   constexpr double noticeable = 1024;
-  if (threshold > noticeable * motion.rounding || crosses(motion, approach)) return approach.time;
+  if (threshold > noticeable * motion.rounding || crosses(motion, approach)) return approach;
   const RelativeMotion<DoubleDouble> finer(motion.kind, pair);
   const auto found = advance<DoubleDouble>(finer, threshold, approach.time, 1);
-  return found ? rounded_down(found->time) : never;
+  if (!found) return std::nullopt;
+  const double time = rounded_down(found->time);
+  const VectorOf<DoubleDouble>& n = found->last_normal;
+  return Approach<double>{time, witness(motion.kind, motion.at(time)),
+                          n.isZero(0) ? approach.last_normal : Vector3(n[0].high, n[1].high, n[2].high)};
 }
 
 bool starts_within(EventKind kind, const PairMotion& motion, const RelativeMotion<double>& relative,
@@ -63,8 +67,9 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
     if (time >= 1) return std::nullopt;
     if (time == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   }
-  const std::optional<Approach<double>> approach = advance(relative, threshold, time, latest);
-  if (!approach) return std::nullopt;
+  std::optional<Approach<double>> approach = advance(relative, threshold, time, latest);
+  if (approach) approach = refined(relative, motion, threshold, *approach);
+  if (!approach || approach->time > latest) return std::nullopt;
   return contact_of(relative, *approach, at_start.distance);
 }
 
@@ -72,8 +77,9 @@ double time_of_impact(EventKind kind, const PairMotion& motion, double separatio
   const RelativeMotion<double> relative(kind, motion);
   if (starts_within(kind, motion, relative, separation)) return 0;
   if (relative.rests()) return never;
-  const std::optional<Approach<double>> approach = advance(relative, separation, 0.0, 1);
-  return approach ? refined_time(relative, motion, separation, *approach) : never;
+  std::optional<Approach<double>> approach = advance(relative, separation, 0.0, 1);
+  if (approach) approach = refined(relative, motion, separation, *approach);
+  return approach ? approach->time : never;
 }
 
 }  // namespace stiv
