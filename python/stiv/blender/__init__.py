@@ -4,6 +4,7 @@
 from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
+from stiv.blender.motion import Influence, Motion
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair
 
@@ -11,6 +12,8 @@ __all__ = [
     "BlenderEdit",
     "EditSettings",
     "FacePair",
+    "Influence",
+    "Motion",
     "SceneChangedError",
     "SceneCheck",
     "WriteReport",

@@ -11,6 +11,7 @@ import stiv
 from stiv.blender.arrays import Floats, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.lattice_points import is_undeformed
+from stiv.blender.mesh_reading import read_edges
 from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
 from stiv.blender.movability import check_data
 from stiv.blender.parts import Part
@@ -32,9 +33,12 @@ def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, s
     selected = _selected(ob, mover)
     role = settings.role(ob.name)
     others = 1.0 if role == "controls" and not mover.selected else settings.weight(False)
+    controls = transform_points(frame, local)
+    origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return Part(
-        (ob.name,), "cage", surfaces, deformation, transform_points(frame, local),
-        point_weights(selected, settings.weight(True), others), frame, PointGoal(selected),
+        (ob.name,), "cage", surfaces, deformation, controls,
+        point_weights(selected, settings.weight(True), others), frame,
+        PointGoal(selected, controls, read_edges(ob.data), origin),
         CageWriter(mover.reference, ob.mode, frame, local),
     )  # fmt: skip
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -16,6 +16,7 @@ from stiv import InputError
 from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.motion import Influence, Motion
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.results import summed
@@ -59,6 +60,8 @@ class BlenderEdit:
         self.summary = summary
         self._parts = tuple(parts)
         self._threads = settings.threads
+        self._selected_weight = settings.weight(True)
+        self._influence: Influence | None = None
         self._start = stacked([part.controls for part in parts])
         self._goal = self._start
         self._solving = Solving(assembly, self._parts, self._start, settings)
@@ -95,24 +98,27 @@ class BlenderEdit:
         """The surface's objects and faces, with the cuts of bent faces that are kept free."""
         return self._solving.assembly
 
-    def drag(self, matrix: ArrayLike, **execution: Any) -> stiv.EditResult:
-        """Solve for an absolute goal: `matrix`, (4, 4), moves what is selected from where it was at the beginning.
+    def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
+        """Solve for an absolute goal: a motion or its matrix, (4, 4), of what is selected, since the beginning.
 
         `cancel` and `progress` as of stiv.EditSession. Raises InputError for a matrix that is not finite.
         """
-        self._goal = self._goal_of(_checked(matrix))
+        wanted = Motion.of(motion)
+        self._respond(wanted.influence)
+        self._goal = self._goal_of(wanted)
         return self._solving.solve(self._goal, **execution)
 
-    def apply(self, matrix: ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
+    def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for the same goal given at once: approached in increments of a drag's size, then settled.
 
         path: the way to the matrix, for what it cannot tell (more than half a turn); None: the shortest.
         """
-        target = _checked(matrix)
-        way: Path = path or (lambda fraction: transform_at(target, fraction))
+        target = Motion.of(motion)
+        way: Path = path or (lambda fraction: transform_at(target.matrix, fraction))
         results = []
         for fraction in self._fractions(way):
-            results.append(self.drag(target if fraction == 1 else way(fraction), **execution))
+            part = replace(target, matrix=way(fraction), rotation=_times(fraction, target.rotation))
+            results.append(self.drag(target if fraction == 1 else part, **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return summed(results)
         return summed([*results, self.settle(**execution)])
@@ -188,10 +194,18 @@ class BlenderEdit:
     def _split(self, controls: Floats) -> list[Floats]:
         return np.split(controls, np.cumsum([len(part.controls) for part in self._parts])[:-1])
 
-    def _goal_of(self, matrix: Floats) -> Floats:
+    def _respond(self, influence: Influence | None) -> None:
+        """Let the points within an influence respond as those that are selected do."""
+        if influence != self._influence:
+            self._influence = influence
+            self._solving.weigh(
+                [np.where(part.rule.reached(influence), self._selected_weight, part.weights) for part in self._parts]
+            )
+
+    def _goal_of(self, motion: Motion) -> Floats:
         last = self._split(self._goal)
         return stacked(
-            [part.rule.goal(part.controls, old, matrix) for part, old in zip(self._parts, last, strict=True)]
+            [part.rule.goal(part.controls, old, motion) for part, old in zip(self._parts, last, strict=True)]
         )
 
     def _fractions(self, path: Path) -> Iterator[float]:
@@ -202,8 +216,5 @@ class BlenderEdit:
         return ((k + 1) / count for k in range(count))
 
 
-def _checked(matrix: ArrayLike) -> Floats:
-    checked = np.asarray(matrix, np.float64)
-    if checked.shape != (4, 4) or not np.isfinite(checked).all():
-        raise InputError("transform: must be a matrix of 4 x 4 finite numbers")
-    return checked
+def _times(fraction: float, vector: Floats | None) -> Floats | None:
+    return None if vector is None else fraction * vector

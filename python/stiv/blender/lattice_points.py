@@ -49,12 +49,14 @@ def lattice_part(
     """A lattice as a part; `deformation` is that of all meshes it deforms, side by side."""
     ob = mover.reference.find()
     frame, local = as_matrix(ob.matrix_world), read_points(ob.data)
+    controls = transform_points(frame, local)
     selected = _selected(ob, mover)
     explicit = settings.role(ob.name) == "controls" and not mover.selected
     weights = point_weights(selected, settings.weight(True), 1.0 if explicit else settings.weight(False))
     return Part(
-        (ob.name,), "lattice", surfaces, deformation, transform_points(frame, local), weights, frame,
-        PointGoal(selected), LatticeWriter(mover.reference, ob.mode, frame, local),
+        (ob.name,), "lattice", surfaces, deformation, controls, weights, frame,
+        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3]),
+        LatticeWriter(mover.reference, ob.mode, frame, local),
     )  # fmt: skip
 
 

@@ -4,8 +4,12 @@
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 import stiv
 from stiv.blender.arrays import Floats
+from stiv.blender.motion import Influence, Motion
 
 
 class Writer(Protocol):
@@ -25,11 +29,14 @@ class GoalRule(Protocol):
     def moves(self) -> bool:
         """Does the transformation move any of them?"""
 
-    def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
-        """Goal of the controls, (m, 3), for an absolute world transform, (4, 4), since the start.
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of the controls, (m, 3), for an absolute motion since the start.
 
         `controls` are those of the start, `last` the goal before this one: rotations may go on beyond a half turn.
         """
+
+    def reached(self, influence: Influence | None) -> NDArray[np.bool_]:
+        """Which controls, (m,), a motion of this influence moves."""
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.blender.arrays import Floats, transform_points
+from stiv.blender.arrays import Floats
+from stiv.blender.motion import Influence, Motion
 from stiv.blender.object_transform import ObjectTransform, read_transform, write_transform
 from stiv.blender.parts import Part
 from stiv.blender.placement import about, nearest_rotation, nearest_turn, rotation_matrix, rotation_vector
@@ -31,36 +33,45 @@ def rigid_part(group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, setti
     references = tuple(root.reference for root in group.roots)
     return Part(
         tuple(reference.name for reference in references), "rigid", surfaces, deformation, controls,
-        np.array([weight, weight if turns else 0.0]), None, PlacementGoal(selected, turns, axes),
+        np.array([weight, weight if turns else 0.0]), None,
+        PlacementGoal(selected, turns, axes, starts[0].world[:3, 3]),
         PlacementWriter(references, tuple(starts), controls[0], axes),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class PlacementGoal:
-    """Centre and rotation vector follow the transform, or with `axes` (3, 3) centre and factors along them."""
+    """Centre and rotation vector follow the transform, or with `axes` (3, 3) centre and factors along them.
+
+    `origin`, (3,), is that of the first root, about which it turns and grows where each object has its own.
+    """
 
     selected: bool
     turns: bool
     axes: Floats | None
+    origin: Floats
 
     @property
     def moves(self) -> bool:
         """Is the group selected?"""
         return self.selected
 
-    def goal(self, controls: Floats, last: Floats, matrix: Floats) -> Floats:
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of centre and rotation vector, or centre and scale factors, (2, 3)."""
         if not self.selected:
             return controls
         goal = controls.copy()
-        goal[0] = transform_points(matrix, controls[:1])[0]
-        linear = matrix[:3, :3]
+        goal[0] = motion.about(controls[0], self.origin) if motion.individual else motion.whole(controls[:1])[0]
+        linear = motion.linear
         if self.axes is not None:
             goal[1] = np.einsum("ki,kl,li->i", self.axes, linear, self.axes)
         elif self.turns:
             goal[1] = nearest_turn(rotation_vector(nearest_rotation(linear)), last[1])
         return goal
+
+    def reached(self, influence: Influence | None) -> NDArray[np.bool_]:
+        """Centre and rotation or factors of a selected group, (2,); objects are not moved by nearness."""
+        return np.full(2, self.selected)
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,13 @@ def make_session(
     deformation: stiv.Deformation,
     parts: Sequence[Part],
     controls: ArrayLike,
+    weights: Sequence[Floats],
     settings: EditSettings,
 ) -> stiv.EditSession:
     """A session over all parts side by side, from their controls one after the other, (m, 3).
 
-    deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
+    deformation: of `deformation_of`. weights: response of each part's controls, (m,) each.
+    Raises InputError, StartIntersectsError.
     """
     frames, first = [], 0
     for part in parts:
@@ -42,7 +44,7 @@ def make_session(
     options = stiv.EditOptions(
         separation=settings.separation,
         smoothness=settings.smoothness,
-        weights=np.concatenate([part.weights for part in parts]),
+        weights=np.concatenate(list(weights)),
         constraints=settings.constraints,
         single_precision=bool(frames),
         storage=frames,

@@ -21,6 +21,7 @@ class Solving:
         """Begin at controls of all parts, (m, 3). Raises InputError, StartIntersectsError."""
         self._parts = parts
         self._settings = settings
+        self._weights = [part.weights for part in parts]
         self._at_start = with_bent_quads(assembly, settings.threads)
         self._take(self._at_start, controls)
         self.trail = Trail(controls, controls)
@@ -30,6 +31,13 @@ class Solving:
         result = self.session.settle(**execution) if goal is None else self.session.drag(goal, **execution)
         self.trail.add(goal, result)
         return result
+
+    def weigh(self, weights: Sequence[Floats]) -> None:
+        """Go on from the accepted state with other response weights, (m,) for each part."""
+        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.places()[-1])
+        self._weights = list(weights)
+        self._take(self.assembly, accepted)
+        self.session.restore(accepted, goal)
 
     def go_on_from(self, controls: Floats, goal: Floats) -> None:
         """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known."""
@@ -65,5 +73,5 @@ class Solving:
 
     def _take(self, assembly: Assembly, controls: Floats) -> None:
         self.deformation = deformation_of(assembly, self._parts)
-        self.session = make_session(assembly, self.deformation, self._parts, controls, self._settings)
+        self.session = make_session(assembly, self.deformation, self._parts, controls, self._weights, self._settings)
         self.assembly = assembly
