@@ -3,6 +3,8 @@
 
 #include "module.hpp"
 #include "stiv/acceptance/step_check.hpp"
+#include "stiv/acceptance/stored_mesh.hpp"
+#include "stiv/error.hpp"
 
 namespace py = pybind11;
 
@@ -65,6 +67,12 @@ struct StepCheck {
   int threads;
 };
 
+std::shared_ptr<Deformation> stored_mesh(const std::shared_ptr<Deformation>& mesh, const Eigen::Matrix4d& frame) {
+  const auto handles = std::dynamic_pointer_cast<const HandleDeformation>(mesh);
+  if (handles == nullptr) throw InputError("deformation: only a mesh moved by handles can be stored by its vertices");
+  return std::const_pointer_cast<Deformation>(std::shared_ptr<const Deformation>(make_stored_mesh(handles, frame)));
+}
+
 }  // namespace
 
 void bind_acceptance(py::module_& module) {
@@ -72,6 +80,7 @@ void bind_acceptance(py::module_& module) {
   module.def("find_intersections", &find_intersections, Release());
   module.def("find_loose_intersections", &find_loose_intersections, Release());
   module.def("is_step_free", &step_is_free, Release());
+  module.def("stored_mesh", &stored_mesh);
   py::class_<KeptIntersectionTest>(module, "IntersectionTest")
       .def(py::init<const SurfacePointer&, int>())
       .def("find", &KeptIntersectionTest::find, Release());

@@ -17,7 +17,7 @@ from stiv.deformation import (
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
-from stiv.handles import arap, laplacian
+from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.repairing import RepairOptions, RepairResult, repair
@@ -73,6 +73,7 @@ __all__ = [
     "rigid_rest_controls",
     "scaling",
     "scaling_rest_controls",
+    "stored_mesh",
     "subdivided_faces",
     "subdivision_weights",
     "time_of_impact",

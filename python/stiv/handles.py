@@ -63,6 +63,21 @@ def arap(
     return _native.arap(_handles(vertices, triangles, handles, fixed, pull, edge_weights))
 
 
+def stored_mesh(mesh: Deformation, frame: ArrayLike) -> Deformation:
+    """Return the deformation of a mesh by handles whose vertices are stored in single precision.
+
+    Its surface is what is read back: `frame @ float32(inverse(frame) @ q)` for every vertex at q; one that was read
+    from storage and is not moved stays as it is, bit by bit. A linear deformation may follow (`compose`), which then
+    acts on the stored vertices. The controls, which nothing stores, are taken as they are.
+
+    mesh   of `laplacian` or `arap`
+    frame  (4, 4) affine, local to world
+
+    Raises InputError for another deformation, and for a frame that is singular, not affine or not finite.
+    """
+    return _native.stored_mesh(mesh, as_floats(frame, "frame", (4, 4)))
+
+
 def _handles(
     vertices: ArrayLike,
     triangles: ArrayLike,

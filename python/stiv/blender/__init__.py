@@ -5,17 +5,19 @@ from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.motion import Influence, Motion
-from stiv.blender.settings import EditSettings
+from stiv.blender.settings import EditSettings, Handles, WeightGroup
 from stiv.blender.verification import FacePair
 
 __all__ = [
     "BlenderEdit",
     "EditSettings",
     "FacePair",
+    "Handles",
     "Influence",
     "Motion",
     "SceneChangedError",
     "SceneCheck",
+    "WeightGroup",
     "WriteReport",
     "check_scene",
     "read_surface",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Indices = NDArray[np.int32]
+Flags = NDArray[np.bool_]
 
 
 def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:

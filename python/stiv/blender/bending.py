@@ -15,6 +15,7 @@ from stiv.blender.mesh_reading import evaluated_mesh, read_group_weights
 from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
 from stiv.blender.references import ObjectReference
 from stiv.blender.subdividing import subdivide
+from stiv.blender.vertex_groups import group_weights
 
 
 def bent_mesh(ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types.Context) -> stiv.Deformation:
@@ -100,8 +101,8 @@ def _interpolation(lattice: bpy.types.Lattice, axis: str) -> str:
 
 
 def _point_weights(lattice: bpy.types.Object) -> Any:
-    group = lattice.vertex_groups.get(lattice.data.vertex_group)
-    return None if group is None else read_group_weights(lattice.data.points, group.index)
+    name = lattice.data.vertex_group
+    return group_weights(lattice, name, "that of the points") if name in lattice.vertex_groups else None
 
 
 def _group_weights(ob: bpy.types.Object, stage: Bending, count: int, context: bpy.types.Context) -> Floats:

@@ -8,11 +8,12 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.arrays import Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.control_weights import control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.lattice_points import is_undeformed
 from stiv.blender.mesh_reading import read_edges
-from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
+from stiv.blender.modifier_stack import Bending, Subdivision, read_stack, refuse
 from stiv.blender.movability import check_data
 from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal, point_weights, stored
@@ -25,22 +26,27 @@ from stiv.blender.subdividing import subdivide
 def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, settings: EditSettings) -> Part:
     """The cage of a mesh object as a part. Raises InputError where it cannot be changed or followed."""
     ob = mover.reference.find()
-    check_data(ob)
-    if ob.mode == "EDIT":
-        ob.update_from_editmode()
-    frame, local = as_matrix(ob.matrix_world), read_cage(ob)
-    deformation = _deformation(ob, read_stack(ob, scene), len(local))
-    selected = _selected(ob, mover)
-    role = settings.role(ob.name)
-    others = 1.0 if role == "controls" and not mover.selected else settings.weight(False)
+    frame, local = open_cage(ob)
+    deformation = subdivision_of(ob, scene) or stiv.identity(len(local))
+    given = control_weights(ob, settings)
+    selected = selected_vertices(ob, mover.selected) & (given > 0)
+    others = settings.weight(False) if mover.selected else 1.0
     controls = transform_points(frame, local)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return Part(
         (ob.name,), "cage", surfaces, deformation, controls,
-        point_weights(selected, settings.weight(True), others), frame,
-        PointGoal(selected, controls, read_edges(ob.data), origin),
+        point_weights(selected, settings.weight(True), others, given), given, frame,
+        PointGoal(selected, controls, read_edges(ob.data), origin, given > 0),
         CageWriter(mover.reference, ob.mode, frame, local),
     )  # fmt: skip
+
+
+def open_cage(ob: bpy.types.Object) -> tuple[Floats, Singles]:
+    """Frame and local positions, (m, 3), of a cage that can be changed, Edit Mode brought up to date."""
+    check_data(ob)
+    if ob.mode == "EDIT":
+        ob.update_from_editmode()
+    return as_matrix(ob.matrix_world), read_cage(ob)
 
 
 def read_cage(ob: bpy.types.Object) -> Singles:
@@ -50,9 +56,10 @@ def read_cage(ob: bpy.types.Object) -> Singles:
     return read_collection(points, "co", 3, np.float32)
 
 
-def _deformation(ob: bpy.types.Object, stages: list[Stage], count: int) -> stiv.Deformation:
-    result = stiv.identity(count)
-    for stage in stages:
+def subdivision_of(ob: bpy.types.Object, scene: bpy.types.Scene) -> stiv.Deformation | None:
+    """What the modifiers make of the cage: a subdivision, or None where they leave it as it is. Raises InputError."""
+    result = None
+    for stage in read_stack(ob, scene):
         if isinstance(stage, Bending) and not is_undeformed(stage.lattice.find().data):
             raise refuse(
                 ob, stage.modifier,
@@ -64,12 +71,11 @@ def _deformation(ob: bpy.types.Object, stages: list[Stage], count: int) -> stiv.
     return result
 
 
-def _selected(ob: bpy.types.Object, mover: Mover) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    count = len(ob.data.vertices)
+def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:
+    """In Edit Mode the vertices that are selected there, else all or none, (m,)."""
     if ob.mode == "EDIT":
-        selected: np.ndarray[tuple[int], np.dtype[np.bool_]] = read_collection(ob.data.vertices, "select", 1, np.bool_)
-        return selected
-    return np.full(count, mover.selected)
+        return read_collection(ob.data.vertices, "select", 1, np.bool_)
+    return np.full(len(ob.data.vertices), selected)
 
 
 @dataclass(frozen=True)
@@ -83,7 +89,7 @@ class CageWriter:
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls))
+        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls, self.original))
 
     def restore(self) -> None:
         """Write the original positions, in whatever mode the object is by now."""

@@ -199,7 +199,10 @@ class BlenderEdit:
         if influence != self._influence:
             self._influence = influence
             self._solving.weigh(
-                [np.where(part.rule.reached(influence), self._selected_weight, part.weights) for part in self._parts]
+                [
+                    np.where(part.rule.reached(influence), self._selected_weight * part.given, part.weights)
+                    for part in self._parts
+                ]
             )
 
     def _goal_of(self, motion: Motion) -> Floats:

@@ -8,7 +8,8 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.arrays import Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.control_weights import control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.movability import check_data
 from stiv.blender.parts import Part
@@ -48,14 +49,17 @@ def lattice_part(
 ) -> Part:
     """A lattice as a part; `deformation` is that of all meshes it deforms, side by side."""
     ob = mover.reference.find()
+    if ob.mode == "EDIT":
+        ob.update_from_editmode()
     frame, local = as_matrix(ob.matrix_world), read_points(ob.data)
     controls = transform_points(frame, local)
-    selected = _selected(ob, mover)
-    explicit = settings.role(ob.name) == "controls" and not mover.selected
-    weights = point_weights(selected, settings.weight(True), 1.0 if explicit else settings.weight(False))
+    given = control_weights(ob, settings)
+    selected = _selected(ob, mover) & (given > 0)
+    others = settings.weight(False) if mover.selected else 1.0
+    weights = point_weights(selected, settings.weight(True), others, given)
     return Part(
-        (ob.name,), "lattice", surfaces, deformation, controls, weights, frame,
-        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3]),
+        (ob.name,), "lattice", surfaces, deformation, controls, weights, given, frame,
+        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], given > 0),
         LatticeWriter(mover.reference, ob.mode, frame, local),
     )  # fmt: skip
 
@@ -72,7 +76,7 @@ def check_lattice(ob: bpy.types.Object) -> None:
             )
 
 
-def _selected(ob: bpy.types.Object, mover: Mover) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _selected(ob: bpy.types.Object, mover: Mover) -> Flags:
     if ob.mode == "EDIT":
         return np.array([point.select for point in ob.data.points], np.bool_)
     return np.full(len(ob.data.points), mover.selected)
@@ -89,7 +93,7 @@ class LatticeWriter:
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls))
+        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls, self.original))
 
     def restore(self) -> None:
         """Write the original positions, in whatever mode the object is by now."""

@@ -19,6 +19,7 @@ from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlooke
 from stiv.blender.rigid_placement import rigid_part
 from stiv.blender.roles import Mover
 from stiv.blender.settings import EditSettings
+from stiv.blender.soft_handles import soft_parts
 
 TOLERANCE = 1e-5  # of the size of an object: what float32 and the mathematics of the modifiers leave
 
@@ -39,6 +40,9 @@ def make_parts(
         if mover.role == "cage":
             surfaces = _shown_by({mover.reference.name}, meshes)
             parts.append(cage_part(mover, surfaces, context.scene, settings))
+        elif mover.role == "soft":
+            surfaces = _shown_by({mover.reference.name}, meshes)
+            parts += soft_parts(mover, surfaces, context.scene, settings)
         elif mover.role == "lattice":
             parts.append(_lattice(context, mover, bent[mover.reference], meshes, settings))
     for part in parts:
@@ -109,7 +113,7 @@ def _check_independent(
         for name in (meshes[index].owner.name for index in indices):
             if name in in_lattices:
                 raise InputError(f'object "{name}": is deformed by two lattices that move; keep one of them still')
-            if name in in_groups or any(m.reference.name == name and m.role == "cage" for m in movers):
+            if name in in_groups or any(m.reference.name == name and m.role in ("cage", "soft") for m in movers):
                 raise InputError(
                     f'object "{name}": moves itself and with its lattice "{lattice.name}"; deselect one of the two'
                 )

@@ -41,16 +41,18 @@ class GoalRule(Protocol):
 
 @dataclass(frozen=True)
 class Part:
-    """One cage, lattice or group of rigid objects.
+    """One cage, mesh with handles, lattice or group of rigid objects.
 
     Attributes:
         names: the objects that are written.
-        role: "cage", "lattice" or "rigid".
+        role: "cage", "soft", "lattice" or "rigid".
         surfaces: positions, in the list of visible meshes, of what the controls move, in the deformation's order.
         deformation: from the controls to the world positions of all these meshes.
         controls: (m, 3) at the start.
         weights: (m,) response of each control.
-        frame: (4, 4) in which the controls are stored in single precision; None for placements.
+        given: (m,) the most that each may have, whoever responds; 0 pins it.
+        frame: (4, 4) in which the controls are stored in single precision, handles like the vertices that they hold;
+            None for placements.
         rule: what the goal asks of the controls.
         writer: how the controls come into Blender.
     """
@@ -61,6 +63,7 @@ class Part:
     deformation: stiv.Deformation
     controls: Floats
     weights: Floats
+    given: Floats
     frame: Floats | None
     rule: GoalRule
     writer: Writer

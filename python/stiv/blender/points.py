@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stiv.blender.arrays import Floats, Indices, Singles, transform_points
+from stiv.blender.arrays import Flags, Floats, Indices, Singles, transform_points
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.nearness import distances_along, island_centres, nearest_distances
-
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -19,13 +16,15 @@ class PointGoal:
     """The selected points, (m,), follow the transform, and those near them as far as its influence reaches.
 
     `start` are their world positions, (m, 3); `edges`, (e, 2), connect them, None where nothing does; `origin` is that
-    of an object in Object Mode, None in Edit Mode, where each connected piece of the selection has its own.
+    of an object in Object Mode, None in Edit Mode, where each connected piece of the selection has its own; `free`,
+    (m,), says which may move at all, None: all.
     """
 
-    selected: Mask
+    selected: Flags
     start: Floats
     edges: Indices | None = None
     origin: Floats | None = None
+    free: Flags | None = None
 
     @property
     def moves(self) -> bool:
@@ -44,7 +43,7 @@ class PointGoal:
             goal[self.selected] = motion.whole(controls[self.selected])
         return goal
 
-    def reached(self, influence: Influence | None) -> Mask:
+    def reached(self, influence: Influence | None) -> Flags:
         """Which points the transform moves, (m,)."""
         return self.selected if influence is None else self.shares(influence) > 0
 
@@ -52,7 +51,9 @@ class PointGoal:
         """Share of the transform of each point, (m,)."""
         if not self.moves:
             return np.zeros(len(self.selected))
-        return influence.shares(self._along if influence.connected and self.edges is not None else self._straight)
+        along = influence.connected and self.edges is not None
+        shares = influence.shares(self._along if along else self._straight)
+        return shares if self.free is None else np.asarray(np.where(self.free, shares, 0.0), np.float64)
 
     @cached_property
     def _straight(self) -> Floats:
@@ -70,11 +71,18 @@ class PointGoal:
         return island_centres(self.start, self.selected, self.edges)
 
 
-def point_weights(selected: Mask, of_selected: float, of_others: float) -> Floats:
-    """Response weight of each point, (m,)."""
-    return np.where(selected, of_selected, of_others)
+def point_weights(selected: Flags, of_selected: float, of_others: float, given: Floats) -> Floats:
+    """Response weight of each point, (m,), with the weights that the user gave, (m,)."""
+    return np.asarray(np.where(selected, of_selected, of_others) * given, np.float64)
 
 
-def stored(frame: Floats, world: Floats) -> Singles:
-    """Local coordinates, (m, 3), in single precision, of points in world space."""
-    return transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+def stored(frame: Floats, world: Floats, original: Singles) -> Singles:
+    """Local coordinates, (m, 3), in single precision, of points in world space.
+
+    Points that are where `original`, (m, 3), the local ones at the start, put them keep those bit by bit: the way to
+    the world and back may lose digits of coordinates that are far smaller than others.
+    """
+    local: Singles = transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+    resting = (world == transform_points(frame, original)).all(axis=1)
+    local[resting] = original[resting]
+    return local

@@ -33,7 +33,7 @@ def rigid_part(group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, setti
     references = tuple(root.reference for root in group.roots)
     return Part(
         tuple(reference.name for reference in references), "rigid", surfaces, deformation, controls,
-        np.array([weight, weight if turns else 0.0]), None,
+        np.array([weight, weight if turns else 0.0]), np.array([1.0, float(turns)]), None,
         PlacementGoal(selected, turns, axes, starts[0].world[:3, 3]),
         PlacementWriter(references, tuple(starts), controls[0], axes),
     )  # fmt: skip

@@ -6,16 +6,18 @@ from dataclasses import dataclass
 import bpy
 
 from stiv import InputError
+from stiv.blender.dependencies import is_active
 from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
 from stiv.blender.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
 EDITABLE_TYPES = ("MESH", "LATTICE")
+SOFT = ("laplacian", "arap")
 
 
 @dataclass(frozen=True)
 class Mover:
-    """An object with controls: role "cage", "lattice" or "rigid"; `selected` if the goal moves it."""
+    """An object with controls: role "cage", "soft", "lattice" or "rigid"; `selected` if the goal moves it."""
 
     reference: ObjectReference
     role: str
@@ -31,6 +33,7 @@ def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Move
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
     movers = [mover for ob in objects if (mover := _mover(ob, ob in selected, settings)) is not None]
+    movers = _once(movers)
     if not any(mover.selected for mover in movers):
         raise InputError("nothing is selected that may move; select a mesh, a lattice or an object with a surface")
     return movers
@@ -38,7 +41,7 @@ def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Move
 
 def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:
     known = set(context.scene.objects.keys())
-    for name in [*settings.roles, *(name for pair in settings.ignored_pairs for name in pair)]:
+    for name in settings.named_objects():
         if name not in known:
             raise InputError(f'settings name object "{name}", which the scene does not have')
 
@@ -58,15 +61,56 @@ def _mover(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Move
     role = settings.role(ob.name)
     if role in ("obstacle", "ignored") or (role == "auto" and not selected):
         return None
-    if ob.mode == "EDIT":
-        role = "controls"
-    elif role == "auto":
-        role = "controls" if settings.object_response == "deform" and ob.type in EDITABLE_TYPES else "rigid"
-    if role == "rigid":
+    way = _way(ob, role, settings)
+    if way == "rigid":
         return Mover(ObjectReference.of(ob), "rigid", selected) if _has_surface(ob) else None
+    if way in SOFT:
+        return Mover(_handled(ob), "soft", selected)
+    if way == "lattice":
+        return Mover(_lattice_of(ob), "lattice", selected)
     if ob.type not in EDITABLE_TYPES:
         raise InputError(f'object "{ob.name}": a {ob.type.lower()} has no controls; let it respond rigidly')
     return Mover(ObjectReference.of(ob), "cage" if ob.type == "MESH" else "lattice", selected)
+
+
+def _way(ob: bpy.types.Object, role: str, settings: EditSettings) -> str:
+    """By what the object is moved: one of the deformations but "auto"."""
+    chosen = settings.deformation(ob.name)
+    if ob.mode == "EDIT":
+        return chosen if chosen in SOFT and ob.type == "MESH" else "vertices"
+    if role == "rigid":
+        return "rigid"
+    if chosen != "auto":
+        return chosen
+    deforms = role == "controls" or (settings.object_response == "deform" and ob.type in EDITABLE_TYPES)
+    return "vertices" if deforms else "rigid"
+
+
+def _handled(ob: bpy.types.Object) -> ObjectReference:
+    if ob.type != "MESH":
+        raise InputError(f'object "{ob.name}": only meshes are moved by handles; choose another deformation for it')
+    return ObjectReference.of(ob)
+
+
+def _lattice_of(ob: bpy.types.Object) -> ObjectReference:
+    """The lattice that deforms a mesh; a lattice itself."""
+    if ob.type == "LATTICE":
+        return ObjectReference.of(ob)
+    for modifier in ob.modifiers:
+        if isinstance(modifier, bpy.types.LatticeModifier) and modifier.object is not None and is_active(modifier, ob):
+            return ObjectReference.of(modifier.object)
+    raise InputError(
+        f'object "{ob.name}": no lattice deforms it; give it a Lattice modifier, or choose another deformation for it'
+    )
+
+
+def _once(movers: list[Mover]) -> list[Mover]:
+    """A lattice that comes with several meshes, or is a mover itself, once; selected if any of them is."""
+    merged: dict[ObjectReference, Mover] = {}
+    for mover in movers:
+        known = merged.get(mover.reference)
+        merged[mover.reference] = mover if known is None or not known.selected else known
+    return list(merged.values())
 
 
 def _has_surface(ob: bpy.types.Object) -> bool:

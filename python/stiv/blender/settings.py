@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the user may choose for an edit, as plain values."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -13,6 +13,43 @@ KINDS = ("move", "rotate", "scale")
 RESPONDERS = ("selected", "unselected", "all")
 OBJECT_RESPONSES = ("rigid", "deform")
 ROLES = ("auto", "controls", "rigid", "obstacle", "ignored")
+DEFORMATIONS = ("auto", "vertices", "laplacian", "arap", "lattice", "rigid")
+RESTS = ("follows", "stays")
+
+
+@dataclass(frozen=True)
+class Handles:
+    """By what the vertices of a mesh are moved, where its deformation is "laplacian" or "arap".
+
+    Attributes:
+        groups: vertex groups, each a handle. In Edit Mode the selected vertices are a handle too, and the one that
+            moves; in Object Mode the active group moves if it is a handle, otherwise all of them.
+        anchor: a vertex group that stays where it is, handles in it as well; "" for none.
+        rest: all other vertices: "follows" or "stays".
+        pull: how hard a handle pulls, times the weight in its group; 0: it holds its vertices exactly.
+    """
+
+    groups: tuple[str, ...] = ()
+    anchor: str = ""
+    rest: str = "follows"
+    pull: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse unknown choices."""
+        _require("rest", self.rest, RESTS)
+        if not 0 <= self.pull < float("inf"):
+            raise InputError(f"pull: {self.pull!r} is not a number from 0 on")
+
+
+@dataclass(frozen=True)
+class WeightGroup:
+    """How far each control of an object gives way: its weight in a vertex group, 0 where it is not in the group.
+
+    0 pins it, so that not even the edit moves it. `inverted`: one minus the weight.
+    """
+
+    name: str
+    inverted: bool = False
 
 
 @dataclass(frozen=True)
@@ -25,6 +62,11 @@ class EditSettings:
             (what is moved then keeps to the goal exactly), or "all".
         object_response: how selected objects respond in Object Mode: "rigid" (placement) or "deform" (vertices of a
             mesh's cage, points of a lattice).
+        deformations: by object name, by what it is moved and gives way: "auto" (as `object_response` says), "vertices"
+            (of its cage, or points of a lattice), "laplacian" or "arap" (handles of a mesh), "lattice" (the points of
+            the lattice that deforms it), or "rigid". In Edit Mode only "laplacian" and "arap" count.
+        handles: by object name, for "laplacian" and "arap".
+        weights: by object name, for cages, handles and lattices.
         roles: by object name, "auto" | "controls" | "rigid" | "obstacle" | "ignored". An unselected object takes part
             as an obstacle unless its role is "controls" or "rigid": then it gives way, whatever `responders` says.
         ignored_pairs: pairs of object names that may go through each other; twice the same name for an object
@@ -38,6 +80,9 @@ class EditSettings:
     separation: float = 0.0
     responders: str = "selected"
     object_response: str = "rigid"
+    deformations: Mapping[str, str] = field(default_factory=dict)
+    handles: Mapping[str, Handles] = field(default_factory=dict)
+    weights: Mapping[str, WeightGroup] = field(default_factory=dict)
     roles: Mapping[str, str] = field(default_factory=dict)
     ignored_pairs: tuple[tuple[str, str], ...] = ()
     smoothness: float = 0.1
@@ -51,10 +96,21 @@ class EditSettings:
         _require("object_response", self.object_response, OBJECT_RESPONSES)
         for name, role in self.roles.items():
             _require(f'role of object "{name}"', role, ROLES)
+        for name, deformation in self.deformations.items():
+            _require(f'deformation of object "{name}"', deformation, DEFORMATIONS)
 
     def role(self, name: str) -> str:
         """Role of the object of this name."""
         return self.roles.get(name, "auto")
+
+    def deformation(self, name: str) -> str:
+        """By what the object of this name is moved."""
+        return self.deformations.get(name, "auto")
+
+    def named_objects(self) -> Iterator[str]:
+        """Every name of an object that the choices mention."""
+        yield from (*self.roles, *self.deformations, *self.handles, *self.weights)
+        yield from (name for pair in self.ignored_pairs for name in pair)
 
     def weight(self, selected: bool) -> float:
         """Response weight of controls that the goal moves (`selected`) or that it does not."""

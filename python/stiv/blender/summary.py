@@ -12,7 +12,10 @@ from stiv.blender.parts import Part
 
 @dataclass(frozen=True)
 class Participant:
-    """An object that shows a surface: role "cage", "lattice" (deformed by one), "rigid" or "obstacle"."""
+    """An object that shows a surface.
+
+    Role "cage", "soft" (moved by handles), "lattice" (deformed by one), "rigid" or "obstacle".
+    """
 
     name: str
     role: str
