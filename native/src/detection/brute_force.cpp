@@ -13,11 +13,14 @@ class BruteForce final : public CandidateSource {
  public:
   explicit BruteForce(const Surface& surface) : surface_(surface) {}
 
-  void update(const Step& step, const Execution&) override {
+  void update(const Step& step, const Execution& execution) override {
     surface_.check_positions(step.start);
     surface_.check_positions(step.end);
+    steps_.update(step.start, step.end, execution);
     relevance_.emplace(surface_, step);
   }
+
+  const VertexSteps& vertex_steps() const override { return steps_; }
 
   Index chunk_count(EventKind kind) const override { return Execution::chunk_count(firsts(kind), chunk_size); }
 
@@ -43,6 +46,7 @@ class BruteForce final : public CandidateSource {
   }
 
   const Surface& surface_;
+  VertexSteps steps_;
   std::optional<Relevance> relevance_;
 };
 

@@ -93,7 +93,6 @@ class BvhSource final : public CandidateSource {
   }
 
   void update(const Step& step, const Execution& execution) override {
-    vertex_steps_ = step.vertices;
     separation_ = step.proximity.separation;
     // Whatever is cancelled half way counts as not done: then everything is made anew.
     const bool refitted = std::exchange(refitted_, false), collected = std::exchange(collected_, false);
@@ -109,6 +108,8 @@ class BvhSource final : public CandidateSource {
     refitted_ = true;
     collect(execution);
   }
+
+  const VertexSteps& vertex_steps() const override { return swept_.steps(); }
 
   bool manageable() const override { return collected_; }
 
@@ -209,7 +210,7 @@ class BvhSource final : public CandidateSource {
       block.count = 0;
       const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
       for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
-      find_hulls_apart(kind, block, *vertex_steps_, steps, apart);
+      find_hulls_apart(kind, block, swept_.steps(), steps, apart);
       std::size_t count = 0;
       for (std::size_t k = begin; k < end; ++k) {
         some[count] = found[k];
@@ -234,7 +235,6 @@ class BvhSource final : public CandidateSource {
   const Surface& surface_;
   GroupTable bodies_;
   SweptVertices swept_;
-  const VertexSteps* vertex_steps_ = nullptr;
   double separation_ = 0;
   std::vector<Index> numbers_;  // of the vertices: their rows
   PrimitiveTree<1> vertices_;

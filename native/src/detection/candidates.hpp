@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "detection/plane_filter.hpp"
+#include "detection/vertex_steps.hpp"
 #include "stiv/detection/bvh.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/event.hpp"
@@ -24,7 +24,6 @@ struct Step {
   const Positions& start;
   const Positions& end;
   Proximity proximity;
-  const VertexSteps* vertices = nullptr;  ///< the same for vector code to load, while a detector looks at the step
 };
 
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
@@ -38,6 +37,8 @@ class CandidateSource {
   virtual ~CandidateSource() = default;
   /// @throws InputError as Surface::check_positions, the shape aside
   virtual void update(const Step& step, const Execution& execution) = 0;
+  /// The step of the last update, for vector code to load.
+  virtual const VertexSteps& vertex_steps() const = 0;
   /// Are the candidates of the step few enough to be looked at in bounded time and memory? Depends on the step alone.
   /// Visits go through all of them either way.
   virtual bool manageable() const { return true; }

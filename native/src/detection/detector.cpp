@@ -102,11 +102,10 @@ class Detector::Implementation {
     check_shape(step);
     check_proximity(step.proximity);
     const FloatingPointScope floating_point;
-    vertices_.update(step.start, step.end, execution);
-    source_->update({step.start, step.end, step.proximity, &vertices_}, execution);
+    source_->update(step, execution);
     ++execution.counters.detections;
     if (manageable && !source_->manageable()) return std::nullopt;
-    const PairTest test(*surface_, step, narrow_phase_, vertices_);
+    const PairTest test(*surface_, step, narrow_phase_, source_->vertex_steps());
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -141,7 +140,6 @@ class Detector::Implementation {
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
-  VertexSteps vertices_;
 };
 
 Detector::Detector(std::shared_ptr<const Surface> surface, DetectorOptions options)

@@ -56,6 +56,8 @@ class HashGrid final : public CandidateSource {
     edges_ = CellLists(fitting_cells(edges), edges);
   }
 
+  const VertexSteps& vertex_steps() const override { return swept_.steps(); }
+
   Index chunk_count(EventKind kind) const override {
     return Execution::chunk_count(queries(kind).bucket_count(), buckets_per_chunk);
   }

@@ -4,7 +4,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detection/hull_filter.cpp"
 #include "vector/foreach_target.hpp"
-#include "vector/points-inl.hpp"
+
+#include "detection/pair_directions-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
@@ -48,26 +49,41 @@ HWY_INLINE Span both(Span a, Span b) { return {hn::Min(a.low, b.low), hn::Max(a.
 
 HWY_INLINE Lanes largest_component(Point a) { return max3(hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)); }
 
+/// How far apart the sides' spans are along a direction, on whichever side.
+template <EventKind kind>
+HWY_INLINE Lanes gap(Point normal, const PairHulls& hulls) {
+  const Span v0 = span_of(normal, hulls, 0), v1 = span_of(normal, hulls, 1);
+  const Span v2 = span_of(normal, hulls, 2), v3 = span_of(normal, hulls, 3);
+  const Span first = kind == EventKind::vertex_face ? v0 : both(v0, v1);
+  const Span second = kind == EventKind::vertex_face ? both(v1, both(v2, v3)) : both(v2, v3);
+  return hn::Max(hn::Sub(first.low, second.high), hn::Sub(second.low, first.high));
+}
+
+template <EventKind kind>
+HWY_INLINE Mask separates(Point normal, const PairHulls& hulls, Lanes clearance) {
+  constexpr double underflow = 0x1p-970;
+  return hn::Gt(gap<kind>(normal, hulls), hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
+}
+
 /// The bound of rounding is four times that of the plane filter: it covers the frame's motion, and that other steps
 /// have somewhat larger coordinates than this one, so that what is dropped here, the plane filter would drop.
 template <EventKind kind>
 HWY_INLINE Mask hulls_apart(const PairHulls& hulls, double separation, double slack) {
-  constexpr double underflow = 0x1p-970;
-  const Point* const x = hulls.start;
-  const Point normal = kind == EventKind::vertex_face ? cross(x[2] - x[1], x[3] - x[1]) : cross(x[1], x[3] - x[2]);
   Lanes reach = all(0), magnitude = all(0);
   for (std::size_t k = 0; k < 4; ++k) {
     reach = hn::Max(reach, largest_component(hulls.end[k] - hulls.start[k]));
     magnitude = hn::Max(magnitude, hn::Max(sum_norm(hulls.end[k]), sum_norm(hulls.start[k])));
   }
-  const Span v0 = span_of(normal, hulls, 0), v1 = span_of(normal, hulls, 1);
-  const Span v2 = span_of(normal, hulls, 2), v3 = span_of(normal, hulls, 3);
-  const Span first = kind == EventKind::vertex_face ? v0 : both(v0, v1);
-  const Span second = kind == EventKind::vertex_face ? both(v1, both(v2, v3)) : both(v2, v3);
-  const Lanes gap = hn::Max(hn::Sub(first.low, second.high), hn::Sub(second.low, first.high));
   const Lanes clearance =
       hn::Add(hn::Add(all(separation), hn::Mul(all(2 * slack), reach)), hn::Mul(all(0x1p-43), magnitude));
-  return hn::Gt(gap, hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
+  const Point* const x = hulls.start + 1;
+  const Mask by_normal = separates<kind>(normal_of<kind>(x), hulls, clearance);
+  if (hn::AllTrue(Doubles(), by_normal)) return by_normal;
+  const Point middles = between_middles<kind>(x);
+  const Mask apart = hn::Or(by_normal, separates<kind>(middles, hulls, clearance));
+  if constexpr (kind == EventKind::vertex_face) return apart;
+  if (hn::AllTrue(Doubles(), apart)) return apart;
+  return hn::Or(apart, separates<kind>(across(x[0], middles), hulls, clearance));
 }
 
 template <EventKind kind>

@@ -14,9 +14,9 @@ struct NearbySteps {
   double slack = 0;
 };
 
-/// 1 for each pair that the plane of the start (normal to the face, or to both edges) shows apart by more than the
-/// separation and all rounding in all nearby steps: it separates the hulls of all that each side may sweep.
-/// [docs/mathematics.md, "Rounds of one edit"]
+/// 1 for each pair that a direction of the start (the normal, that between the middles, or across an edge) shows apart
+/// by more than the separation and all rounding in all nearby steps: it separates the hulls of all that each side may
+/// sweep. [docs/mathematics.md, "Rounds of one edit"]
 void find_hulls_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
                       PairFlags& apart);
 

@@ -4,7 +4,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detection/plane_filter.cpp"
 #include "vector/foreach_target.hpp"
-#include "vector/points-inl.hpp"
+
+#include "detection/pair_directions-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
@@ -55,24 +56,6 @@ HWY_INLINE Mask plane_separates(Point normal, const PairStep& step, Lanes cleara
   return hn::Gt(gap, hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
 }
 
-/// Normal of the face, or of both edges.
-template <EventKind kind>
-HWY_INLINE Point normal_of(const Point* x) {
-  return kind == EventKind::vertex_face ? cross(x[1] - x[0], x[2] - x[0]) : cross(x[0], x[2] - x[1]);
-}
-
-/// From the middle of the second side to that of the first, times a factor.
-template <EventKind kind>
-HWY_INLINE Point between_middles(const Point* x) {
-  return kind == EventKind::vertex_face ? x[0] + x[1] + x[2] : x[1] + x[2] - x[0];
-}
-
-/// The part of a direction across an edge, times a factor: separates edges that are parallel, such as those of a flat
-/// mesh, whose common normal vanishes.
-HWY_INLINE Point across(Point edge, Point direction) {
-  return dot(edge, edge) * direction - dot(edge, direction) * edge;
-}
-
 HWY_INLINE Lanes magnitude_of(const Point* x) { return max3(sum_norm(x[0]), sum_norm(x[1]), sum_norm(x[2])); }
 
 template <EventKind kind>
@@ -82,7 +65,7 @@ HWY_INLINE Mask apart(const PairStep& step, double separation) {
   const Mask at_start = plane_separates<kind>(normal_of<kind>(step.start), step, clearance);
   constexpr bool few_lanes = HWY_MAX_BYTES <= 2 * sizeof(double);  // of many, some always need another plane
   if (few_lanes && hn::AllTrue(Doubles(), at_start)) return at_start;
-  const Point middles = between_middles<kind>(step.start) + between_middles<kind>(step.end);
+  const Point middles = between_middles<kind>(step.start);
   const Mask between = hn::Or(at_start, plane_separates<kind>(middles, step, clearance));
   if (hn::AllTrue(Doubles(), between)) return between;
   const Mask apart = hn::Or(between, plane_separates<kind>(normal_of<kind>(step.end), step, clearance));
@@ -116,19 +99,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace stiv {
-
-void VertexSteps::update(const Positions& start, const Positions& end, const Execution& execution) {
-  constexpr Index chunk_size = 8192;
-  const auto count = static_cast<Index>(start.rows());
-  rows_.resize(static_cast<std::size_t>(count));
-  execution.for_chunks(count, chunk_size, [&](Index first, Index last, Index) {
-    for (auto row = static_cast<std::size_t>(first); row < static_cast<std::size_t>(last); ++row) {
-      const double* const from = start.data() + 3 * row;
-      const double* const to = end.data() + 3 * row;
-      rows_[row] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
-    }
-  });
-}
 
 void find_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,
                 PairFlags& apart) {

@@ -3,30 +3,11 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
+#include "detection/vertex_steps.hpp"
 #include "stiv/detection/event.hpp"
-#include "stiv/execution.hpp"
 
 namespace stiv {
-
-/// Where a vertex starts and ends, in one line of the cache.
-struct alignas(64) VertexStep {
-  double start[4];  ///< x, y, z, 0
-  double end[4];
-};
-
-/// The step of all vertices, made for vector code to load. Keeps its memory from step to step.
-class VertexSteps {
- public:
-  /// Rows of `start` and `end` are positions, (N, 3).
-  void update(const Positions& start, const Positions& end, const Execution& execution);
-
-  const VertexStep* data() const { return rows_.data(); }
-
- private:
-  std::vector<VertexStep> rows_;
-};
 
 /// Up to so many pairs, each of four vertices in the order of Event::vertices, as arrays over the pairs.
 struct PairBlock {

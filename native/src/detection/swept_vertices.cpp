@@ -196,10 +196,24 @@ bool SweptVertices::holds(const Step& step, const Survey& survey, const Executio
   return all_near(step, all, frame_.motion + survey.change / static_cast<double>(all.size()), execution);
 }
 
+/// What neither differs from its box now nor did so in the last step is there already. Holds if cancelled half way.
+void SweptVertices::take_steps(const Step& step, const std::vector<Index>& changed, const Execution& execution) {
+  if (!complete_) {
+    steps_.update(step.start, step.end, execution);
+    strayed_.clear();
+    return;
+  }
+  steps_.update(step.start, step.end, strayed_, execution);
+  strayed_.insert(strayed_.end(), changed.begin(), changed.end());
+  steps_.update(step.start, step.end, changed, execution);
+  strayed_ = changed;
+}
+
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
   const Index count = surface_.vertex_count();
   Survey found = survey(step, execution);
   const bool first = !complete_;
+  take_steps(step, found.changed, execution);
   changed_ = std::move(found.changed);
   if (!first && may_stay && holds(step, found, execution)) return Change::none;
   const Frame frame = frame_for(step, found);
@@ -214,6 +228,7 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
     std::iota(changed_.begin(), changed_.end(), 0);
   }
   sweep(step, changed_, execution);
+  strayed_.clear();
   complete_ = true;
   return all || changed_.size() > at(count) / 2 ? Change::all : Change::some;
 }

@@ -33,6 +33,8 @@ class SweptVertices {
   /// The displacement of the frame that boxes are seen from.
   const Vector3& motion() const { return frame_.motion; }
 
+  /// The step of the last update.
+  const VertexSteps& steps() const { return steps_; }
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   const std::vector<Index>& changed() const { return changed_; }
 
@@ -59,6 +61,7 @@ class SweptVertices {
   struct Survey;
 
   Survey survey(const Step& step, const Execution& execution) const;
+  void take_steps(const Step& step, const std::vector<Index>& changed, const Execution& execution);
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
   bool near_segment(const Step& step, const Vector3& common, Index vertex) const;
@@ -72,7 +75,9 @@ class SweptVertices {
   Positions start_, end_;  // for which each box was made
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
-  bool complete_ = false;  // there is a box for each vertex, all seen from the frame
+  VertexSteps steps_;
+  std::vector<Index> strayed_;  // vertices whose step in `steps_` may differ from that of their box
+  bool complete_ = false;       // there is a box for each vertex, all seen from the frame
 };
 
 }  // namespace stiv

@@ -115,13 +115,13 @@ TEST_CASE("rounds: what was cancelled at any point leaves no trace") {
 }
 
 TEST_CASE("rounds: pairs are looked at again only where the step is another") {
-  const MovingScene scene = stirred_sheets(12, 3, 0.05, 7);
+  const MovingScene scene = stirred_sheets(24, 3, 0.05, 7);
   Detector detector(scene.surface);
   found_by(detector, scene.start, scene.end, 1);
   Execution same(1), local(1);
   detector.find(scene.start, scene.start + 0.9 * (scene.end - scene.start), proximity, same);
   Positions end = scene.start;
-  end.row(30) += Eigen::RowVector3d(0, 0, 0.02);
+  end.row(30) += Eigen::RowVector3d(0, 0, 0.12);  // through the next sheet
   detector.find(scene.start, end, proximity, local);
   CHECK(same.counters.candidate_pairs > 1000);
   CHECK(local.counters.candidate_pairs > 0);

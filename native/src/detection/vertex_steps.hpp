@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/execution.hpp"
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// Where a vertex starts and ends, in one line of the cache.
+struct alignas(64) VertexStep {
+  double start[4];  ///< x, y, z, 0
+  double end[4];
+};
+
+/// The step of all vertices, made for vector code to load. Keeps its memory from step to step.
+class VertexSteps {
+ public:
+  /// Takes all of a step. Rows of `start` and `end` are positions, (N, 3).
+  void update(const Positions& start, const Positions& end, const Execution& execution);
+  /// Takes what it is for some vertices.
+  void update(const Positions& start, const Positions& end, const std::vector<Index>& vertices,
+              const Execution& execution);
+
+  const VertexStep* data() const { return rows_.data(); }
+
+ private:
+  void take(const Positions& start, const Positions& end, Index vertex);
+
+  std::vector<VertexStep> rows_;
+};
+
+}  // namespace stiv
