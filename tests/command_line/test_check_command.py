@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from stiv.command_line import check, program
+from stiv.command_line import check, file_checking, program
 
 APART = "o below\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no above\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n"
 CROSSING = "o flat\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no upright ü\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 2 2 0\nf 4 5 6\n"
@@ -37,9 +37,10 @@ def test_pairs_are_named_for_people_and_in_the_report(tmp_path, capsys):
     assert code == 4
     assert 'object "flat", triangle 0 - object "upright ü", triangle 0' in capsys.readouterr().out
     data = json.loads(report.read_text(encoding="utf-8"))
-    assert (data["schema"], data["version"], data["free"], data["intersections"]) == ("stiv-check", 1, False, 1)
-    assert data["pairs"][0]["first"] == {"object": "flat", "kind": "triangle", "number": 0}
-    assert data["pairs"][0]["second"] == {"object": "upright ü", "kind": "triangle", "number": 0}
+    assert (data["schema"], data["version"], data["free"], data["intersections"]) == ("stiv-check", 2, False, 1)
+    (pair,) = data["files"][0]["pairs"]
+    assert pair["first"] == {"object": "flat", "kind": "triangle", "number": 0}
+    assert pair["second"] == {"object": "upright ü", "kind": "triangle", "number": 0}
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
 
 
@@ -67,13 +68,23 @@ def test_a_bad_file_ends_with_2_and_writes_nothing(tmp_path, capsys):
 
 
 def test_a_report_that_cannot_be_written_ends_with_2_before_any_work(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(check, "check_file", lambda path: pytest.fail("worked before looking at the folder"))
+    monkeypatch.setattr(check, "check_path", lambda *rest: pytest.fail("worked before looking at the folder"))
     mesh = written(tmp_path / "a.obj", APART)
     assert program.run(["check", "--json", str(tmp_path / "nowhere" / "report.json"), mesh]) == 2
     assert "there is no folder" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [[], ["melt"], ["check"], ["check", "a", "b"], ["check", "a", "--fast"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["melt"],
+        ["check"],
+        ["check", "a", "--frames", "9:1"],
+        ["check", "a", "--frames", "all"],
+        ["check", "a", "--fast"],
+    ],
+)
 def test_wrong_usage_ends_with_1(arguments, capsys):
     assert program.run(arguments) == 1
     assert "usage: stiv" in capsys.readouterr().err
@@ -96,7 +107,7 @@ def test_a_fault_of_the_program_ends_with_3(tmp_path, capsys, monkeypatch):
     def fail(path):
         raise ZeroDivisionError("a fault")
 
-    monkeypatch.setattr(check, "read_mesh", fail)
+    monkeypatch.setattr(file_checking, "read_mesh", fail)
     assert program.run(["check", written(tmp_path / "a.obj", APART)]) == 3
     assert "ZeroDivisionError: a fault" in capsys.readouterr().err
 
@@ -105,7 +116,7 @@ def test_ctrl_c_ends_with_5(tmp_path, monkeypatch):
     def interrupt(path):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(check, "read_mesh", interrupt)
+    monkeypatch.setattr(file_checking, "read_mesh", interrupt)
     assert program.run(["check", written(tmp_path / "a.obj", APART)]) == 5
 
 

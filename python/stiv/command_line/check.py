@@ -1,146 +1,137 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv check`: is a scene or a mesh free of intersections? Exact."""
+"""`stiv check`: are scenes and meshes free of intersections? Exact."""
 
 from __future__ import annotations
 
 import argparse
-import time
-from dataclasses import dataclass
+import glob
+import sys
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-import stiv
 from stiv import InputError
-from stiv.command_line.blender_module import require_blender
+from stiv.checks.baseline import Baseline, baseline_of, read_baseline, without_accepted
+from stiv.checks.findings import FileCheck
+from stiv.checks.junit import junit_xml
+from stiv.checks.pictures import require_matplotlib
+from stiv.checks.report import file_report, report_of, summary
 from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.output_files import require_folder, write_json
-from stiv.command_line.quiet import quiet_blender
-from stiv.mesh_files import SUFFIXES, read_mesh
+from stiv.command_line.file_checking import Choices, check_path
+from stiv.command_line.frame_ranges import frame_range
+from stiv.command_line.installed_blender import add_blender_option
+from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.progress import progress_bar
+from stiv.mesh_files import SUFFIXES
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
-SCHEMA, VERSION = "stiv-check", 1
-LISTED_PAIRS = 100  # in the report
-SHOWN_PAIRS = 10  # on the terminal
-
-_Element = tuple[str, str, int]
-
 _DESCRIPTION = f"""\
 Tests exactly whether any two triangles meet other than in the vertices and edges they share. Touching, coplanar
 overlap and duplicates count. Of a .blend, every visible mesh is taken as Blender evaluates it; scripts in it are not
-run. Mesh files: {", ".join(SUFFIXES)}."""
+run. Mesh files: {", ".join(SUFFIXES)}. docs/checks.md says more."""
 _EXAMPLES = """\
 examples:
   stiv check plant.blend
   stiv check --json report.json "two sheets.obj"
+  stiv check assets/*.blend --junit checks.xml --pictures pictures
+  stiv check walk.blend --frames 1:120        every frame, and the ways between them
+  stiv check assets/*.blend --baseline known.json --write-baseline
+  stiv check assets/*.blend --baseline known.json
+  stiv check plant.blend --blender /opt/blender/blender
 
-exit codes: 0 free of intersections, 4 intersections found, 2 bad input, 1 wrong usage, 3 internal error"""
+exit codes: 0 free of intersections, 4 intersections found, 2 bad input, 1 wrong usage, 3 internal error, 5 cancelled"""
 
 
 def add_to(subcommands: Subparsers) -> None:
     """Adds the subcommand to the parser."""
     parser = subcommands.add_parser(
         "check",
-        help="is a scene or a mesh free of intersections?",
+        help="are scenes and meshes free of intersections?",
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, metavar="SCENE.blend|MESH", help="what to check")
+    parser.add_argument("files", nargs="+", metavar="SCENE.blend|MESH", help="what to check")
+    parser.add_argument("--object", action="append", default=[], metavar="NAME", help="test only objects of this name")
+    parser.add_argument(
+        "--frames",
+        type=frame_range,
+        metavar="A:B[:STEP]",
+        help="test these frames, and what meets on the straight ways between them; `scene` for the scene's own range",
+    )
+    parser.add_argument("--subframes", type=int, default=1, metavar="N", help="poses for each step of frames (1)")
+    parser.add_argument("--baseline", type=Path, metavar="F", help="findings in F are known and accepted")
+    parser.add_argument("--write-baseline", action="store_true", help="write what is found to the baseline's file")
     parser.add_argument("--json", type=Path, metavar="F", help="write the result, with the pairs, to F")
+    parser.add_argument("--junit", type=Path, metavar="F", help="write the result to F as JUnit XML")
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="write a picture of each finding to FOLDER")
+    add_blender_option(parser)
     parser.set_defaults(run=_run)
-
-
-def _run(arguments: argparse.Namespace) -> ExitCode:
-    require_folder(arguments.json)
-    report = check_file(arguments.file)
-    if arguments.json is not None:
-        write_json(arguments.json, report)
-    print(summary(report))
-    return ExitCode.DONE if report["free"] else ExitCode.NOT_FREE
-
-
-@dataclass(frozen=True)
-class _Finding:
-    """What was tested, and the pairs that meet: each end as object, kind of element and number within the object."""
-
-    objects: tuple[str, ...]
-    vertices: int
-    triangles: int
-    pairs: list[tuple[_Element, _Element]]
 
 
 def check_file(path: Path) -> dict[str, Any]:
     """The result of the exact test of a .blend or a mesh file, ready for JSON. Raises InputError."""
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file")
-    begin = time.perf_counter()
-    found = _check_blend(path) if path.suffix.lower() == ".blend" else _check_mesh(path)
-    listed = [{"first": _named(first), "second": _named(second)} for first, second in found.pairs[:LISTED_PAIRS]]
-    return {
-        "schema": SCHEMA,
-        "version": VERSION,
-        "file": path.name,
-        "objects": list(found.objects),
-        "vertices": found.vertices,
-        "triangles": found.triangles,
-        "free": not found.pairs,
-        "intersections": len(found.pairs),
-        "pairs": listed,
-        "seconds": round(time.perf_counter() - begin, 3),
-    }
+    return file_report(check_path(path))
 
 
-def summary(report: dict[str, Any]) -> str:
-    """The result for people, one line a fact."""
-    size = f"{report['vertices']:,} vertices, {report['triangles']:,} triangles, {len(report['objects'])} objects"
-    if report["free"]:
-        return f"{report['file']}: free of intersections ({size}, {report['seconds']:.2f} s)"
-    lines = [f"{report['file']}: {report['intersections']:,} intersecting pairs ({size})"]
-    lines += [f"  {_text(pair['first'])} - {_text(pair['second'])}" for pair in report["pairs"][:SHOWN_PAIRS]]
-    more = report["intersections"] - SHOWN_PAIRS
-    return "\n".join(lines + ([f"  ... and {more:,} more"] if more > 0 else []))
+def _run(arguments: argparse.Namespace) -> ExitCode:
+    _check_arguments(arguments)
+    baseline = {} if arguments.baseline is None or arguments.write_baseline else read_baseline(arguments.baseline)
+    paths = list(_expanded(arguments.files))
+    checks = []
+    with progress_bar("check", len(paths)) as advance:
+        for path in paths:
+            checks.append(_checked(path, arguments, baseline, lambda note: advance(note, 0)))
+            advance(path.name)
+    for check in checks:
+        print(summary(check), file=sys.stderr if check.error else sys.stdout)
+    if all(check.error for check in checks):
+        return ExitCode.BAD_INPUT  # nothing is written
+    _write(arguments, checks)
+    if any(check.error for check in checks):
+        return ExitCode.BAD_INPUT
+    free = arguments.write_baseline or all(check.free for check in checks)
+    return ExitCode.DONE if free else ExitCode.NOT_FREE
 
 
-def _named(element: _Element) -> dict[str, Any]:
-    name, kind, number = element
-    return {"object": name, "kind": kind, "number": number}
+def _check_arguments(arguments: argparse.Namespace) -> None:
+    for path in (arguments.json, arguments.junit, arguments.baseline):
+        require_folder(path)
+    if arguments.write_baseline and arguments.baseline is None:
+        raise InputError("--write-baseline needs --baseline F, the file to write")
+    if not 1 <= arguments.subframes <= 1000:
+        raise InputError(f"--subframes: {arguments.subframes} is not between 1 and 1000")
+    if arguments.pictures is not None:
+        require_matplotlib()
+        require_folder(arguments.pictures)
+        arguments.pictures.mkdir(exist_ok=True)
 
 
-def _text(element: dict[str, Any]) -> str:
-    return f'object "{element["object"]}", {element["kind"]} {element["number"]}'
+def _expanded(names: Iterable[str]) -> Iterator[Path]:
+    """Files as named; patterns that no shell has expanded stand for the files they match."""
+    for name in names:
+        matches = [] if Path(name).exists() else sorted(glob.glob(name))
+        yield from map(Path, matches or [name])
 
 
-def _check_mesh(path: Path) -> _Finding:
-    mesh = read_mesh(path)
-    owner = mesh.triangle_object
-    first_of_object = np.searchsorted(np.sort(owner), np.arange(len(mesh.object_names)))
-    within = np.empty(len(owner), np.int64)
-    within[np.argsort(owner, kind="stable")] = np.arange(len(owner))
-
-    def element(triangle: int) -> _Element:
-        of = int(owner[triangle])
-        return mesh.object_names[of], "triangle", int(within[triangle] - first_of_object[of])
-
-    pairs = stiv.find_intersections(mesh.vertices, mesh.triangles)
-    named = [(element(a), element(b)) for a, b in pairs.tolist()]
-    return _Finding(mesh.object_names, len(mesh.vertices), len(mesh.triangles), named)
+def _checked(
+    path: Path, arguments: argparse.Namespace, baseline: Baseline, on_look: Callable[[str], None]
+) -> FileCheck:
+    choices = Choices(tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures)
+    try:
+        check = check_path(path, choices, on_look)
+    except InputError as error:
+        return FileCheck(path.as_posix(), error=str(error).removeprefix(f"{path}: "))
+    return without_accepted(check, baseline, arguments.baseline.parent) if baseline else check
 
 
-def _check_blend(path: Path) -> _Finding:
-    """Of every visible mesh as Blender evaluates it; loose edges and vertices are tested too."""
-    files = require_blender("stiv.blender.blend_files", path)
-    with quiet_blender():
-        context = files.open_blend(path)
-    checking = require_blender("stiv.blender.checking", path)
-    assembly = checking.read_surface(context)
-    pairs = [(_plain(pair.first), _plain(pair.second)) for pair in checking.find_pairs(assembly)]
-    objects = tuple(dict.fromkeys(mesh.owner.name for mesh in assembly.meshes))
-    return _Finding(objects, len(assembly.positions), len(assembly.surface.triangles), pairs)
-
-
-def _plain(element: Any) -> _Element:
-    return element.object, element.kind, element.number
+def _write(arguments: argparse.Namespace, checks: list[FileCheck]) -> None:
+    if arguments.write_baseline:
+        write_json(arguments.baseline, baseline_of(checks, arguments.baseline.parent))
+    if arguments.json is not None:
+        write_json(arguments.json, report_of(checks))
+    if arguments.junit is not None:
+        with written_atomically(arguments.junit) as temporary:
+            temporary.write_bytes(junit_xml(checks))

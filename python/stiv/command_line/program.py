@@ -13,6 +13,7 @@ from typing import NoReturn
 from stiv import InputError
 from stiv.command_line import check, replay
 from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.installed_blender import run_inside, without_option
 
 _SUBCOMMANDS = (check, replay)
 
@@ -38,6 +39,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Runs the command with these arguments (default: the process's own) and returns its exit code."""
     try:
         chosen = parser().parse_args(arguments)
+        blender = getattr(chosen, "blender", None)
+        if blender is not None:
+            return run_inside(blender, without_option(sys.argv[1:] if arguments is None else arguments))
         return int(chosen.run(chosen))
     except SystemExit as end:  # of argparse: --help or wrong usage
         return int(end.code or 0)

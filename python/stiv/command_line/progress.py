@@ -8,15 +8,15 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def progress_bar(title: str, total: int) -> Iterator[Callable[[str], None]]:
-    """Gives a function that advances the bar by one step and shows a note beside it."""
+def progress_bar(title: str, total: int) -> Iterator[Callable[..., None]]:
+    """Gives a function `advance(note, steps=1)` that advances the bar and shows a note beside it."""
     try:
         from rich.console import Console
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
     except ImportError:
-        yield lambda note: None
+        yield lambda note, steps=1: None
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, TextColumn("{task.fields[note]}"), console=Console(stderr=True)) as progress:
         task = progress.add_task(title, total=total, note="")
-        yield lambda note: progress.update(task, advance=1, note=note)
+        yield lambda note, steps=1: progress.update(task, advance=steps, note=note)

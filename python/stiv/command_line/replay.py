@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from stiv import InputError
 from stiv.command_line.blender_module import require_blender
 from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.progress import progress_bar
 from stiv.command_line.quiet import quiet_blender
@@ -45,6 +46,7 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
     parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
     parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
+    add_blender_option(parser)
     parser.set_defaults(run=_run)
 
 

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exact test of a scene over frames, and of the ways between them: a pose may be free, and what leads to it not.
+
+Between two frames each vertex is taken to move on a straight line, as motion blur and most simulations take it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv import InputError
+from stiv.blender.arrays import Floats
+from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.assembly import Element as FoundElement
+from stiv.blender.checking import find_pairs, read_surface
+from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.event_elements import EventElements
+from stiv.checks.findings import CROSSING, Element, Finding, Look, Shapes
+
+
+def check_frames(
+    context: bpy.types.Context, frames: Sequence[float] = (), objects: Collection[str] = (), threads: int = 0
+) -> Iterator[Look]:
+    """Looks at the present pose, or with `frames` at each of them and at the way from each to the next.
+
+    objects: names to be limited to. Whole and fractional frames may be mixed; they must ascend. The scene is left at
+    the last frame. Raises InputError for unknown names and coordinates that are not finite.
+    """
+    _check_names(context, objects)
+    if not frames:
+        yield _at_rest(_read(context, objects), None, threads)
+        return
+    before, found = None, None
+    for frame in frames:
+        go_to(context.scene, frame)
+        present = _read(context, objects)
+        look = _at_rest(present, frame, threads)
+        if before is not None and found is not None and found.frame is not None:
+            yield _between(before, present, found, look, threads)
+        yield look
+        before, found = present, look
+
+
+def go_to(scene: bpy.types.Scene, frame: float) -> None:
+    """Makes a whole or fractional frame the scene's present one."""
+    whole = math.floor(frame)
+    scene.frame_set(whole, subframe=frame - whole)
+
+
+def scene_frames(context: bpy.types.Context) -> tuple[int, int]:
+    """The scene's own range of frames."""
+    return context.scene.frame_start, context.scene.frame_end
+
+
+def shapes_of(assembly: Assembly) -> Shapes:
+    """The assembly's triangles with the objects and faces they belong to."""
+    names = tuple(dict.fromkeys(mesh.owner.name for mesh in assembly.meshes))
+    owner = [np.full(len(mesh.triangles), names.index(mesh.owner.name), np.int32) for mesh in assembly.meshes]
+    return Shapes(
+        assembly.positions,
+        assembly.surface.triangles,
+        names,
+        np.concatenate([np.empty(0, np.int32), *owner]),
+        np.concatenate([np.empty(0, np.int32), *(mesh.faces for mesh in assembly.meshes)]),
+    )
+
+
+def _check_names(context: bpy.types.Context, objects: Collection[str]) -> None:
+    unknown = sorted(set(objects) - set(context.scene.objects.keys()))
+    if unknown:
+        raise InputError(f'there is no object "{unknown[0]}" in the scene')
+
+
+def _read(context: bpy.types.Context, objects: Collection[str]) -> Assembly:
+    return read_surface(context, objects or None)
+
+
+def _at_rest(assembly: Assembly, frame: float | None, threads: int) -> Look:
+    pairs = find_pairs(assembly, threads)
+    found = (Finding(plain(pair.first), plain(pair.second), frame=frame) for pair in pairs)
+    return Look(shapes_of(assembly), frame, None, tuple(found))
+
+
+def _between(before: Assembly, after: Assembly, start: Look, end: Look, threads: int) -> Look:
+    """The way from one frame to the next, of the meshes that both have.
+
+    Pairs of objects that meet at one of the two frames were found there, and are left out.
+    """
+    pairs, notes = _matched(before, after, f"between frames {start.frame:g} and {end.frame:g}")
+    moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs])
+    goal = np.concatenate([np.empty((0, 3)), *(other.world() for _, other in pairs)])
+    known = {finding.objects for look in (start, end) for finding in look.findings}
+    found = [
+        replace(each, frame=start.frame, to_frame=end.frame)
+        for each in crossings(moving, goal, threads)
+        if each.objects not in known
+    ]
+    first = min((finding.time for finding in found if finding.time is not None), default=0.0)
+    shapes = replace(shapes_of(moving), positions=moving.positions + first * (goal - moving.positions))
+    return Look(shapes, start.frame, end.frame, tuple(found), tuple(notes))
+
+
+def crossings(assembly: Assembly, goal: Floats, threads: int = 0) -> list[Finding]:
+    """What meets while all vertices move in straight lines to `goal`, (N, 3): each pair once, at its earliest time."""
+    if np.array_equal(assembly.positions, goal):
+        return []
+    events = stiv.Detector(assembly.surface, threads=threads).find(assembly.positions, goal)
+    elements = EventElements(assembly, events)
+    earliest: dict[tuple[Element, Element], float] = {}
+    for number, time in enumerate(events.time.tolist()):
+        first, second = (plain(each) for each in elements.of(number))
+        pair = (min(first, second), max(first, second))
+        earliest[pair] = min(time, earliest.get(pair, math.inf))
+    return [Finding(a, b, CROSSING, time=time) for (a, b), time in sorted(earliest.items())]
+
+
+def plain(element: FoundElement) -> Element:
+    """An element of a scene as checks name it."""
+    return Element(element.object, element.kind, element.number)
+
+
+def _matched(before: Assembly, after: Assembly, when: str) -> tuple[list[tuple[VisibleMesh, VisibleMesh]], list[str]]:
+    """Meshes that are there at both frames with the same vertices, and what was left out."""
+    left = _by_name(after)
+    pairs, notes = [], []
+    for key, mesh in _by_name(before).items():
+        other = left.pop(key, None)
+        if other is None or len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
+            why = "comes or goes" if other is None else "changes its number of vertices or faces"
+            notes.append(f'{when}: object "{mesh.owner.name}" {why}, and was not followed')
+        else:
+            pairs.append((mesh, other))
+    notes += [f'{when}: object "{mesh.owner.name}" comes or goes, and was not followed' for mesh in left.values()]
+    return pairs, notes
+
+
+def _by_name(assembly: Assembly) -> dict[tuple[int, str, int], VisibleMesh]:
+    """Meshes by what keeps while frames change: owner, source, and the how-manieth of these."""
+    found: dict[tuple[int, str, int], VisibleMesh] = {}
+    counts: dict[tuple[int, str], int] = {}
+    for mesh in assembly.meshes:
+        name = (mesh.owner.session_uid, mesh.source)
+        counts[name] = counts.get(name, -1) + 1
+        found[*name, counts[name]] = mesh
+    return found
+
+
+def _mobility(one: VisibleMesh, other: VisibleMesh) -> str:
+    """What keeps its shape cannot cross itself; its straight ways between frames would only make it seem to."""
+    return "rigid" if np.array_equal(one.local, other.local) else "deformable"

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a check finds: elements that meet, at a frame or between two, and the shapes they were found in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+INTERSECTION, CROSSING = "intersection", "crossing"
+
+
+@dataclass(frozen=True, order=True)
+class Element:
+    """A triangle of a mesh file, or a face, edge or vertex of an evaluated mesh, by its number in its object."""
+
+    object: str
+    kind: str
+    number: int
+
+    def __str__(self) -> str:
+        """As messages name it."""
+        return f'object "{self.object}", {self.kind} {self.number}'
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Two elements that meet.
+
+    `kind` is "intersection" where they meet in the pose of `frame` (None: of what has no frames), and "crossing" where
+    both poses are free there, but the straight way from `frame` to `to_frame` is not: it meets at the fraction `time`.
+    """
+
+    first: Element
+    second: Element
+    kind: str = INTERSECTION
+    frame: float | None = None
+    to_frame: float | None = None
+    time: float | None = None
+
+    @property
+    def objects(self) -> tuple[str, str]:
+        """The names of the two objects, in alphabetical order."""
+        one, other = sorted((self.first.object, self.second.object))
+        return one, other
+
+    def __str__(self) -> str:
+        """As messages tell it."""
+        return f"{when(self)}{self.first} - {self.second}"
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The triangles that were tested, in the pose of a finding, with the elements they belong to."""
+
+    positions: NDArray[np.float64]  #: (N, 3) in world space
+    triangles: NDArray[np.int32]  #: (F, 3)
+    names: tuple[str, ...]  #: of the objects
+    owner: NDArray[np.int32]  #: (F,) object of each triangle
+    number: NDArray[np.int32]  #: (F,) number of the face, or of the triangle in a mesh file, within its object
+
+
+@dataclass(frozen=True)
+class Look:
+    """What one pose (`to_frame` None), or the way from one to the next, was found to be."""
+
+    shapes: Shapes
+    frame: float | None = None
+    to_frame: float | None = None
+    findings: tuple[Finding, ...] = ()
+    notes: tuple[str, ...] = ()  #: what could not be tested
+
+
+@dataclass(frozen=True)
+class FileCheck:
+    """What a file was found to be. With an `error` it could not be checked."""
+
+    file: str
+    objects: tuple[str, ...] = ()
+    vertices: int = 0
+    triangles: int = 0
+    frames: tuple[float, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    accepted: tuple[Finding, ...] = ()  #: findings that the baseline accepts
+    notes: tuple[str, ...] = ()
+    error: str = ""
+    seconds: float = 0.0
+    pictures: tuple[str, ...] = field(default=())
+
+    @property
+    def free(self) -> bool:
+        """Was it checked, and is nothing left but what the baseline accepts?"""
+        return not self.error and not self.findings
+
+
+def when(finding: Finding) -> str:
+    """The frame or frames of a finding as the start of a line; empty for what has none."""
+    if finding.frame is None:
+        return ""
+    if finding.to_frame is None:
+        return f"frame {finding.frame:g}: "
+    return f"between frames {finding.frame:g} and {finding.to_frame:g}: "

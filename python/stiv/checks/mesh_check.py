@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exact test of a mesh file, without Blender."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+import stiv
+from stiv import InputError
+from stiv.checks.findings import Element, Finding, Look, Shapes
+from stiv.mesh_files import Mesh
+
+
+def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
+    """Every pair of triangles that meets, of all objects or of those named. Raises InputError for unknown names."""
+    shapes = shapes_of(_limited(mesh, objects))
+
+    def element(triangle: int) -> Element:
+        return Element(shapes.names[shapes.owner[triangle]], "triangle", int(shapes.number[triangle]))
+
+    pairs = stiv.find_intersections(shapes.positions, shapes.triangles)
+    return Look(shapes, findings=tuple(Finding(element(a), element(b)) for a, b in pairs.tolist()))
+
+
+def shapes_of(mesh: Mesh) -> Shapes:
+    """The mesh's triangles, numbered within their objects."""
+    owner = mesh.triangle_object
+    order = np.argsort(owner, kind="stable")
+    first = np.searchsorted(owner[order], np.arange(len(mesh.object_names)))
+    number = np.empty(len(owner), np.int32)
+    number[order] = np.arange(len(owner)) - first[owner[order]]
+    return Shapes(mesh.vertices, mesh.triangles, mesh.object_names, owner, number)
+
+
+def _limited(mesh: Mesh, objects: Collection[str]) -> Mesh:
+    unknown = sorted(set(objects) - set(mesh.object_names))
+    if unknown:
+        raise InputError(f'there is no object "{unknown[0]}" in it; there are {", ".join(mesh.object_names)}')
+    if not objects:
+        return mesh
+    kept = np.isin(mesh.triangle_object, [mesh.object_names.index(name) for name in objects])
+    return Mesh(mesh.vertices, mesh.triangles[kept], mesh.object_names, mesh.triangle_object[kept])

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks as JSON (python/stiv/schemas/check.schema.json) and as lines for people."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from stiv.checks.findings import Element, FileCheck, Finding
+
+SCHEMA, VERSION = "stiv-check", 2
+LISTED_PAIRS = 100  # of each file, in the report
+SHOWN_PAIRS = 10  # of each file, on the terminal
+
+
+def report_of(checks: Sequence[FileCheck]) -> dict[str, Any]:
+    """The report on all files."""
+    return {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "free": all(check.free for check in checks),
+        "intersections": sum(len(check.findings) for check in checks),
+        "files": [file_report(check) for check in checks],
+    }
+
+
+def file_report(check: FileCheck) -> dict[str, Any]:
+    """The part of the report on one file."""
+    return {
+        "file": check.file,
+        "objects": list(check.objects),
+        "vertices": check.vertices,
+        "triangles": check.triangles,
+        "frames": list(check.frames),
+        "free": check.free,
+        "intersections": len(check.findings),
+        "accepted": len(check.accepted),
+        "pairs": [_pair(finding) for finding in check.findings[:LISTED_PAIRS]],
+        "pictures": list(check.pictures),
+        "notes": list(check.notes),
+        "error": check.error,
+        "seconds": round(check.seconds, 3),
+    }
+
+
+def summary(check: FileCheck) -> str:
+    """What a file was found to be, one line a fact."""
+    if check.error:
+        return f"stiv: {check.file}: {check.error}"
+    size = f"{check.vertices:,} vertices, {check.triangles:,} triangles, {len(check.objects)} objects"
+    if check.frames:
+        size += f", {len(check.frames)} frames"
+    accepted = f"; {len(check.accepted):,} pairs accepted by the baseline" if check.accepted else ""
+    notes = [f"  note: {note}" for note in check.notes]
+    if check.free:
+        return "\n".join([f"{check.file}: free of intersections ({size}, {check.seconds:.2f} s){accepted}", *notes])
+    lines = [f"{check.file}: {len(check.findings):,} intersecting pairs ({size}){accepted}"]
+    lines += [f"  {finding}" for finding in check.findings[:SHOWN_PAIRS]]
+    more = len(check.findings) - SHOWN_PAIRS
+    return "\n".join(lines + ([f"  ... and {more:,} more"] if more > 0 else []) + notes)
+
+
+def _pair(finding: Finding) -> dict[str, Any]:
+    told = {"kind": finding.kind, "first": _element(finding.first), "second": _element(finding.second)}
+    given = {"frame": finding.frame, "to_frame": finding.to_frame, "time": finding.time}
+    return told | {name: value for name, value in given.items() if value is not None}
+
+
+def _element(element: Element) -> dict[str, Any]:
+    return {"object": element.object, "kind": element.kind, "number": element.number}

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks one file, of whatever kind, and writes the pictures of what it finds."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from stiv import InputError
+from stiv.checks.findings import FileCheck, Finding, Look
+from stiv.checks.mesh_check import check_mesh
+from stiv.checks.pictures import write_picture
+from stiv.command_line.blender_module import require_blender
+from stiv.command_line.output_files import written_atomically
+from stiv.command_line.quiet import quiet_blender
+from stiv.mesh_files import read_mesh
+
+FrameChoice = tuple[int, int, int] | str  # first, last and step; or "scene" for the scene's own range
+MAX_FRAMES = 1_000_000
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What is checked of each file."""
+
+    objects: Collection[str] = ()  #: names to be limited to; empty for all
+    frames: FrameChoice | None = None  #: None: the pose that the file was saved in
+    subframes: int = 1  #: poses for each step of frames; more follow turning objects more closely
+    pictures: Path | None = None  #: folder for them
+
+
+def check_path(
+    path: Path, choices: Choices | None = None, on_look: Callable[[str], None] = lambda note: None
+) -> FileCheck:
+    """The result for one file; `on_look` is told of each pose. Raises InputError for what cannot be checked."""
+    chosen = choices or Choices()
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    begin = time.perf_counter()
+    is_blend = path.suffix.lower() == ".blend"
+    looks = _looks_at_blend(path, chosen) if is_blend else _looks_at_mesh(path, chosen)
+    return _summed(path, looks, chosen, on_look, begin)
+
+
+def _looks_at_mesh(path: Path, choices: Choices) -> Iterable[Look]:
+    if choices.frames is not None:
+        raise InputError(f"{path}: a mesh file has no frames")
+    mesh = read_mesh(path)
+    try:
+        yield check_mesh(mesh, choices.objects)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
+    """Of every visible mesh as Blender evaluates it; loose edges and vertices are tested too."""
+    files = require_blender("stiv.blender.blend_files", path)
+    with quiet_blender():
+        context = files.open_blend(path)
+    checking = require_blender("stiv.blender.frame_checking", path)
+    try:
+        yield from checking.check_frames(context, _frames(choices, checking, context), choices.objects)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _frames(choices: Choices, checking: Any, context: Any) -> list[float]:
+    if choices.frames is None:
+        return []
+    chosen = choices.frames
+    first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
+    count = (last - first) * choices.subframes // step
+    if count >= MAX_FRAMES:
+        raise InputError(f"{count} frames; at most {MAX_FRAMES} are checked")
+    return [first + number * step / choices.subframes for number in range(count + 1)]
+
+
+def _summed(
+    path: Path, looks: Iterable[Look], choices: Choices, on_look: Callable[[str], None], begin: float
+) -> FileCheck:
+    found: list[Finding] = []
+    notes: list[str] = []
+    frames: list[float] = []
+    pictures: list[str] = []
+    names: dict[str, None] = {}
+    vertices = triangles = 0
+    shown: set[tuple[str, str]] = set()
+    for look in looks:
+        if look.to_frame is None:
+            names.update(dict.fromkeys(look.shapes.names))
+            vertices = max(vertices, len(look.shapes.positions))
+            triangles = max(triangles, len(look.shapes.triangles))
+            frames += [] if look.frame is None else [look.frame]
+            on_look("" if look.frame is None else f"frame {look.frame:g}")
+        found += look.findings
+        notes += look.notes
+        if choices.pictures is not None:
+            pictures += _pictures(path, look, choices.pictures, shown)
+    return FileCheck(
+        path.as_posix(), tuple(names), vertices, triangles, tuple(frames), tuple(found), (), tuple(notes), "",
+        time.perf_counter() - begin, tuple(pictures),
+    )  # fmt: skip
+
+
+def _pictures(path: Path, look: Look, folder: Path, shown: set[tuple[str, str]]) -> list[str]:
+    """One picture of each pair of objects, where they are first found to meet."""
+    written = []
+    for pair in dict.fromkeys(finding.objects for finding in look.findings):
+        if pair in shown:
+            continue
+        shown.add(pair)
+        picture = folder / f"{_file_name(path.stem)}-{len(shown)}-{_file_name('-'.join(pair))}.png"
+        with written_atomically(picture) as temporary:
+            write_picture(temporary, look.shapes, [f for f in look.findings if f.objects == pair], path.name)
+        written.append(picture.as_posix())
+    return written
+
+
+def _file_name(text: str) -> str:
+    return re.sub(r"[^\w.-]+", "_", text)[:60]

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`--blender PATH`: runs the command inside an installed Blender instead of with Blender as a Python module.
+
+Blender starts without user settings, and scripts in .blend files stay disabled.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from stiv import InputError
+
+OPTION = "--blender"
+BEGINS = "stiv begins"  # the line after which what Blender prints is ours
+_SCRIPT = Path(__file__).with_name("inside_blender.py")
+
+
+def add_blender_option(parser: argparse.ArgumentParser) -> None:
+    """Adds the option to a subcommand."""
+    parser.add_argument(OPTION, metavar="PATH", help="use this installed Blender (default: the Python module bpy)")
+
+
+def blender_command(blender: str, script: Path, arguments: Sequence[str]) -> list[str]:
+    """The command that runs a Python script inside an installed Blender. Raises InputError if there is none."""
+    found = shutil.which(blender)
+    if found is None:
+        raise InputError(f"{OPTION}: {blender} is not a program that can be run")
+    options = ["-b", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3", "--python"]
+    return [found, *options, str(script), "--", *arguments]
+
+
+def run_inside(blender: str, arguments: Sequence[str]) -> int:
+    """Runs the command with these arguments inside Blender, and returns its exit code."""
+    command = blender_command(blender, _SCRIPT, arguments)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
+        assert process.stdout is not None
+        began = False
+        for line in process.stdout:
+            if began:
+                sys.stdout.write(line)
+            began = began or line.rstrip() == BEGINS
+    if not began:
+        raise InputError(f"{OPTION}: {blender} ended with {process.returncode} and did not run STIV's script")
+    return process.returncode
+
+
+def without_option(arguments: Sequence[str]) -> list[str]:
+    """The arguments without the option and its value."""
+    left: list[str] = []
+    skip = False
+    for argument in arguments:
+        if skip or argument.startswith(OPTION + "="):
+            skip = False
+        elif argument == OPTION:
+            skip = True
+        else:
+            left.append(argument)
+    return left
