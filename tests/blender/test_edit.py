@@ -203,7 +203,7 @@ def test_rigid_and_controls_roles_give_way() -> None:
         add_grid("Sheet", 4, location=(0, 0, 3)),
     )
     select(pusher)
-    settings = EditSettings(roles={"Ball": "rigid", "Sheet": "controls"}, responders="unselected")
+    settings = EditSettings(roles={"Ball": "rigid", "Sheet": "controls", "Wall": "obstacle"}, responders="unselected")
     edit = begin(settings=settings)
     roles = {each.name: each.role for each in edit.summary.participants}
     assert roles == {"Wall": "obstacle", "Pusher": "rigid", "Ball": "rigid", "Sheet": "cage"}

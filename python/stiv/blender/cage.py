@@ -15,10 +15,10 @@ from stiv.blender.lattice_points import is_undeformed
 from stiv.blender.mesh_reading import read_edges
 from stiv.blender.modifier_stack import Bending, Subdivision, read_stack, refuse
 from stiv.blender.movability import check_data
+from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal, point_weights, stored
 from stiv.blender.references import ObjectReference
-from stiv.blender.roles import Mover
 from stiv.blender.settings import EditSettings
 from stiv.blender.subdividing import subdivide
 

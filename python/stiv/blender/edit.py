@@ -27,6 +27,7 @@ from stiv.blender.solving import Solving
 from stiv.blender.summary import Summary, summarise
 from stiv.blender.trail import Place, Trail, latest
 from stiv.blender.transform_path import Path, increments, transform_at
+from stiv.blender.unguarded import as_stored, objects_that_meet, result_at
 from stiv.blender.verification import FacePair, Verification, Verifier
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
@@ -64,6 +65,8 @@ class BlenderEdit:
         self._influence: Influence | None = None
         self._start = stacked([part.controls for part in parts])
         self._goal = self._start
+        self._began_free = settings.interference
+        self._unguarded = None if settings.interference else self._start
         self._solving = Solving(assembly, self._parts, self._start, settings)
         self._verifier = Verifier(self.assembly, settings.threads)
 
@@ -85,18 +88,54 @@ class BlenderEdit:
 
     @property
     def controls(self) -> Floats:
-        """Accepted controls of all parts, (m, 3)."""
-        return self._solving.session.controls
+        """Accepted controls of all parts, (m, 3); those of the goal while interference is off."""
+        return self._solving.session.controls if self._unguarded is None else self._unguarded
 
     @property
     def surface(self) -> Floats:
-        """The accepted surface, (N, 3)."""
+        """The surface of `controls`, (N, 3)."""
+        if self._unguarded is not None:
+            return self._solving.deformation.surface(self._unguarded)
         return self._solving.session.surface
 
     @property
     def assembly(self) -> Assembly:
         """The surface's objects and faces, with the cuts of bent faces that are kept free."""
         return self._solving.assembly
+
+    @property
+    def interference(self) -> bool:
+        """Is what is written free of intersections? Changed by `set_interference`."""
+        return self._unguarded is None
+
+    def set_interference(self, on: bool) -> str:
+        """Let surfaces go through each other from now on, or no more; returns why the state is not kept, or "".
+
+        Off: drags go to their goals, whose results have the status "unguarded", and `write` tests nothing. On again:
+        a state that is free, on Blender's own evaluation too, is gone on from, wherever surfaces went through each
+        other on the way there. From any other the edit goes back to the last state before interference was off, which
+        the next `write` shows; where there is none, it stays off. Raises SceneChangedError.
+        """
+        if on == self.interference:
+            return ""
+        if not on:
+            self._unguarded = self.controls
+            return ""
+        shown, self._unguarded = self.controls, None
+        known = self._solving.session.controls if self._solving.has_begun else None
+        try:
+            self._solving.go_on_from(shown, self._goal)
+            reason = self._show(shown).message
+        except stiv.StartIntersectsError as error:
+            reason = f"{objects_that_meet(error.pairs, self.assembly.surface)} go through each other here"
+        if not reason:
+            return ""
+        if known is None:
+            self._solving.forget()
+            self._unguarded = shown
+            return f"interference stays off: {reason}"
+        self._solving.go_on_from(known, known)
+        return f"back to the last state without intersections: {reason}"
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
         """Solve for an absolute goal: a motion or its matrix, (4, 4), of what is selected, since the beginning.
@@ -106,6 +145,9 @@ class BlenderEdit:
         wanted = Motion.of(motion)
         self._respond(wanted.influence)
         self._goal = self._goal_of(wanted)
+        if self._unguarded is not None:
+            self._unguarded = as_stored(self._parts, self._split(self._goal))
+            return result_at(self._solving.deformation, self._unguarded)
         return self._solving.solve(self._goal, **execution)
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
@@ -125,6 +167,8 @@ class BlenderEdit:
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
+        if self._unguarded is not None:
+            return result_at(self._solving.deformation, self._unguarded)
         return self._solving.solve(None, **execution)
 
     def write(self) -> WriteReport:
@@ -132,8 +176,12 @@ class BlenderEdit:
 
         Faces that bent far are cut otherwise by Blender. Where that makes them meet, both cuts take part from then on,
         and the way since the last writing is solved again from where both are free. What still fails is taken back to
-        the last state on the way that passes. Raises SceneChangedError when an object is gone or was changed.
+        the last state on the way that passes. With interference off nothing is tested. Raises SceneChangedError when
+        an object is gone or was changed.
         """
+        if self._unguarded is not None:
+            self._write(self._unguarded)
+            return WriteReport(True)
         verification = self._show(self.controls)
         solved_again = False
         for _ in range(MOST_RECUTS):
@@ -148,12 +196,20 @@ class BlenderEdit:
         return WriteReport(True, result=result)
 
     def restore(self) -> None:
-        """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError."""
+        """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError.
+
+        An edit that began with interference off has it off again.
+        """
         for part in self._parts:
             part.writer.restore()
         bpy.context.view_layer.update()
         self._goal = self._start
-        self._solving.go_on_from(self._start, self._goal)
+        if self._unguarded is not None or not self._began_free:
+            self._unguarded = self._start
+        if self._began_free:
+            self._solving.go_on_from(self._start, self._goal)
+        else:
+            self._solving.forget()
 
     def _show(self, controls: Floats) -> Verification:
         self._write(controls)

@@ -12,10 +12,10 @@ from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collecti
 from stiv.blender.control_weights import control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.movability import check_data
+from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal, point_weights, stored
 from stiv.blender.references import ObjectReference
-from stiv.blender.roles import Mover
 from stiv.blender.settings import EditSettings
 
 

@@ -13,11 +13,11 @@ from stiv.blender.cage import cage_part
 from stiv.blender.dependencies import is_active
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.lattice_points import check_lattice, lattice_part
+from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
 from stiv.blender.references import ObjectReference
 from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlookers, rigid_groups
 from stiv.blender.rigid_placement import rigid_part
-from stiv.blender.roles import Mover
 from stiv.blender.settings import EditSettings
 from stiv.blender.soft_handles import soft_parts
 

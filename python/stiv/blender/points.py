@@ -82,7 +82,13 @@ def stored(frame: Floats, world: Floats, original: Singles) -> Singles:
     Points that are where `original`, (m, 3), the local ones at the start, put them keep those bit by bit: the way to
     the world and back may lose digits of coordinates that are far smaller than others.
     """
-    local: Singles = transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+    local = as_single(frame, world)
     resting = (world == transform_points(frame, original)).all(axis=1)
     local[resting] = original[resting]
+    return local
+
+
+def as_single(frame: Floats, world: Floats) -> Singles:
+    """Local coordinates, (m, 3), in single precision, of points in world space."""
+    local: Singles = transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
     return local

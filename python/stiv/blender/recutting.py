@@ -94,7 +94,10 @@ def with_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
         if len(pairs) == 0:
             return extended
         meeting = {(each.object, each.number) for pair in pairs for each in map(extended.face, pair.tolist())}
-        cuts = [cut for each in cuts if len((cut := _without(each, meeting, assembly)).faces)]
+        left = [cut for each in cuts if len((cut := _without(each, meeting, assembly)).faces)]
+        if sum(len(cut.faces) for cut in left) == sum(len(cut.faces) for cut in cuts):
+            return extended  # others meet, which is for the session to refuse
+        cuts = left
     return assembly
 
 

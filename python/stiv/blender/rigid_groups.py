@@ -10,7 +10,7 @@ from stiv import InputError
 from stiv.blender.dependencies import Dependency, dependencies
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.movability import check_placement, check_unconstrained
-from stiv.blender.roles import Mover
+from stiv.blender.movers import Mover
 
 
 @dataclass(frozen=True)

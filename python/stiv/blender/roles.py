@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Who moves, in which way, and who only gives way."""
 
-from dataclasses import dataclass
-
 import bpy
 
 from stiv import InputError
+from stiv.blender.automatic_responders import automatic_responders
 from stiv.blender.dependencies import is_active
 from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
+from stiv.blender.movers import Mover
 from stiv.blender.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
@@ -15,17 +15,8 @@ EDITABLE_TYPES = ("MESH", "LATTICE")
 SOFT = ("laplacian", "arap")
 
 
-@dataclass(frozen=True)
-class Mover:
-    """An object with controls: role "cage", "soft", "lattice" or "rigid"; `selected` if the goal moves it."""
-
-    reference: ObjectReference
-    role: str
-    selected: bool
-
-
 def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Mover]:
-    """All objects with controls, in the order of the view layer.
+    """All objects with controls, in the order of the view layer, those that nobody gave a role last.
 
     Raises InputError for a mode that is not supported, unknown names, and when nothing is selected that may move.
     """
@@ -34,6 +25,8 @@ def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Move
     selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
     movers = [mover for ob in objects if (mover := _mover(ob, ob in selected, settings)) is not None]
     movers = _once(movers)
+    if settings.responders != "selected" and context.mode == "OBJECT":
+        movers += automatic_responders(objects, movers, settings)
     if not any(mover.selected for mover in movers):
         raise InputError("nothing is selected that may move; select a mesh, a lattice or an object with a surface")
     return movers
@@ -59,7 +52,7 @@ def _selected(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
 
 def _mover(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Mover | None:
     role = settings.role(ob.name)
-    if role in ("obstacle", "ignored") or (role == "auto" and not selected):
+    if role in ("obstacle", "ignored") or (role == "auto" and not selected and not _is_asked(ob, settings)):
         return None
     way = _way(ob, role, settings)
     if way == "rigid":
@@ -71,6 +64,12 @@ def _mover(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Move
     if ob.type not in EDITABLE_TYPES:
         raise InputError(f'object "{ob.name}": a {ob.type.lower()} has no controls; let it respond rigidly')
     return Mover(ObjectReference.of(ob), "cage" if ob.type == "MESH" else "lattice", selected)
+
+
+def _is_asked(ob: bpy.types.Object, settings: EditSettings) -> bool:
+    """Does an object give way by the deformation that is chosen for it, without being selected?"""
+    deforms = settings.deformation(ob.name) not in ("auto", "rigid")
+    return deforms and settings.responders != "selected" and ob.mode != "EDIT" and bpy.context.mode == "OBJECT"
 
 
 def _way(ob: bpy.types.Object, role: str, settings: EditSettings) -> str:

@@ -58,8 +58,12 @@ class EditSettings:
 
     Attributes:
         separation: distance that surfaces keep, world units; 0 chooses one.
+        interference: False: nothing gives way and nothing is tested, surfaces may go through each other;
+            `BlenderEdit.set_interference` changes it in mid-edit.
         responders: which controls give way: the "selected" ones that are being moved (default), the "unselected" ones
-            (what is moved then keeps to the goal exactly), or "all".
+            (what is moved then keeps to the goal exactly), or "all". In Object Mode the unselected are all visible
+            objects that may be placed: as rigid wholes, or by the deformation that is chosen for them. In Edit Mode
+            they are the unselected vertices or points.
         object_response: how selected objects respond in Object Mode: "rigid" (placement) or "deform" (vertices of a
             mesh's cage, points of a lattice).
         deformations: by object name, by what it is moved and gives way: "auto" (as `object_response` says), "vertices"
@@ -67,8 +71,9 @@ class EditSettings:
             the lattice that deforms it), or "rigid". In Edit Mode only "laplacian" and "arap" count.
         handles: by object name, for "laplacian" and "arap".
         weights: by object name, for cages, handles and lattices.
-        roles: by object name, "auto" | "controls" | "rigid" | "obstacle" | "ignored". An unselected object takes part
-            as an obstacle unless its role is "controls" or "rigid": then it gives way, whatever `responders` says.
+        roles: by object name, "auto" | "controls" | "rigid" | "obstacle" | "ignored". An unselected object of role
+            "controls" or "rigid" gives way, whatever `responders` says; of role "auto" where `responders` says so; an
+            "obstacle" never does.
         ignored_pairs: pairs of object names that may go through each other; twice the same name for an object
             with itself.
         smoothness: damping of the response; 0.1 smooth, 0.01 tight.
@@ -78,6 +83,7 @@ class EditSettings:
     """
 
     separation: float = 0.0
+    interference: bool = True
     responders: str = "selected"
     object_response: str = "rigid"
     deformations: Mapping[str, str] = field(default_factory=dict)

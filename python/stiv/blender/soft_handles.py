@@ -12,9 +12,9 @@ from stiv.blender.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.cage import CageWriter, open_cage, selected_vertices, subdivision_of
 from stiv.blender.control_weights import control_weights
 from stiv.blender.mesh_reading import read_triangles
+from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal, point_weights
-from stiv.blender.roles import Mover
 from stiv.blender.settings import EditSettings, Handles
 from stiv.blender.vertex_groups import group_weights
 

@@ -15,16 +15,34 @@ from stiv.blender.trail import Place, Trail, latest
 
 
 class Solving:
-    """Attributes: `assembly` with the cuts that are kept free, `session`, `deformation`, and the `trail`."""
+    """Attributes: `assembly` with the cuts that are kept free, `deformation`, and the `trail`."""
 
     def __init__(self, assembly: Assembly, parts: Sequence[Part], controls: Floats, settings: EditSettings) -> None:
-        """Begin at controls of all parts, (m, 3). Raises InputError, StartIntersectsError."""
+        """Begin at controls of all parts, (m, 3), unless interference is off.
+
+        Raises InputError, StartIntersectsError.
+        """
         self._parts = parts
         self._settings = settings
         self._weights = [part.weights for part in parts]
-        self._at_start = with_bent_quads(assembly, settings.threads)
-        self._take(self._at_start, controls)
+        self._session: stiv.EditSession | None = None
+        self._at_start = self.assembly = assembly
+        self.deformation = deformation_of(assembly, parts)
+        if settings.interference:
+            self._at_start = with_bent_quads(assembly, settings.threads)
+            self._take(self._at_start, controls)
         self.trail = Trail(controls, controls)
+
+    @property
+    def has_begun(self) -> bool:
+        """Is there a state that is known to be free?"""
+        return self._session is not None
+
+    @property
+    def session(self) -> stiv.EditSession:
+        """What solves; there is none before interference was on."""
+        assert self._session is not None, "interference has been off from the start"
+        return self._session
 
     def solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
         """Drag to a goal, (m, 3), or settle (None)."""
@@ -32,18 +50,31 @@ class Solving:
         self.trail.add(goal, result)
         return result
 
+    def forget(self) -> None:
+        """Have no state any more that is known to be free."""
+        self._session = None
+
     def weigh(self, weights: Sequence[Floats]) -> None:
         """Go on from the accepted state with other response weights, (m,) for each part."""
-        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.places()[-1])
         self._weights = list(weights)
+        if self._session is None:
+            return
+        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.places()[-1])
         self._take(self.assembly, accepted)
         self.session.restore(accepted, goal)
 
     def go_on_from(self, controls: Floats, goal: Floats) -> None:
-        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known."""
+        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known.
+
+        Raises StartIntersectsError, with nothing changed, for controls that are not free of intersections.
+        """
         try:
+            if self._session is None:
+                self._take(self.assembly, controls)
             self.session.restore(controls, goal)
         except stiv.StartIntersectsError:
+            if self._session is None or self.assembly is self._at_start:
+                raise
             self._take(self._at_start, controls)
             self.session.restore(controls, goal)
         self.trail = Trail(controls, goal)
@@ -72,6 +103,6 @@ class Solving:
         return True
 
     def _take(self, assembly: Assembly, controls: Floats) -> None:
-        self.deformation = deformation_of(assembly, self._parts)
-        self.session = make_session(assembly, self.deformation, self._parts, controls, self._weights, self._settings)
-        self.assembly = assembly
+        deformation = deformation_of(assembly, self._parts)
+        self._session = make_session(assembly, deformation, self._parts, controls, self._weights, self._settings)
+        self.deformation, self.assembly = deformation, assembly
