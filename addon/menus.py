@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-from .operators import CLASSES
+from .operators import TRANSFORMS
+from .operators.check import STIV_OT_check
 
 # Object > Transform; Mesh > Transform and Lattice > Transform, which are one menu.
 MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
@@ -14,7 +15,7 @@ MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
 def draw(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Append the operators to a menu."""
     self.layout.separator()
-    for operator in CLASSES:
+    for operator in (*TRANSFORMS, STIV_OT_check):
         self.layout.operator(operator.bl_idname, text=operator.bl_label)
 
 

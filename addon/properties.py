@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings kept in the .blend: of the scene, and a role for each object."""
+"""Settings kept in the .blend: of the scene and of each object."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
 
 ROLES = (
     ("auto", "Automatic", "Controls where the object has some that are understood, otherwise rigid or an obstacle"),
@@ -11,9 +11,21 @@ ROLES = (
     ("obstacle", "Obstacle", "Never gives way"),
     ("ignored", "Ignored", "Does not take part: others go through it"),
 )
+DEFORMATIONS = (
+    ("auto", "Automatic", "As the scene's response says; in Edit Mode by its vertices or points"),
+    ("vertices", "Vertices", "By the vertices of its cage, or the points of a lattice"),
+    ("laplacian", "Soft", "By handles; the rest follows and keeps its details (Laplacian editing)"),
+    ("arap", "Soft, Turning", "By handles; the rest follows as rigidly as possible, and turns"),
+    ("lattice", "Lattice", "By the points of the lattice that deforms it"),
+    ("rigid", "Rigid", "As a whole, keeping its shape"),
+)
+RESTS = (
+    ("follows", "Follows", "What is neither a handle nor anchored follows the handles"),
+    ("stays", "Stays", "Everything but the handles stays where it is"),
+)
 RESPONDERS = (
     ("selected", "Selected", "What is selected gives way, everything else stays where it is"),
-    ("unselected", "Unselected", "What is selected goes where it is put, everything else gives way"),
+    ("unselected", "Unselected", "What is selected goes where it is put, everything else that can gives way"),
     ("all", "All", "Both sides give way"),
 )
 OBJECT_RESPONSES = (
@@ -34,16 +46,43 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         soft_max=1.0,
         precision=4,
     )
+    interference: BoolProperty(
+        name="Interference",
+        description="Let surfaces give way; otherwise they may go through each other, and nothing is tested",
+        default=True,
+    )
     responders: EnumProperty(name="Gives way", description="Who gives way", items=RESPONDERS, default="selected")
     object_response: EnumProperty(
         name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
     )
 
 
+class StivHandleGroup(bpy.types.PropertyGroup):
+    """A handle: `name` is that of a vertex group, empty while none is chosen."""
+
+
 class StivObjectSettings(bpy.types.PropertyGroup):
     """How an object takes part."""
 
     role: EnumProperty(name="Role", description="How the object takes part", items=ROLES, default="auto")
+    deformation: EnumProperty(
+        name="Deformation", description="By what the object is moved and gives way", items=DEFORMATIONS, default="auto"
+    )
+    handles: CollectionProperty(type=StivHandleGroup, name="Handles", description="Vertex groups that are handles")
+    anchor: StringProperty(name="Anchor", description="Vertex group that stays where it is")
+    rest: EnumProperty(name="Rest", description="What is no handle", items=RESTS, default="follows")
+    pull: FloatProperty(
+        name="Pull",
+        description="How hard handles pull, times the weight in their group; 0 holds their vertices exactly",
+        default=0.0,
+        min=0.0,
+        soft_max=10.0,
+    )
+    weight_group: StringProperty(
+        name="Weights",
+        description="Vertex group that says how far each vertex or point gives way; 0, or not in the group, pins it",
+    )
+    weight_invert: BoolProperty(name="Invert", description="Pin what is in the group instead")
 
 
 class StivCheckResult(bpy.types.PropertyGroup):
@@ -52,7 +91,7 @@ class StivCheckResult(bpy.types.PropertyGroup):
     summary: StringProperty(name="Result of the last check", options={"SKIP_SAVE"})
 
 
-CLASSES = (StivSceneSettings, StivObjectSettings, StivCheckResult)
+CLASSES = (StivSceneSettings, StivHandleGroup, StivObjectSettings, StivCheckResult)
 
 
 def register() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from .object_choices import object_choices
+
 DRAG_BUDGET = 0.1  # seconds that one solve may hold the interface
 
 
@@ -17,6 +19,7 @@ def edit_settings(scene: Any, time_budget: float = 0.0) -> Any:
         separation=chosen.separation,
         responders=chosen.responders,
         object_response=chosen.object_response,
-        roles={thing.name: thing.stiv.role for thing in scene.objects if thing.stiv.role != "auto"},
+        interference=chosen.interference,
         time_budget=time_budget,
+        **object_choices(scene),
     )

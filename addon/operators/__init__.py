@@ -2,9 +2,10 @@
 """The operators, one a file."""
 
 from .check import STIV_OT_check
+from .handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .move import STIV_OT_move
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
 
 TRANSFORMS = (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
-CLASSES = (*TRANSFORMS, STIV_OT_check)
+CLASSES = (*TRANSFORMS, STIV_OT_check, STIV_OT_handle_add, STIV_OT_handle_remove)

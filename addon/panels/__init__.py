@@ -2,7 +2,8 @@
 """The tab "STIV" in the sidebar of the 3D view: one panel a file, the others within the first."""
 
 from .check import STIV_PT_check
+from .deformation import STIV_PT_deformation
 from .edit import STIV_PT_edit
 from .roles import STIV_PT_roles
 
-CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_check)
+CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_deformation, STIV_PT_check)

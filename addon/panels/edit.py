@@ -26,5 +26,5 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
             column.operator(operator.bl_idname, text=operator.bl_label.partition(" ")[0])
         self.layout.use_property_split = True
         settings = self.layout.column()
-        for name in ("separation", "responders", "object_response"):
+        for name in ("interference", "separation", "responders", "object_response"):
             settings.prop(context.scene.stiv, name)

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the properties of a scene's objects to plain settings by object name; what is left as it comes is left out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def object_choices(scene: Any) -> dict[str, Any]:
+    """`roles`, `deformations`, `handles` and `weights` of `stiv.blender.EditSettings`."""
+    from stiv.blender import Handles, WeightGroup  # the add-on registers without the native module
+
+    chosen = {thing.name: thing.stiv for thing in scene.objects}
+    return {
+        "roles": {name: each.role for name, each in chosen.items() if each.role != "auto"},
+        "deformations": {name: each.deformation for name, each in chosen.items() if each.deformation != "auto"},
+        "handles": {
+            name: Handles(groups_of(each), each.anchor, each.rest, each.pull)
+            for name, each in chosen.items()
+            if groups_of(each) or each.anchor or each.rest != "follows" or each.pull != 0
+        },
+        "weights": {
+            name: WeightGroup(each.weight_group, each.weight_invert)
+            for name, each in chosen.items()
+            if each.weight_group
+        },
+    }
+
+
+def groups_of(chosen: Any) -> tuple[str, ...]:
+    """Names of the vertex groups that are handles; rows that are still empty are none."""
+    return tuple(row.name for row in chosen.handles if row.name)
