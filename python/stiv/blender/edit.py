@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +17,7 @@ from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.motion import Influence, Motion
+from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.results import summed
@@ -77,14 +78,31 @@ class BlenderEdit:
         Raises InputError naming object, element and ways out, StartIntersectsError for a start that intersects.
         """
         check_kind(kind)
-        movers = find_movers(context, settings)
+        return cls.begin_with(context, settings, kind, find_movers(context, settings))
+
+    @classmethod
+    def begin_with(
+        cls,
+        context: bpy.types.Context,
+        settings: EditSettings,
+        kind: str,
+        movers: Sequence[Mover],
+        adapt: Callable[[Part], Part] = lambda part: part,
+    ) -> BlenderEdit:
+        """The same with movers that were found otherwise; `adapt` may change who responds in a part."""
         scene = read_scene(context, lambda name: settings.role(name) != "ignored")
-        parts, groups = make_parts(context, movers, scene.meshes, settings, kind)
+        found, groups = make_parts(context, movers, scene.meshes, settings, kind)
+        parts = [adapt(part) for part in found]
         if not any(part.rule.moves for part in parts):
             raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
         mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
         return cls(assembly, parts, settings, summarise(assembly, parts, scene.hidden))
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """What moves or gives way, in the order of the controls."""
+        return self._parts
 
     @property
     def controls(self) -> Floats:
@@ -97,6 +115,10 @@ class BlenderEdit:
         if self._unguarded is not None:
             return self._solving.deformation.surface(self._unguarded)
         return self._solving.session.surface
+
+    def surface_of(self, controls: Floats) -> Floats:
+        """The surface, (N, 3), of controls, (m, 3), accepted or not."""
+        return self._solving.deformation.surface(controls)
 
     @property
     def assembly(self) -> Assembly:
@@ -150,6 +172,11 @@ class BlenderEdit:
             return result_at(self._solving.deformation, self._unguarded)
         return self._solving.solve(self._goal, **execution)
 
+    def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
+        """Solve for a goal of the controls of all parts, (m, 3)."""
+        self._goal = goal
+        return self._solving.solve(goal, **execution)
+
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for the same goal given at once: approached in increments of a drag's size, then settled.
 
@@ -195,6 +222,10 @@ class BlenderEdit:
         self._solving.trail = Trail(self.controls, self._goal)
         return WriteReport(True, result=result)
 
+    def is_shown(self) -> bool:
+        """Does what Blender shows now, whoever wrote it, pass as the accepted state does? Writes nothing."""
+        return self._verifier_now().verify(bpy.context, self.surface).passed
+
     def restore(self) -> None:
         """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError.
 
@@ -213,9 +244,12 @@ class BlenderEdit:
 
     def _show(self, controls: Floats) -> Verification:
         self._write(controls)
+        return self._verifier_now().verify(bpy.context, self._solving.deformation.surface(controls))
+
+    def _verifier_now(self) -> Verifier:
         if self._verifier.assembly is not self.assembly:  # more cuts were taken in
             self._verifier = Verifier(self.assembly, self._threads)
-        return self._verifier.verify(bpy.context, self._solving.deformation.surface(controls))
+        return self._verifier
 
     def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         places = self._solving.trail.places()

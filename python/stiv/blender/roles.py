@@ -23,8 +23,8 @@ def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Move
     _check_names(context, settings)
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
-    movers = [mover for ob in objects if (mover := _mover(ob, ob in selected, settings)) is not None]
-    movers = _once(movers)
+    movers = [mover for ob in objects if (mover := mover_of(ob, ob in selected, settings)) is not None]
+    movers = once(movers)
     if settings.responders != "selected" and context.mode == "OBJECT":
         movers += automatic_responders(objects, movers, settings)
     if not any(mover.selected for mover in movers):
@@ -50,13 +50,14 @@ def _selected(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
     return [ob for ob in objects if ob.select_get()]
 
 
-def _mover(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Mover | None:
+def mover_of(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Mover | None:
+    """How an object takes part with controls, by its role and settings; None if without. Raises InputError."""
     role = settings.role(ob.name)
     if role in ("obstacle", "ignored") or (role == "auto" and not selected and not _is_asked(ob, settings)):
         return None
     way = _way(ob, role, settings)
     if way == "rigid":
-        return Mover(ObjectReference.of(ob), "rigid", selected) if _has_surface(ob) else None
+        return Mover(ObjectReference.of(ob), "rigid", selected) if has_surface(ob) else None
     if way in SOFT:
         return Mover(_handled(ob), "soft", selected)
     if way == "lattice":
@@ -103,7 +104,7 @@ def _lattice_of(ob: bpy.types.Object) -> ObjectReference:
     )
 
 
-def _once(movers: list[Mover]) -> list[Mover]:
+def once(movers: list[Mover]) -> list[Mover]:
     """A lattice that comes with several meshes, or is a mover itself, once; selected if any of them is."""
     merged: dict[ObjectReference, Mover] = {}
     for mover in movers:
@@ -112,7 +113,7 @@ def _once(movers: list[Mover]) -> list[Mover]:
     return list(merged.values())
 
 
-def _has_surface(ob: bpy.types.Object) -> bool:
+def has_surface(ob: bpy.types.Object) -> bool:
     """Can the object or what hangs on it have a surface? Lattices are kept, to be refused or moved with their mesh."""
     family = [ob, *ob.children_recursive]
     return any(each.type in SURFACE_TYPES or each.type == "LATTICE" or each.instance_type != "NONE" for each in family)
