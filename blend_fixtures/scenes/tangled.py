@@ -15,6 +15,7 @@ from .detection_steps import rounded_box
 from .primitives import grid, icosphere, triangulated
 from .shape import Shape, joined, rotation_matrix
 from .sweeps import tube
+from .voxels import voxel_surface
 
 Array = NDArray[np.float64]
 
@@ -46,33 +47,13 @@ def hairpin(radius: float, rings: int = 70, sides: int = 12) -> Tangle:
     return _tangle(f"hairpin {radius:g}", tube=tube(path, np.full(rings, radius), sides))
 
 
-def _voxel_surface(cells: set[tuple[int, int, int]]) -> Shape:
-    """The squares between cells and empty space, seen from outside counter-clockwise."""
-    index: dict[tuple[int, ...], int] = {}
-    faces = []
-    for cell, axis, side in itertools.product(sorted(cells), range(3), (0, 1)):
-        beside = list(cell)
-        beside[axis] += 2 * side - 1
-        if tuple(beside) in cells:
-            continue
-        corners = []
-        for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
-            place = list(cell)
-            place[axis] += side
-            place[(axis + 1) % 3] += a
-            place[(axis + 2) % 3] += b
-            corners.append(index.setdefault(tuple(place), len(index)))
-        faces.append(tuple(corners if side else corners[::-1]))
-    return Shape(np.array(list(index), float), tuple(faces))
-
-
 def figure(levels: int = 3) -> Shape:
     """A figure with head, arms stretched out along x and legs: a Catmull-Clark surface, about 6,000 vertices."""
     torso = set(itertools.product(range(-1, 2), (0, 1), range(4)))
     legs = set(itertools.product((-1, 1), (0,), range(-4, 0)))
     arms = set(itertools.product((*range(-6, -1), *range(2, 7)), (0,), (3,)))
     head = {(0, 0, 4), (0, 0, 5)}
-    cage = _voxel_surface(torso | legs | arms | head).moved((-0.5, -0.5, 0))
+    cage = voxel_surface(torso | legs | arms | head).moved((-0.5, -0.5, 0))
     deformation, triangles = stiv.catmull_clark(stiv.Cage.of_faces(cage.faces), levels)
     return Shape(deformation.surface(cage.vertices), tuple(map(tuple, triangles.tolist())))
 

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figure 11: a knotted tube under Laplacian editing; its bottom is fixed, its top arch is dragged."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import stiv
+
+from ..primitives import triangulated
+from ..shape import Shape
+from ..sweeps import trefoil
+from .session import Session, Stage, moved, repeated, single, surface_of
+
+RINGS, SIDES = 264, 22
+LIFT, ASIDE, MOVES = 1.6, 0.5, 80
+
+
+def shape() -> Shape:
+    """5,808 vertices and 11,616 triangles, as in the paper."""
+    return triangulated(trefoil(RINGS, SIDES))
+
+
+def stage() -> Stage:
+    """The top arch lifted, then drawn aside."""
+    tube = shape()
+    height = tube.vertices[:, 1]
+    bottom, arch = np.flatnonzero(height < np.quantile(height, 0.12)), np.flatnonzero(height > np.quantile(height, 0.9))
+    surface, start = surface_of({"Knot": tube})
+    deformation = stiv.laplacian(start, tube.triangles(), arch, fixed=bottom)
+    half = MOVES // 2
+    edits = repeated(moved((0, LIFT / half, 0)), half) + repeated(moved((ASIDE / half, 0, ASIDE / half)), half)
+    return Stage("knot", surface, deformation, start[arch], edits)
+
+
+def session() -> Session:
+    """The arch dragged away from the bottom, and aside."""
+    return Session("knot", 11, "A knot under Laplacian editing, its top arch dragged", single(stage))
