@@ -7,8 +7,8 @@ from typing import Any
 
 
 def object_choices(scene: Any) -> dict[str, Any]:
-    """`roles`, `deformations`, `handles` and `weights` of `stiv.blender.EditSettings`."""
-    from stiv.blender import Handles, WeightGroup  # the add-on registers without the native module
+    """`roles`, `deformations`, `handles`, `weights` and `loops` of `stiv.blender.EditSettings`."""
+    from stiv.blender import Handles, LoopSurface, WeightGroup  # the add-on registers without the native module
 
     chosen = {thing.name: thing.stiv for thing in scene.objects}
     return {
@@ -24,9 +24,23 @@ def object_choices(scene: Any) -> dict[str, Any]:
             for name, each in chosen.items()
             if each.weight_group
         },
+        "loops": {
+            thing.name: LoopSurface(refined.name, thing.stiv.loop.levels, thing.stiv.loop.boundary)
+            for thing in scene.objects
+            if (refined := refined_object(thing)) is not None and refined.name in scene.objects
+        },
     }
 
 
 def groups_of(chosen: Any) -> tuple[str, ...]:
     """Names of the vertex groups that are handles; rows that are still empty are none."""
     return tuple(row.name for row in chosen.handles if row.name)
+
+
+def refined_object(thing: Any) -> Any:
+    """The object that shows a cage's Loop subdivision; None where it shows itself.
+
+    A copy of a cage still names the object of the first one, but is not its parent.
+    """
+    refined = thing.stiv.loop.object
+    return refined if refined is not None and refined.parent == thing else None

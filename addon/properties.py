@@ -2,7 +2,17 @@
 """Settings kept in the .blend: of the scene and of each object."""
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import live_loops
 
 ROLES = (
     ("auto", "Automatic", "Controls where the object has some that are understood, otherwise rigid or an obstacle"),
@@ -22,6 +32,10 @@ DEFORMATIONS = (
 RESTS = (
     ("follows", "Follows", "What is neither a handle nor anchored follows the handles"),
     ("stays", "Stays", "Everything but the handles stays where it is"),
+)
+BOUNDARIES = (
+    ("all", "All", "Corners are rounded"),
+    ("preserve_corners", "Keep Corners", "Corners stay where they are"),
 )
 RESPONDERS = (
     ("selected", "Selected", "What is selected gives way, everything else stays where it is"),
@@ -61,6 +75,20 @@ class StivHandleGroup(bpy.types.PropertyGroup):
     """A handle: `name` is that of a vertex group, empty while none is chosen."""
 
 
+class StivLoop(bpy.types.PropertyGroup):
+    """On a cage of triangles: the object that shows its Loop subdivision, none while there is none."""
+
+    object: PointerProperty(name="Refined object", type=bpy.types.Object, options={"HIDDEN"})
+    levels: IntProperty(
+        name="Levels", description="Each cuts a triangle into four", default=2, min=1, max=3,
+        update=lambda loop, context: live_loops.refresh_cage(loop.id_data),
+    )  # fmt: skip
+    boundary: EnumProperty(
+        name="Boundary", description="Corners of the cage's boundary", items=BOUNDARIES, default="all",
+        update=lambda loop, context: live_loops.refresh_cage(loop.id_data),
+    )  # fmt: skip
+
+
 class StivObjectSettings(bpy.types.PropertyGroup):
     """How an object takes part."""
 
@@ -83,6 +111,7 @@ class StivObjectSettings(bpy.types.PropertyGroup):
         description="Vertex group that says how far each vertex or point gives way; 0, or not in the group, pins it",
     )
     weight_invert: BoolProperty(name="Invert", description="Pin what is in the group instead")
+    loop: PointerProperty(type=StivLoop)
 
 
 class StivCheckResult(bpy.types.PropertyGroup):
@@ -91,7 +120,7 @@ class StivCheckResult(bpy.types.PropertyGroup):
     summary: StringProperty(name="Result of the last check", options={"SKIP_SAVE"})
 
 
-CLASSES = (StivSceneSettings, StivHandleGroup, StivObjectSettings, StivCheckResult)
+CLASSES = (StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)
 
 
 def register() -> None:

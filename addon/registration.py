@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import keymap, menus, operators, panels, properties
+from . import keymap, live_loops, menus, operators, panels, properties
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
@@ -15,10 +15,12 @@ def register() -> None:
     properties.register()
     menus.register()
     keymap.register()
+    live_loops.register()
 
 
 def unregister() -> None:
     """Take everything away again."""
+    live_loops.unregister()
     keymap.unregister()
     menus.unregister()
     properties.unregister()

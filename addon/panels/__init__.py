@@ -4,6 +4,7 @@
 from .check import STIV_PT_check
 from .deformation import STIV_PT_deformation
 from .edit import STIV_PT_edit
+from .loop import STIV_PT_loop
 from .roles import STIV_PT_roles
 
-CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_deformation, STIV_PT_check)
+CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_deformation, STIV_PT_loop, STIV_PT_check)

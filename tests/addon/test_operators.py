@@ -66,7 +66,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """A cube, selected and active, and the stand-in."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
-    plain = dict.fromkeys(("EditSettings", "Handles", "WeightGroup"), SimpleNamespace)
+    plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)

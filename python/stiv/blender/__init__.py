@@ -6,9 +6,11 @@ from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.following import Followed, follow
+from stiv.blender.loop_objects import add_refined, remove_refined
+from stiv.blender.loop_surfaces import refresh
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.scene_state import ObjectState, SceneState, read_state
-from stiv.blender.settings import EditSettings, Handles, WeightGroup
+from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
 from stiv.blender.verification import FacePair
 
 __all__ = [
@@ -20,6 +22,7 @@ __all__ = [
     "Followed",
     "Handles",
     "Influence",
+    "LoopSurface",
     "Motion",
     "ObjectState",
     "SceneChangedError",
@@ -27,9 +30,12 @@ __all__ = [
     "SceneState",
     "WeightGroup",
     "WriteReport",
+    "add_refined",
     "check_scene",
     "compare",
     "follow",
     "read_state",
     "read_surface",
+    "refresh",
+    "remove_refined",
 ]

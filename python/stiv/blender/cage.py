@@ -12,6 +12,7 @@ from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collecti
 from stiv.blender.control_weights import control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.lattice_points import is_undeformed
+from stiv.blender.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.mesh_reading import read_edges
 from stiv.blender.modifier_stack import Bending, Subdivision, read_stack, refuse
 from stiv.blender.movability import check_data
@@ -27,7 +28,8 @@ def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, s
     """The cage of a mesh object as a part. Raises InputError where it cannot be changed or followed."""
     ob = mover.reference.find()
     frame, local = open_cage(ob)
-    deformation = subdivision_of(ob, scene) or stiv.identity(len(local))
+    writer = cage_writer(mover.reference, ob, frame, local, settings)
+    deformation = subdivision_of(ob, scene, writer) or stiv.identity(len(local))
     given = control_weights(ob, settings)
     selected = selected_vertices(ob, mover.selected) & (given > 0)
     others = settings.weight(False) if mover.selected else 1.0
@@ -37,7 +39,7 @@ def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, s
         (ob.name,), "cage", surfaces, deformation, controls,
         point_weights(selected, settings.weight(True), others, given), given, frame,
         PointGoal(selected, controls, read_edges(ob.data), origin, given > 0),
-        CageWriter(mover.reference, ob.mode, frame, local),
+        writer,
     )  # fmt: skip
 
 
@@ -56,8 +58,13 @@ def read_cage(ob: bpy.types.Object) -> Singles:
     return read_collection(points, "co", 3, np.float32)
 
 
-def subdivision_of(ob: bpy.types.Object, scene: bpy.types.Scene) -> stiv.Deformation | None:
-    """What the modifiers make of the cage: a subdivision, or None where they leave it as it is. Raises InputError."""
+def subdivision_of(ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter") -> stiv.Deformation | None:
+    """What becomes of the cage: Loop's subdivision beside it, that of its modifiers, or None where it stays as it is.
+
+    Raises InputError for modifiers that cannot be followed.
+    """
+    if writer.refined is not None:
+        return writer.refined.refinement.deformation
     result = None
     for stage in read_stack(ob, scene):
         if isinstance(stage, Bending) and not is_undeformed(stage.lattice.find().data):
@@ -86,14 +93,27 @@ class CageWriter:
     mode: str
     frame: Floats
     original: Singles
+    refined: RefinedWriter | None = None
 
     def write(self, controls: Floats) -> None:
-        """Write world positions, (m, 3)."""
-        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls, self.original))
+        """Write world positions, (m, 3), and what shows them."""
+        local = stored(self.frame, controls, self.original)
+        _write_local(self.reference.find_in_mode(self.mode), local)
+        if self.refined is not None:
+            self.refined.write(transform_points(self.frame, local))
 
     def restore(self) -> None:
         """Write the original positions, in whatever mode the object is by now."""
         _write_local(self.reference.find(), self.original)
+        if self.refined is not None:
+            self.refined.restore()
+
+
+def cage_writer(
+    reference: ObjectReference, ob: bpy.types.Object, frame: Floats, local: Singles, settings: EditSettings
+) -> CageWriter:
+    """The writer of a cage at these local positions, (m, 3), in the mode that it is in. Raises InputError."""
+    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings))
 
 
 def _write_local(ob: bpy.types.Object, local: Singles) -> None:

@@ -44,7 +44,7 @@ def check_scene(
     settings: objects in the role "ignored" and ignored pairs are left out. objects: names to be limited to.
     """
     settings = settings or EditSettings()
-    scene = read_scene(context, lambda name: settings.role(name) != "ignored" and (objects is None or name in objects))
+    scene = read_scene(context, lambda name: settings.takes_part(name) and (objects is None or name in objects))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
     return SceneCheck(pairs, len(assembly.surface.triangles), scene.hidden)

@@ -90,7 +90,7 @@ class BlenderEdit:
         adapt: Callable[[Part], Part] = lambda part: part,
     ) -> BlenderEdit:
         """The same with movers that were found otherwise; `adapt` may change who responds in a part."""
-        scene = read_scene(context, lambda name: settings.role(name) != "ignored")
+        scene = read_scene(context, settings.takes_part)
         found, groups = make_parts(context, movers, scene.meshes, settings, kind)
         parts = [adapt(part) for part in found]
         if not any(part.rule.moves for part in parts):

@@ -51,7 +51,7 @@ def follow(context: bpy.types.Context, settings: EditSettings, accepted: SceneSt
     InputError, StartIntersectsError and SceneChangedError; the tool's result then stands.
     """
     followed = [change for change in changes.changes if _takes_part(change, settings)]
-    names = tuple(change.reference.name for change in followed)
+    names = tuple(name for change in followed if settings.cage_of(name := change.reference.name) == name)
     if not followed:
         return Followed(False, names)
     wanted = read_state(context)
@@ -78,7 +78,8 @@ class _Outcome:
 
 def _takes_part(change: Change, settings: EditSettings) -> bool:
     """Can the change bring surfaces together? Cameras and lights are no concern."""
-    return settings.role(change.reference.name) != "ignored" and has_surface(change.reference.find())
+    name = change.reference.name
+    return settings.takes_part(settings.shown_by(name)) and has_surface(change.reference.find())
 
 
 def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Change]) -> None:
@@ -179,7 +180,7 @@ def _movers(context: bpy.types.Context, settings: EditSettings, changes: dict[st
     """What changed, by what was changed of it, and what has a role by which it gives way."""
     movers = []
     for ob in context.view_layer.objects:
-        if not is_visible(context, ob):
+        if not is_visible(context, ob) or settings.cage_of(ob.name) != ob.name:
             continue
         change = changes.get(ob.name)
         if change is None:
@@ -198,7 +199,7 @@ def _responding(part: Part, changes: dict[str, Change], settings: EditSettings) 
         return part
     return replace(
         part,
-        weights=np.where(change.points, settings.weight(True), settings.weight(False)),
+        weights=np.where(change.points, settings.weight(True), settings.weight(False)) * part.given,
         rule=PointGoal(change.points, part.controls),
     )
 

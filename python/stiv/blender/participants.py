@@ -38,10 +38,10 @@ def make_parts(
     parts = [_rigid(group, meshes, settings, kind) for group in groups]
     for mover in movers:
         if mover.role == "cage":
-            surfaces = _shown_by({mover.reference.name}, meshes)
+            surfaces = _shown_as(mover.reference.name, meshes, settings)
             parts.append(cage_part(mover, surfaces, context.scene, settings))
         elif mover.role == "soft":
-            surfaces = _shown_by({mover.reference.name}, meshes)
+            surfaces = _shown_as(mover.reference.name, meshes, settings)
             parts += soft_parts(mover, surfaces, context.scene, settings)
         elif mover.role == "lattice":
             parts.append(_lattice(context, mover, bent[mover.reference], meshes, settings))
@@ -72,6 +72,15 @@ def _lattice(
 
 def _shown_by(names: frozenset[str] | set[str], meshes: Sequence[VisibleMesh]) -> tuple[int, ...]:
     return tuple(index for index, mesh in enumerate(meshes) if mesh.owner.name in names)
+
+
+def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) -> tuple[int, ...]:
+    """The visible meshes that show a cage."""
+    shown = settings.shown_by(name)
+    indices = _shown_by({shown}, meshes)
+    if not indices and shown != name:
+        raise InputError(f'object "{shown}": shows the cage "{name}" and is hidden; show it')
+    return indices
 
 
 def _bent_by(lattice: ObjectReference, meshes: Sequence[VisibleMesh]) -> tuple[int, ...]:

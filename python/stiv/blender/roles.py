@@ -21,7 +21,9 @@ def find_movers(context: bpy.types.Context, settings: EditSettings) -> list[Move
     Raises InputError for a mode that is not supported, unknown names, and when nothing is selected that may move.
     """
     _check_names(context, settings)
-    objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
+    objects = [
+        ob for ob in context.view_layer.objects if is_visible(context, ob) and settings.cage_of(ob.name) == ob.name
+    ]
     selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
     movers = [mover for ob in objects if (mover := mover_of(ob, ob in selected, settings)) is not None]
     movers = once(movers)

@@ -53,6 +53,27 @@ class WeightGroup:
 
 
 @dataclass(frozen=True)
+class LoopSurface:
+    """A cage of triangles, subdivided by Loop's scheme, and the object that shows it.
+
+    Attributes:
+        object: its name; it is a child of the cage and takes part in the cage's place.
+        levels: 1 to 3.
+        boundary: "all": corners of the boundary are rounded; "preserve_corners": they stay.
+    """
+
+    object: str
+    levels: int = 2
+    boundary: str = "all"
+
+    def __post_init__(self) -> None:
+        """Refuse unknown choices."""
+        _require("boundary", self.boundary, ("all", "preserve_corners"))
+        if self.levels not in (1, 2, 3):
+            raise InputError(f"levels: {self.levels!r} is none of 1, 2, 3")
+
+
+@dataclass(frozen=True)
 class EditSettings:
     """Choices for one edit.
 
@@ -71,6 +92,7 @@ class EditSettings:
             the lattice that deforms it), or "rigid". In Edit Mode only "laplacian" and "arap" count.
         handles: by object name, for "laplacian" and "arap".
         weights: by object name, for cages, handles and lattices.
+        loops: by name of the cage; what shows a cage takes part by the cage's role, and the cage itself does not.
         roles: by object name, "auto" | "controls" | "rigid" | "obstacle" | "ignored". An unselected object of role
             "controls" or "rigid" gives way, whatever `responders` says; of role "auto" where `responders` says so; an
             "obstacle" never does.
@@ -89,6 +111,7 @@ class EditSettings:
     deformations: Mapping[str, str] = field(default_factory=dict)
     handles: Mapping[str, Handles] = field(default_factory=dict)
     weights: Mapping[str, WeightGroup] = field(default_factory=dict)
+    loops: Mapping[str, LoopSurface] = field(default_factory=dict)
     roles: Mapping[str, str] = field(default_factory=dict)
     ignored_pairs: tuple[tuple[str, str], ...] = ()
     smoothness: float = 0.1
@@ -113,9 +136,22 @@ class EditSettings:
         """By what the object of this name is moved."""
         return self.deformations.get(name, "auto")
 
+    def shown_by(self, name: str) -> str:
+        """Name of the object that shows the surface of the object of this name."""
+        return self.loops[name].object if name in self.loops else name
+
+    def cage_of(self, name: str) -> str:
+        """Name of the cage that the object of this name shows; its own where it shows itself."""
+        return next((cage for cage, loop in self.loops.items() if loop.object == name), name)
+
+    def takes_part(self, name: str) -> bool:
+        """Does the surface of the object of this name count?"""
+        return name not in self.loops and self.role(self.cage_of(name)) != "ignored"
+
     def named_objects(self) -> Iterator[str]:
         """Every name of an object that the choices mention."""
-        yield from (*self.roles, *self.deformations, *self.handles, *self.weights)
+        yield from (*self.roles, *self.deformations, *self.handles, *self.weights, *self.loops)
+        yield from (loop.object for loop in self.loops.values())
         yield from (name for pair in self.ignored_pairs for name in pair)
 
     def weight(self, selected: bool) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Indices, transform_points
-from stiv.blender.cage import CageWriter, open_cage, selected_vertices, subdivision_of
+from stiv.blender.cage import CageWriter, cage_writer, open_cage, selected_vertices, subdivision_of
 from stiv.blender.control_weights import control_weights
 from stiv.blender.mesh_reading import read_triangles
 from stiv.blender.movers import Mover
@@ -38,7 +38,8 @@ def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, 
     pull = chosen.pull * found.strength if chosen.pull > 0 else None
     mesh = make(rest, read_triangles(ob.data)[0], found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
-    subdivision = subdivision_of(ob, scene)
+    writer = cage_writer(mover.reference, ob, frame, local, settings)
+    subdivision = subdivision_of(ob, scene, writer)
     others = settings.weight(False) if mover.selected else 1.0
     given, controls = given[found.vertices], rest[found.vertices]
     weights = point_weights(found.moving, settings.weight(True), others, given)
@@ -46,7 +47,7 @@ def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, 
     return [Part(
         (ob.name,), "soft", surfaces, cage if subdivision is None else stiv.compose(subdivision, cage),
         controls, weights, given, frame, PointGoal(found.moving, controls, None, origin),
-        HandleWriter(cage, CageWriter(mover.reference, ob.mode, frame, local)),
+        HandleWriter(cage, writer),
     )]  # fmt: skip
 
 
