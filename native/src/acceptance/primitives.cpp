@@ -65,7 +65,7 @@ Primitives::Primitives(const Surface& surface, CornerList corners) : corners_(st
 
 void Primitives::update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved) {
   const std::vector<Bounds> boxes = primitive_bounds(corners_, vertices);
-  if (!tree_) tree_.emplace(boxes, bodies_);
+  if (!tree_) tree_.emplace(centres_of(boxes), bodies_);
   tree_->refit(boxes, moved_primitives(corners_, moved));
 }
 

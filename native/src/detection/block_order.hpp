@@ -3,12 +3,14 @@
 
 #include <vector>
 
-#include "stiv/detection/bounds.hpp"
+#include "stiv/types.hpp"
 
 namespace stiv {
 
-/// Numbers of the boxes in an order in which runs of `block` of them, runs of 2 `block`, 4 `block` and so on lie near
-/// each other. Each block holds boxes of one group (`groups` empty: all of one) and is filled up with -1.
-std::vector<Index> block_order(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, Index block);
+/// Numbers of things with the given centres (finite) in an order in which runs of `block` of them, runs of 2 `block`,
+/// 4 `block` and so on lie near each other. Each block holds things of one group (`groups` empty: all of one) and is
+/// filled up with -1.
+std::vector<Index> block_order(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups,
+                               Index block);
 
 }  // namespace stiv

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "detection/block_order.hpp"
 #include "detection/bvh_traversal.hpp"
@@ -69,12 +70,26 @@ class TaskList {
 
 }  // namespace
 
-Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
-    : size_(static_cast<Index>(boxes.size())), order_(block_order(boxes, groups, width)), places_(boxes.size()) {
+std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
+  std::vector<Eigen::Vector3f> centres(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float middle = boxes[k].low[axis] / 2 + boxes[k].high[axis] / 2;
+      centres[k][static_cast<Index>(axis)] = std::isfinite(middle) ? middle : 0;
+    }
+  return centres;
+}
+
+Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners)
+    : size_(static_cast<Index>(centres.size())), order_(block_order(centres, groups, width)), places_(centres.size()) {
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[at(order_[place])] = static_cast<Index>(place);
   reserve_levels(groups);
   set_corners(corners);
+}
+
+Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
+    : Bvh(centres_of(boxes), groups, corners) {
   refit(boxes);
 }
 

@@ -60,14 +60,16 @@ class PrimitiveTree {
 
   /// Sorted by where things are at the start: a first step may take them anywhere.
   void build(const Positions& start) {
-    std::vector<Bounds> boxes(at(count_));
+    std::vector<Eigen::Vector3f> centres(at(count_));
     std::vector<Index> bodies(at(count_));
     for (Index primitive = 0; primitive < count_; ++primitive) {
-      boxes[at(primitive)] = Bounds::empty();
-      for (const Index vertex : row(primitive)) boxes[at(primitive)].include(start.row(vertex) - start.row(0), 0);
+      Vector3 sum = Vector3::Zero();
+      for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
+      const Eigen::Vector3f centre = sum.cast<float>();
+      centres[at(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
       bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
     }
-    tree_.emplace(boxes, bodies, CornerRows{rows_, size});
+    tree_.emplace(centres, bodies, CornerRows{rows_, size});
   }
 
   const Surface& surface_;

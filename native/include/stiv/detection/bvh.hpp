@@ -65,6 +65,9 @@ class Bvh {
   /// Builds over the centres of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
+  /// Builds over finite points and is without boxes until the first refit.
+  explicit Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups = {},
+               const CornerRows& corners = {});
 
   Index size() const { return size_; }
 
@@ -134,6 +137,9 @@ class Bvh {
   Index corner_size_ = 0;
   std::vector<Index> touched_, parents_;  // work space of refit_some
 };
+
+/// Centres of boxes, zero where one is infinite.
+std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>
 void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
