@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small OBJ files: two triangles apart, crossing, and validation against the schemas."""
+"""Small OBJ files: two triangles apart, and crossing."""
 
-import importlib.resources
-import json
 from pathlib import Path
-from typing import Any
-
-import jsonschema
 
 APART = "o below\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no above\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n"
 CROSSING = "o flat\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no upright ü\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 2 2 0\nf 4 5 6\n"
@@ -16,16 +11,3 @@ CROSSING_TWICE = CROSSING + "v 0.1 0.2 -1\nv 0.1 0.2 1\nv 2 2.1 0\nf 7 8 9\n"
 def written(path: Path, text: str) -> str:
     path.write_text(text, encoding="utf-8")
     return str(path)
-
-
-def read_valid(path: Path, schema: str) -> Any:
-    """The JSON in a file, valid by the schema of this name."""
-    data = json.loads(path.read_text(encoding="utf-8"))
-    jsonschema.validate(data, schema_of(schema))
-    return data
-
-
-def schema_of(name: str) -> Any:
-    text = importlib.resources.files("stiv.schemas").joinpath(f"{name}.schema.json").read_text(encoding="utf-8")
-    jsonschema.Draft202012Validator.check_schema(json.loads(text))
-    return json.loads(text)

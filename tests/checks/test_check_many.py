@@ -7,7 +7,8 @@ import xml.etree.ElementTree as ElementTree
 import jsonschema
 import numpy as np
 import pytest
-from check_files import APART, CROSSING, CROSSING_TWICE, read_valid, schema_of, written
+from check_files import APART, CROSSING, CROSSING_TWICE, written
+from json_schemas import read_valid, schema_of
 from PIL import Image
 
 from stiv.command_line import program

@@ -15,6 +15,9 @@ from stiv.command_line.output_files import require_folder, write_json, written_a
 from stiv.command_line.progress import progress_bar
 from stiv.command_line.quiet import quiet_blender
 from stiv.edit_scripts import EditScript, read_edit_script
+from stiv.mesh_editing import replay_on_mesh
+from stiv.mesh_files import read_mesh
+from stiv.mesh_files.npz_writing import write_npz
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -23,11 +26,13 @@ SCHEMA, VERSION = "stiv-replay", 1
 
 _DESCRIPTION = """\
 Opens a .blend (scripts in it are not run), runs the edits of a script one after another through the operators of the
-add-on, and saves the result. The format of scripts is described in docs/edit_scripts.md."""
+add-on, and saves the result. Mesh files need no Blender and are written as .npz. The format of scripts is described in
+docs/edit_scripts.md."""
 _EXAMPLES = """\
 examples:
   stiv replay scene.blend edits.json -o edited.blend
   stiv replay scene.blend edits.json -o edited.blend --report report.json --render picture.png
+  stiv replay two_sheets.obj edits.json -o edited.npz
 
 exit codes: 0 done, 2 bad input (nothing is written), 1 wrong usage, 3 internal error, 5 cancelled"""
 
@@ -36,14 +41,16 @@ def add_to(subcommands: Subparsers) -> None:
     """Adds the subcommand to the parser."""
     parser = subcommands.add_parser(
         "replay",
-        help="run an edit script on a .blend",
+        help="run an edit script on a scene or a mesh",
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene to start from")
+    parser.add_argument("scene", type=Path, metavar="SCENE.blend|MESH", help="the scene to start from")
     parser.add_argument("edits", type=Path, metavar="EDITS.json", help="the edit script")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT.blend|OUT.npz", help="where the result goes"
+    )
     parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
     parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
     add_blender_option(parser)
@@ -56,6 +63,15 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     if not arguments.scene.is_file():
         raise InputError(f"{arguments.scene}: there is no such file")
     script = read_edit_script(arguments.edits)
+    is_blend = arguments.scene.suffix.lower() == ".blend"
+    edits = _replay_scene(arguments, script) if is_blend else _replay_mesh(arguments, script)
+    if arguments.report is not None:
+        write_json(arguments.report, replay_report(arguments.scene, edits))
+    print(summary(edits))
+    return ExitCode.DONE
+
+
+def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
     files = require_blender("stiv.blender.blend_files", arguments.scene)
     with quiet_blender():
         files.open_blend(arguments.scene)
@@ -65,10 +81,23 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
         if arguments.render is not None:
             with written_atomically(arguments.render) as temporary, quiet_blender(errors=True):
                 files.render_picture(temporary)
-    if arguments.report is not None:
-        write_json(arguments.report, replay_report(arguments.scene, edits))
-    print(summary(edits))
-    return ExitCode.DONE
+    return edits
+
+
+def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
+    if arguments.render is not None:
+        raise InputError("--render: a mesh file has no camera to render with")
+    if arguments.output.suffix.lower() != ".npz":
+        raise InputError(f"{arguments.output}: what was a mesh file is written as .npz")
+    mesh = read_mesh(arguments.scene)
+    with progress_bar("edits", len(script)) as advance:
+        try:
+            edited, edits = replay_on_mesh(script, mesh, lambda edit: advance(edit["status"]))
+        except InputError as error:
+            raise InputError(f"{arguments.scene}: {error}") from error
+    with written_atomically(arguments.output) as temporary:
+        write_npz(temporary, edited)
+    return edits
 
 
 def run_script(script: EditScript, scene: Path) -> list[dict[str, Any]]:

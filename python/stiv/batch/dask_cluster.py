@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Entries on a Dask cluster (`distributed`, of the extra `cluster`); its workers must see the same files.
+
+Each thread of a Dask worker keeps one worker process of ours, with one Blender, so that a scene that ends Blender does
+not end the Dask worker. Dask itself repeats what a lost machine was doing.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from stiv import InputError
+from stiv.batch.pool import Pool
+from stiv.batch.records import Record, as_json
+
+CONNECT_LIMIT = 30  # seconds
+
+_of_thread = threading.local()
+
+
+def require_distributed() -> None:
+    """Raises InputError if Dask is not installed."""
+    if importlib.util.find_spec("distributed") is None:
+        raise InputError("--scheduler needs Dask, which is not installed: `pip install stiv[cluster]`")
+
+
+def run_on_cluster(
+    address: str,
+    names: Sequence[str],
+    commands: Sequence[Sequence[str]],
+    on_done: Callable[[int, Record], None],
+    blender: str = "",
+    time_limit: float = 0.0,
+) -> None:
+    """Runs every command on the cluster whose scheduler is at `address`; as Pool.run otherwise."""
+    from distributed import Client, as_completed
+
+    try:
+        client = Client(address, timeout=CONNECT_LIMIT)
+    except (OSError, ValueError) as error:
+        raise InputError(f"--scheduler: {address} does not answer: {error}") from error
+    with client:
+        futures = {
+            client.submit(run_entry, name, list(command), blender, time_limit, pure=False): number
+            for number, (name, command) in enumerate(zip(names, commands, strict=True))
+        }
+        for future in as_completed(futures):
+            number = futures[future]
+            if future.status == "finished":
+                on_done(number, Record(**future.result()))
+            else:
+                on_done(number, Record(names[number], None, f"lost by the cluster: {future.exception()}"))
+
+
+def run_entry(name: str, command: list[str], blender: str, time_limit: float) -> dict[str, Any]:
+    """One entry, on a worker of the cluster: its record."""
+    found: list[Record] = []
+    pool = _pool(blender, time_limit)
+    pool.run([name], [command], lambda number, record: found.append(record), keep=True)
+    return as_json(found[0])
+
+
+def _pool(blender: str, time_limit: float) -> Pool:
+    """The pool of one process that this thread keeps."""
+    pools: dict[tuple[str, float], Pool] = _of_thread.__dict__.setdefault("pools", {})
+    return pools.setdefault((blender, time_limit), Pool(1, blender, time_limit))

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Entries on a pool of worker processes; a worker that dies costs its entry one retry, and nothing else."""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from stiv.batch.records import Record
+from stiv.batch.worker_process import WorkerProcess, worker_command
+
+ATTEMPTS = 2
+STILLBORN = 3  # workers in a row that end before they are ready: then there is no use in starting more
+START_LIMIT = 300.0  # seconds until a worker is ready
+
+Message = tuple[WorkerProcess, dict[str, Any] | None]
+
+
+class PoolError(RuntimeError):
+    """Workers cannot be started at all."""
+
+
+class Pool:
+    """Runs commands on `size` workers until all are done."""
+
+    def __init__(self, size: int, blender: str = "", time_limit: float = 0.0, log: Path | None = None) -> None:
+        """Workers are started when there is work, and replaced when they die. `log` gets their standard error."""
+        self._size = size
+        self._command = worker_command(blender)
+        self._limit = time_limit
+        self._log = log
+        self._messages: queue.Queue[Message] = queue.Queue()
+        self._workers: dict[WorkerProcess, float] = {}  # since when each is starting or busy
+        self._stillborn = 0
+
+    def run(
+        self,
+        names: Sequence[str],
+        commands: Sequence[Sequence[str]],
+        on_done: Callable[[int, Record], None],
+        keep: bool = False,
+    ) -> None:
+        """Runs every command; `on_done` is told of each by its number. Ends all workers, or keeps idle ones for later.
+
+        Raises PoolError.
+        """
+        waiting = deque((number, 1) for number in range(len(commands)))
+        attempts: dict[int, int] = {}
+        left = len(commands)
+        try:
+            while left:
+                while len(self._workers) < min(self._size, left):
+                    self._start()
+                for worker in self._workers:
+                    if worker.ready and worker.number is None and waiting:
+                        number, attempt = waiting.popleft()
+                        attempts[number] = attempt
+                        worker.send(number, commands[number])
+                        self._workers[worker] = time.monotonic()
+                worker, reply = self._next_message()
+                number_done = worker.number
+                record = self._heard(worker, reply, names, attempts)
+                if record is None or number_done is None:
+                    continue
+                if record.code is None and attempts[number_done] < ATTEMPTS:
+                    waiting.appendleft((number_done, attempts[number_done] + 1))
+                    continue
+                left -= 1
+                on_done(number_done, record)
+        except BaseException:
+            keep = False
+            raise
+        finally:
+            if not keep:
+                self.end()
+
+    def end(self) -> None:
+        """Ends all workers."""
+        for worker in self._workers:
+            worker.kill()
+        self._workers.clear()
+
+    def _start(self) -> None:
+        worker = WorkerProcess(self._command, lambda of, reply: self._messages.put((of, reply)), self._log)
+        self._workers[worker] = time.monotonic()
+
+    def _next_message(self) -> Message:
+        while True:
+            try:
+                message = self._messages.get(timeout=0.5)
+            except queue.Empty:
+                self._kill_late()
+                continue
+            if message[0] in self._workers:
+                return message
+
+    def _kill_late(self) -> None:
+        """Their ends are heard of as those of any other worker."""
+        for worker, since in self._workers.items():
+            limit = START_LIMIT if not worker.ready else self._limit if worker.number is not None else 0.0
+            if limit and time.monotonic() - since > limit:
+                worker.kill()
+
+    def _heard(
+        self, worker: WorkerProcess, reply: dict[str, Any] | None, names: Sequence[str], attempts: dict[int, int]
+    ) -> Record | None:
+        """What a message says about an entry."""
+        number = worker.number
+        if reply is None:
+            since = self._workers.pop(worker)
+            self._count_stillborn(worker)
+            if number is None:
+                return None
+            seconds = time.monotonic() - since
+            late = self._limit and seconds > self._limit
+            why = f"took longer than {self._limit:g} s" if late else "its worker process died"
+            return Record(names[number], None, why, round(seconds, 3), attempts[number])
+        if "ready" in reply:
+            worker.ready, self._stillborn = True, 0
+            return None
+        assert number is not None and reply.pop("number") == number
+        worker.number = None
+        return Record(names[number], attempts=attempts[number], **reply)
+
+    def _count_stillborn(self, worker: WorkerProcess) -> None:
+        self._stillborn += not worker.ready
+        if self._stillborn >= STILLBORN:
+            where = "" if self._log is None else f"; what they said is in {self._log}"
+            raise PoolError(f"{STILLBORN} worker processes in a row ended before they were ready{where}")

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a job: what is finished is skipped if asked for, the rest goes to workers, and every result is recorded."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from stiv import InputError
+from stiv.batch.job import Entry, Job
+from stiv.batch.records import (
+    Record,
+    as_json,
+    fingerprint,
+    finished_record,
+    program_version,
+    remove_record,
+    with_outputs,
+    write_record,
+)
+from stiv.command_line.exit_codes import ExitCode
+
+SCHEMA, VERSION = "stiv-batch-report", 1
+
+# What runs commands: names, commands, and what is called with the number and record of each one done.
+Runner = Callable[[Sequence[str], Sequence[Sequence[str]], Callable[[int, Record], None]], None]
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How a job is run."""
+
+    state: Path  #: folder of the records
+    resume: bool = False
+    blender: str = ""
+    lock: str = "lock"  #: name of the file that a run holds; parts of a job that run at once have one each
+
+
+def run_job(
+    job: Job, choices: Choices, runner: Runner, on_entry: Callable[[Record], None] = lambda record: None
+) -> list[Record]:
+    """What every entry came to, in the order of the job; `on_entry` is told of each when it is done."""
+    with _alone(choices.state, choices.lock):
+        _remove_leftovers(job)
+        records: dict[str, Record] = {}
+        waiting: list[tuple[Entry, str]] = []
+        version = program_version(choices.blender)
+
+        def note(record: Record) -> None:
+            records[record.name] = record
+            on_entry(record)
+
+        for entry in job.entries:
+            done = _settled(entry, version, choices)
+            if isinstance(done, Record):
+                note(done)
+            else:
+                remove_record(choices.state, entry.name)
+                waiting.append((entry, done))
+
+        def finish(number: int, record: Record) -> None:
+            entry, mark = waiting[number]
+            written = replace(with_outputs(record, entry), fingerprint=mark)
+            write_record(choices.state, written)
+            note(written)
+
+        _make_folders(entry for entry, _ in waiting)
+        runner([entry.name for entry, _ in waiting], [entry.arguments for entry, _ in waiting], finish)
+        return [records[entry.name] for entry in job.entries]
+
+
+def report_of(job: Job, records: Sequence[Record], seconds: float) -> dict[str, Any]:
+    """The final report, ready for JSON."""
+    return {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "description": job.description,
+        "seconds": round(seconds, 3),
+        "entries": [as_json(record) for record in records],
+    }
+
+
+def exit_code(records: Sequence[Record]) -> ExitCode:
+    """The worst that any entry came to."""
+    codes = {ExitCode.INTERNAL_ERROR if record.code is None else ExitCode(record.code) for record in records}
+    order = (ExitCode.CANCELLED, ExitCode.INTERNAL_ERROR, ExitCode.USAGE, ExitCode.BAD_INPUT, ExitCode.NOT_FREE)
+    return next((code for code in order if code in codes), ExitCode.DONE)
+
+
+def _settled(entry: Entry, version: str, choices: Choices) -> Record | str:
+    """The record of an entry that need not or cannot be run, else its fingerprint."""
+    try:
+        mark = fingerprint(entry, version)
+    except InputError as error:
+        return Record(entry.name, ExitCode.BAD_INPUT, str(error), attempts=0)
+    done = finished_record(choices.state, entry, mark) if choices.resume else None
+    return mark if done is None else replace(done, skipped=True)
+
+
+def _make_folders(entries: Iterator[Entry]) -> None:
+    for entry in entries:
+        for path in entry.outputs:
+            try:
+                path.parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise InputError(f"{path.parent}: cannot be made: {error.strerror or error}") from error
+
+
+def _remove_leftovers(job: Job) -> None:
+    """Deletes what runs that were killed left half written beside outputs, under the names such files have."""
+    for folder in {path.parent for entry in job.entries for path in entry.outputs}:
+        names = {(path.stem, path.suffix) for entry in job.entries for path in entry.outputs if path.parent == folder}
+        for found in folder.glob(".*") if folder.is_dir() else ():
+            match = re.fullmatch(r"\.(.*)-[0-9a-f]{8}(\.\w+)@?", found.name)
+            if match and (match[1], match[2]) in names:
+                found.unlink(missing_ok=True)
+
+
+@contextmanager
+def _alone(state: Path, name: str) -> Iterator[None]:
+    """Makes the folder, and holds it for this process alone; a process that is killed lets go of it."""
+    try:
+        state.mkdir(parents=True, exist_ok=True)
+        lock = (state / name).open("w")
+    except OSError as error:
+        raise InputError(f"{state}: cannot be written: {error.strerror or error}") from error
+    with lock:
+        try:
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except ImportError:  # not a POSIX system
+            pass
+        except OSError as error:
+            raise InputError(f"{state}: another process is running this job") from error
+        yield

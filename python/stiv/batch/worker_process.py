@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A worker process as its owner sees it: send it a command, hear its reply or its end."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from stiv.batch.worker import MARK
+from stiv.command_line.installed_blender import blender_command
+
+PACKAGES = Path(__file__).resolve().parents[2]
+
+Listener = Callable[["WorkerProcess", dict[str, Any] | None], None]
+
+
+def worker_command(blender: str = "") -> list[str]:
+    """How a worker is started: with this Python, or inside an installed Blender. Raises InputError."""
+    if blender:
+        return blender_command(blender, Path(__file__).with_name("inside_blender.py"), [])
+    return [sys.executable, "-m", "stiv.batch.worker"]
+
+
+class WorkerProcess:
+    """Attributes: `ready` once it has said so, and `number` of the entry that it is busy with, or None."""
+
+    def __init__(self, command: Sequence[str], listen: Listener, log: Path | None = None) -> None:
+        """Start it. `listen` is called from another thread with each reply, and with None at its end."""
+        paths = [str(PACKAGES), *filter(None, [os.environ.get("PYTHONPATH")])]
+        errors = subprocess.DEVNULL if log is None else log.open("ab")
+        self.ready = False
+        self.number: int | None = None
+        self._process = subprocess.Popen(
+            list(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, encoding="utf-8",
+            errors="replace", env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONIOENCODING": "utf-8"},
+        )  # fmt: skip
+        if not isinstance(errors, int):
+            errors.close()
+        threading.Thread(target=self._listen, args=(listen,), daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def send(self, number: int, arguments: Sequence[str]) -> None:
+        """Give it an entry; a worker that is dead already is heard of by its end."""
+        self.number = number
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps({"number": number, "arguments": list(arguments)}) + "\n")
+            self._process.stdin.flush()
+        except OSError:
+            pass
+
+    def kill(self) -> None:
+        """End it at once, and wait until it is gone."""
+        self._process.kill()
+        self._process.wait()
+
+    def _listen(self, listen: Listener) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            if line.startswith(MARK):
+                listen(self, json.loads(line.removeprefix(MARK)))
+        self._process.wait()
+        listen(self, None)

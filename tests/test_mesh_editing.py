@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edit scripts on mesh files."""
+
+import json
+
+import numpy as np
+import pytest
+
+import stiv
+from stiv.command_line import program
+from stiv.edit_scripts import parse_edit_script
+from stiv.mesh_editing import replay_on_mesh
+from stiv.mesh_files import Mesh, read_mesh
+
+SHEET = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
+FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+
+
+def two_sheets(gap: float = 1.0) -> Mesh:
+    vertices = np.vstack([SHEET, 0.5 * SHEET + (0, 0, gap)])
+    return Mesh(vertices, np.vstack([FACES, FACES + 4]), ("Below", "Above ü"), np.array([0, 0, 1, 1], np.int32))
+
+
+def edited(*steps, mesh=None, **settings):
+    data = {"schema": "stiv-edits", "version": 1, "settings": settings, "steps": list(steps)}
+    return replay_on_mesh(parse_edit_script(data), two_sheets() if mesh is None else mesh)
+
+
+def move(z, **more):
+    return {"operator": "move", "objects": ["Above ü"], "values": {"value": [0, 0, z]}, **more}
+
+
+def test_an_object_in_the_clear_goes_to_its_goal():
+    mesh, (report,) = edited(move(-0.5))
+    np.testing.assert_allclose(mesh.vertices[4:], two_sheets().vertices[4:] - (0, 0, 0.5), atol=1e-12)
+    np.testing.assert_array_equal(mesh.vertices[:4], SHEET)
+    assert report["status"] == "reached" and report["rounds"] == 0
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_an_object_does_not_go_through_another(mode):
+    mesh, (report,) = edited(move(-1.5, mode=mode))
+    assert report["rounds"] > 0
+    assert (mesh.vertices[4:, 2] > 0).all() and mesh.vertices[4:, 2].max() < 1
+    assert len(stiv.find_intersections(mesh.vertices, mesh.triangles)) == 0
+
+
+def test_points_are_counted_within_their_object():
+    mesh, _ = edited(move(-0.5, mode="EDIT", points=[2]))
+    assert mesh.vertices[:, 2].tolist() == [0, 0, 0, 0, 1, 1, 0.5, 1]
+
+
+def test_turning_and_scaling_act_about_the_middle():
+    turn = {"operator": "rotate", "objects": ["Above ü"], "values": {"angle": np.pi / 2, "axis": [0, 0, 2]}}
+    for mode in ("OBJECT", "EDIT"):
+        mesh, _ = edited(turn | {"mode": mode})
+        np.testing.assert_allclose(mesh.vertices[4:], np.roll(two_sheets().vertices[4:], -1, axis=0), atol=1e-9)
+        scale = {"operator": "scale", "objects": ["Above ü"], "values": {"value": [2, 1, 1]}, "mode": mode}
+        mesh, _ = edited(scale)
+        np.testing.assert_allclose(mesh.vertices[4:], two_sheets().vertices[4:] * (2, 1, 1), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("step", "message"),
+    [
+        (move(1, objects=["Nothing"]), 'edit 0 (move): there is no object "Nothing"; there are Below, Above ü'),
+        (move(1, mode="EDIT", points=[4]), "has 4 points; there is no point 4"),
+        (move(1, settings={"colour": 1}), 'setting "colour": of mesh files there are separation'),
+        (move(1, settings={"separation": "x"}), "is not a number"),
+        (
+            {"operator": "rotate", "objects": ["Below"], "values": {"angle": 1, "axis": [0, 0, 0]}},
+            "axis: has no direction",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_named(step, message):
+    with pytest.raises(stiv.InputError) as raised:
+        edited(step)
+    assert message in str(raised.value)
+
+
+def test_a_start_that_intersects_is_refused():
+    with pytest.raises(stiv.InputError, match=r"edit 0 \(move\)"):
+        edited(move(1), mesh=two_sheets(0.0))
+
+
+def test_a_vertex_of_two_objects_is_refused():
+    mesh = two_sheets()
+    triangles = mesh.triangles.copy()
+    triangles[3, 0] = 0
+    with pytest.raises(stiv.InputError, match="vertex 0: belongs to triangles of two objects"):
+        edited(move(1), mesh=Mesh(mesh.vertices, triangles, mesh.object_names, mesh.triangle_object))
+
+
+def test_the_command_writes_an_npz(tmp_path, capsys):
+    scene, edits = tmp_path / "a.obj", tmp_path / "e.json"
+    lines = [f"v {x} {y} {z}" for x, y, z in two_sheets().vertices.tolist()]
+    scene.write_text("\n".join([*lines, "o Below", "f 1 2 3 4", "o Above ü", "f 5 6 7 8"]), encoding="utf-8")
+    edits.write_text(json.dumps({"schema": "stiv-edits", "version": 1, "steps": [move(-1.5)]}))
+    out = tmp_path / "out.npz"
+    assert program.run(["replay", str(scene), str(edits), "-o", str(out)]) == 0, capsys.readouterr().err
+    mesh = read_mesh(out)
+    assert mesh.object_names == ("Below", "Above ü") and (mesh.vertices[4:, 2] > 0).all()
+    assert program.run(["replay", str(scene), str(edits), "-o", str(tmp_path / "out.obj")]) == 2
+    assert "is written as .npz" in capsys.readouterr().err
