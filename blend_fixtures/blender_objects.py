@@ -58,6 +58,10 @@ def _add_mesh(item: MeshObject) -> None:
     obj.data.materials.append(_material(item.material))
     obj.color = item.material.color
     _link(obj, item.placement, item.parent)
+    for group in item.groups:
+        made = obj.vertex_groups.new(name=group.name)
+        for vertex, weight in group.weights.items():
+            made.add([vertex], weight, "REPLACE")
     if item.lattice:
         obj.modifiers.new("Lattice", "LATTICE").object = bpy.data.objects[item.lattice]
     if item.subdivision:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from .cages import cage_with_creases_and_boundary, self_folding_sheet
 from .fixture import Fixture
+from .handles import arm_with_handles
 from .lattices import INTERPOLATIONS, lattice_of_type, lattice_then_subdivision
 from .plant_in_vase import plant_in_vase
 from .pressing import (
@@ -31,4 +32,5 @@ def all_fixtures() -> tuple[Fixture, ...]:
         cage_with_creases_and_boundary(),
         *(lattice_of_type(interpolation) for interpolation in INTERPOLATIONS),
         lattice_then_subdivision(),
+        arm_with_handles(),
     )

@@ -51,6 +51,14 @@ class Subdivision:
 
 
 @dataclass(frozen=True)
+class VertexGroup:
+    """A vertex group: vertices and their weights."""
+
+    name: str
+    weights: dict[int, float]
+
+
+@dataclass(frozen=True)
 class MeshObject:
     """A mesh, with a Lattice modifier (`lattice` names the object) before its Subdivision Surface modifier, if any."""
 
@@ -62,6 +70,7 @@ class MeshObject:
     lattice: str | None = None
     subdivision: Subdivision | None = None
     smooth: bool = True
+    groups: tuple[VertexGroup, ...] = ()
 
 
 @dataclass(frozen=True)

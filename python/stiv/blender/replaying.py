@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import bpy
@@ -14,6 +14,7 @@ from stiv import InputError
 from stiv.blender.selecting import select
 from stiv.edit_scripts import EditScript, EditStep
 
+OF_OBJECTS = ("roles", "objects")
 Report = dict[str, Any]
 
 
@@ -57,22 +58,36 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
     scene = bpy.context.scene
     scene.tool_settings.transform_pivot_point = "MEDIAN_POINT"
     for name, value in settings.items():
-        if name != "roles" and name not in scene.stiv.bl_rna.properties:
+        if name not in OF_OBJECTS and name not in scene.stiv.bl_rna.properties:
             raise InputError(f'setting "{name}": the add-on has none of this name')
         try:
-            if name == "roles":
-                _apply_roles(value)
+            if name in OF_OBJECTS:
+                _apply_to_objects(name, value)
             else:
                 setattr(scene.stiv, name, value)
         except (AttributeError, TypeError, ValueError) as error:
             raise InputError(f'setting "{name}": {error}') from error
 
 
-def _apply_roles(roles: Mapping[str, str]) -> None:
-    for name, role in roles.items():
+def _apply_to_objects(setting: str, values: Mapping[str, Any]) -> None:
+    """Gives objects, by name, their role, or any of the add-on's settings of an object by name."""
+    for name, value in values.items():
         if name not in bpy.context.scene.objects:
-            raise InputError(f'setting "roles": there is no object "{name}" in the scene')
-        bpy.context.scene.objects[name].stiv.role = role
+            raise InputError(f'setting "{setting}": there is no object "{name}" in the scene')
+        chosen = bpy.context.scene.objects[name].stiv
+        for field, given in {"role": value}.items() if setting == "roles" else value.items():
+            if field not in chosen.bl_rna.properties:
+                raise InputError(f'setting "{setting}", object "{name}": the add-on has no "{field}" of objects')
+            if field == "handles":
+                _apply_handles(chosen.handles, given)
+            else:
+                setattr(chosen, field, given)
+
+
+def _apply_handles(rows: Any, groups: Sequence[str]) -> None:
+    rows.clear()
+    for group in groups:
+        rows.add().name = group
 
 
 def _edit(step: EditStep, number: int) -> Report:
