@@ -34,21 +34,17 @@ float round_down(double value) {
 
 }  // namespace
 
-/// What one pass over a step tells.
+/// Where some vertices go.
 struct SweptVertices::Survey {
-  std::vector<Index> changed;  ///< vertices whose step is not the one of their box, ascending
   Vector3 low = Vector3::Constant(never), high = -low;
-  Vector3 sum = Vector3::Zero();     ///< of the displacements
-  Vector3 change = Vector3::Zero();  ///< of the ends, summed
+  Vector3 sum = Vector3::Zero();  ///< of the displacements
   double sum_of_squares = 0;
   bool finite = true;
 
   void include(const Survey& other) {
-    changed.insert(changed.end(), other.changed.begin(), other.changed.end());
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
     sum += other.sum;
-    change += other.change;
     sum_of_squares += other.sum_of_squares;
     finite = finite && other.finite;
   }
@@ -68,24 +64,35 @@ struct SweptVertices::Survey {
 // no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
 double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
 
-SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
+/// Vertices whose step is not the one of their box, ascending.
+std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
-  const bool first = !complete_;
-  std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
+  std::vector<std::vector<Index>> parts(at(Execution::chunk_count(count, chunk_size)));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
-    Survey& part = parts[at(chunk)];
+    const auto same = [&](Index first, Index number) {
+      return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
+    };
     for (Index some = begin; some < end; some += run) {
       const Index last = std::min(end, some + run);
-      if (!first && same_bits(step.start, start_, some, last - some) && same_bits(step.end, end_, some, last - some))
-        continue;
-      for (Index vertex = some; vertex < last; ++vertex) {
-        if (!first && same_bits(step.start, start_, vertex, 1) && same_bits(step.end, end_, vertex, 1)) continue;
-        part.changed.push_back(vertex);
-        part.include(row(step.start, vertex), row(step.end, vertex));
-        if (!first) part.change += Vector3(step.end.row(vertex)) - Vector3(end_.row(vertex));
-      }
+      if (same(some, last - some)) continue;
+      for (Index vertex = some; vertex < last; ++vertex)
+        if (!same(vertex, 1)) parts[at(chunk)].push_back(vertex);
     }
+  });
+  std::vector<Index> changed;
+  for (const std::vector<Index>& part : parts) changed.insert(changed.end(), part.begin(), part.end());
+  return changed;
+}
+
+/// @throws InputError if a number is not finite
+SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
+  const auto count = static_cast<Index>(changed_.size());
+  std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    Survey part;
+    for (Index k = begin; k < end; ++k) part.include(row(step.start, changed_[at(k)]), row(step.end, changed_[at(k)]));
+    parts[at(chunk)] = part;
   });
   Survey whole;
   for (const Survey& part : parts) whole.include(part);
@@ -185,39 +192,42 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
   });
 }
 
-/// Do the boxes hold the step? A motion common to all vertices makes no difference to any pair; in a frame that moves,
-/// there may be more or less of it.
-bool SweptVertices::holds(const Step& step, const Survey& survey, const Execution& execution) const {
+/// Do the boxes hold the step? Not one with a number that is not finite. A motion common to all vertices makes no
+/// difference to any pair; in a frame that moves, there may be more or less of it.
+bool SweptVertices::holds(const Step& step, const Execution& execution) const {
   if (step.proximity.separation != frame_.separation) return false;
   if (all_near(step, changed_, frame_.motion, execution)) return true;
   if (frame_.motion.isZero(0)) return false;
+  Vector3 change = Vector3::Zero();
+  for (const Index vertex : changed_) change += Vector3(step.end.row(vertex)) - Vector3(end_.row(vertex));
   std::vector<Index> all(boxes_.size());
   std::iota(all.begin(), all.end(), 0);
-  return all_near(step, all, frame_.motion + survey.change / static_cast<double>(all.size()), execution);
+  return all_near(step, all, frame_.motion + change / static_cast<double>(all.size()), execution);
 }
 
 /// What neither differs from its box now nor did so in the last step is there already. Holds if cancelled half way.
-void SweptVertices::take_steps(const Step& step, const std::vector<Index>& changed, const Execution& execution) {
+void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   if (!complete_) {
     steps_.update(step.start, step.end, execution);
     strayed_.clear();
     return;
   }
   steps_.update(step.start, step.end, strayed_, execution);
-  strayed_.insert(strayed_.end(), changed.begin(), changed.end());
-  steps_.update(step.start, step.end, changed, execution);
-  strayed_ = changed;
+  strayed_.insert(strayed_.end(), changed_.begin(), changed_.end());
+  steps_.update(step.start, step.end, changed_, execution);
+  strayed_ = changed_;
 }
 
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
   const Index count = surface_.vertex_count();
-  Survey found = survey(step, execution);
-  const bool first = !complete_;
-  take_steps(step, found.changed, execution);
-  changed_ = std::move(found.changed);
-  if (!first && may_stay && holds(step, found, execution)) return Change::none;
-  const Frame frame = frame_for(step, found);
-  const bool all = first || frame != frame_;
+  changed_ = changed_in(step, execution);
+  if (complete_ && may_stay && holds(step, execution)) {
+    take_steps(step, execution);
+    return Change::none;
+  }
+  const Frame frame = frame_for(step, survey(step, execution));
+  take_steps(step, execution);
+  const bool all = !complete_ || frame != frame_;
   complete_ = false;  // until all is done: it may be cancelled half way
   frame_ = frame;
   if (all) {

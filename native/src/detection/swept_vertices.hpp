@@ -60,14 +60,15 @@ class SweptVertices {
   };
   struct Survey;
 
+  std::vector<Index> changed_in(const Step& step, const Execution& execution) const;
   Survey survey(const Step& step, const Execution& execution) const;
-  void take_steps(const Step& step, const std::vector<Index>& changed, const Execution& execution);
+  void take_steps(const Step& step, const Execution& execution);
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
   bool near_segment(const Step& step, const Vector3& common, Index vertex) const;
   bool all_near(const Step& step, const std::vector<Index>& vertices, const Vector3& common,
                 const Execution& execution) const;
-  bool holds(const Step& step, const Survey& survey, const Execution& execution) const;
+  bool holds(const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;
