@@ -13,6 +13,7 @@ from bpy.props import (
 )
 
 from . import live_loops
+from .operators.last_edit import note_written
 
 ROLES = (
     ("auto", "Automatic", "Controls where the object has some that are understood, otherwise rigid or an obstacle"),
@@ -48,6 +49,12 @@ OBJECT_RESPONSES = (
 )
 
 
+def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from .guard import watching  # which reads these settings
+
+    watching.switched(context)
+
+
 class StivSceneSettings(bpy.types.PropertyGroup):
     """How edits of a scene respond to interference."""
 
@@ -64,6 +71,12 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         name="Interference",
         description="Let surfaces give way; otherwise they may go through each other, and nothing is tested",
         default=True,
+    )
+    live_guard: BoolProperty(
+        name="Live Guard",
+        description="Correct what any tool of Blender does, so that nothing goes through anything",
+        default=False,
+        update=_guard_switched,
     )
     responders: EnumProperty(name="Gives way", description="Who gives way", items=RESPONDERS, default="selected")
     object_response: EnumProperty(
@@ -128,7 +141,9 @@ def register() -> None:
     bpy.types.Scene.stiv = PointerProperty(type=StivSceneSettings)
     bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
-    bpy.types.WindowManager.stiv_last_edit = StringProperty(name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"})
+    bpy.types.WindowManager.stiv_last_edit = StringProperty(
+        name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"}, update=note_written
+    )
 
 
 def unregister() -> None:

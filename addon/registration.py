@@ -4,6 +4,7 @@
 import bpy
 
 from . import keymap, live_loops, menus, operators, panels, properties
+from .guard import watching
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
@@ -16,10 +17,12 @@ def register() -> None:
     menus.register()
     keymap.register()
     live_loops.register()
+    watching.register()
 
 
 def unregister() -> None:
     """Take everything away again."""
+    watching.unregister()
     live_loops.unregister()
     keymap.unregister()
     menus.unregister()

@@ -6,6 +6,19 @@ from __future__ import annotations
 import json
 from typing import Any
 
+_written = 0
+
+
+def note_written(owner: Any, context: Any) -> None:
+    """Called by Blender whenever the description of an edit is stored."""
+    global _written
+    _written += 1
+
+
+def written() -> int:
+    """How many edits the operators have written since the extension was loaded."""
+    return _written
+
 
 def describe(result: Any, report: Any) -> str:
     """JSON of a `stiv.EditResult` and of the report on what was written."""

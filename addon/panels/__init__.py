@@ -4,7 +4,8 @@
 from .check import STIV_PT_check
 from .deformation import STIV_PT_deformation
 from .edit import STIV_PT_edit
+from .guard import STIV_PT_guard
 from .loop import STIV_PT_loop
 from .roles import STIV_PT_roles
 
-CLASSES = (STIV_PT_edit, STIV_PT_roles, STIV_PT_deformation, STIV_PT_loop, STIV_PT_check)
+CLASSES = (STIV_PT_edit, STIV_PT_guard, STIV_PT_roles, STIV_PT_deformation, STIV_PT_loop, STIV_PT_check)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the guard has done to the scene: through `stiv.blender`, with nothing of the interface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..settings import edit_settings
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of it.
+
+    Attributes:
+        free: the scene is free of intersections now.
+        wrote: something was written.
+        text: what to tell the user, empty for nothing.
+    """
+
+    free: bool
+    wrote: bool = False
+    text: str = ""
+
+
+def read(context: Any) -> Any:
+    """The state of all controls, a `stiv.blender.SceneState`."""
+    from stiv.blender import read_state  # the add-on registers without the native module
+
+    return read_state(context)
+
+
+def differs(accepted: Any, present: Any) -> bool:
+    """Are any controls other than accepted?"""
+    from stiv.blender import compare
+
+    return bool(compare(accepted, present))
+
+
+def test(context: Any) -> Outcome:
+    """Is the scene free as it is?"""
+    from stiv.blender import check_scene
+
+    try:
+        pairs = check_scene(context, _settings(context)).pairs
+    except ValueError as error:
+        return Outcome(False, text=str(error))
+    if not pairs:
+        return Outcome(True)
+    names = sorted({each.object for pair in pairs for each in (pair.first, pair.second)})
+    return Outcome(False, text=f"{len(pairs)} pairs of faces intersect: {listed(names)}")
+
+
+def correct(context: Any, accepted: Any) -> Outcome:
+    """Edit from the accepted state toward the scene as it is. What cannot be followed is tested as it is."""
+    from stiv.blender import SceneChangedError, compare, follow, read_state
+
+    changes = compare(accepted, read_state(context))
+    if changes.obstacle or not changes.changes:
+        return _tested_instead(context, changes.obstacle)
+    try:
+        followed = follow(context, _settings(context), accepted, changes)
+    except (ValueError, SceneChangedError) as error:
+        return _tested_instead(context, str(error))
+    if not followed.corrected:
+        return Outcome(True)
+    blocked = f", in the way: {listed(followed.blocking)}" if followed.blocking else ""
+    return Outcome(True, True, f"corrected {listed(followed.names)}{blocked}")
+
+
+def listed(names: Any, most: int = 3) -> str:
+    """Some names, and how many more there are."""
+    shown = ", ".join(list(names)[:most])
+    return f"{shown} and {len(names) - most} more" if len(names) > most else shown
+
+
+def _tested_instead(context: Any, reason: str) -> Outcome:
+    """The scene as it is, if free; otherwise why it could not be corrected."""
+    found = test(context)
+    if found.free or not reason:
+        return found
+    return Outcome(False, text=f"{found.text}; not corrected: {reason}")
+
+
+def _settings(context: Any) -> Any:
+    """The scene's, with interference on whatever drags do."""
+    return replace(edit_settings(context.scene), interference=True)

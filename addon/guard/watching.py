@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Watches Blender for the guard: handlers only note that something happened, a timer works when nothing else does."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .. import availability
+from ..operators import last_edit
+from . import correcting, interface, undo_steps
+from .decision import LOOK_AGAIN, Action, Guard, Seen, decide
+
+STEP_NAME = "Live Guard"
+
+
+class Watch:
+    """All that the guard remembers; `state` is the accepted one, at `frame`."""
+
+    def __init__(self) -> None:
+        """Nothing accepted yet."""
+        self.guard = Guard()
+        self.state: Any = None
+        self.frame = 0
+        self.updates = 0
+        self.seen_updates = -1
+        self.own_edits = last_edit.written()
+        self.problem = ""
+        self.working = False
+
+
+_watch = Watch()
+
+
+def problem() -> str:
+    """Why the guard cannot act, empty if it can."""
+    return _watch.problem
+
+
+def is_on(context: Any) -> bool:
+    """Is the guard of the scene turned on, and can it work at all?"""
+    return context.scene is not None and bool(context.scene.stiv.live_guard) and not availability.problem()
+
+
+def switched(context: Any) -> None:
+    """The switch was turned: begin with the scene as it is, or end."""
+    restart()
+    if is_on(context):
+        _arm()
+
+
+def restart() -> None:
+    """Forget everything; the next look begins anew."""
+    global _watch
+    _watch = Watch()
+    interface.clear()
+    if bpy.app.timers.is_registered(look):
+        bpy.app.timers.unregister(look)
+
+
+def look() -> float | None:
+    """Look at Blender and do what is due: called by a timer; seconds until the next call, None for none."""
+    window = interface.window()
+    if window is None:
+        return None
+    with bpy.context.temp_override(window=window):
+        context = bpy.context
+        if not is_on(context):
+            restart()
+            return None
+        try:
+            return _look(context, window)
+        except Exception as error:  # a timer that raises is gone, and with it the guard
+            traceback.print_exc()
+            _give_up(str(error) or type(error).__name__)
+            return None
+
+
+def _look(context: Any, window: Any) -> float | None:
+    watch = _watch
+    seen = _see(context)
+    watch.guard, action = decide(watch.guard, seen)
+    if action is Action.WAIT:
+        return LOOK_AGAIN
+    if action is not Action.REST:
+        watch.working = True
+        try:
+            _act(context, window, action, seen)
+        finally:
+            watch.working = False
+    _watch.seen_updates = watch.updates
+    return None
+
+
+def _see(context: Any) -> Seen:
+    watch = _watch
+    busy = interface.is_busy()
+    return Seen(
+        time=time.monotonic(),
+        busy=busy,
+        changed=watch.updates != watch.seen_updates,
+        updates=watch.updates,
+        step=None if busy else undo_steps.active_step(),
+        sculpting=context.mode == "SCULPT",
+        accepted_by_us=last_edit.written() != watch.own_edits,
+        frame_changed=context.scene.frame_current != watch.frame,
+    )
+
+
+def _act(context: Any, window: Any, action: Action, seen: Seen) -> None:
+    watch = _watch
+    if action is Action.ACCEPT:
+        outcome = correcting.test(context)
+    else:
+        outcome = correcting.Outcome(False)
+        if action is Action.WRITE:
+            outcome = correcting.test(context)
+        if not outcome.free:
+            outcome = correcting.correct(context, watch.state)
+    if outcome.wrote:
+        _record(window, action, seen)
+    _settle(context, outcome)
+    interface.tell(outcome.text if outcome.wrote else "", watch.problem)
+
+
+def _record(window: Any, action: Action, seen: Seen) -> None:
+    if action is Action.REPLACE and seen.step is not None:
+        undo_steps.replace_active(window, seen.step[2])
+    elif action is Action.PUSH:
+        undo_steps.push(window, STEP_NAME)
+
+
+def _settle(context: Any, outcome: correcting.Outcome) -> None:
+    watch = _watch
+    watch.own_edits = last_edit.written()
+    watch.frame = context.scene.frame_current
+    watch.problem = "" if outcome.free else outcome.text
+    if outcome.free:
+        watch.state = correcting.read(context)
+    watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.free)
+
+
+def _give_up(reason: str) -> None:
+    """Until the next change, which is tried again."""
+    _watch.problem = reason
+    _watch.seen_updates = _watch.updates
+    interface.tell("", reason)
+
+
+def _arm() -> None:
+    if not bpy.app.timers.is_registered(look):
+        bpy.app.timers.register(look, first_interval=0.0)
+
+
+def _noted() -> None:
+    """Something changed: look at it when nothing runs any more. The guard's own writing is not looked at."""
+    if not _watch.working:
+        _watch.updates += 1
+        _arm()
+
+
+@persistent
+def _on_update(scene: Any, graph: Any) -> None:
+    if is_on(bpy.context) and any(each.is_updated_geometry or each.is_updated_transform for each in graph.updates):
+        _noted()
+
+
+@persistent
+def _on_frame(scene: Any, graph: Any) -> None:
+    if is_on(bpy.context):
+        _noted()
+
+
+@persistent
+def _on_history(*_unused: Any) -> None:
+    if is_on(bpy.context) and not _watch.working:
+        _watch.guard = _watch.guard.went_through_history(undo_steps.active_step())
+        _noted()
+
+
+@persistent
+def _on_load(*_unused: Any) -> None:
+    switched(bpy.context)
+
+
+HANDLERS = {
+    "depsgraph_update_post": _on_update,
+    "frame_change_post": _on_frame,
+    "undo_post": _on_history,
+    "redo_post": _on_history,
+    "load_post": _on_load,
+}
+
+
+def register() -> None:
+    """Begin to listen."""
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister() -> None:
+    """Stop, and forget everything."""
+    restart()
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import replace
+
+import pytest
+
+from stiv_addon.guard.decision import STILL, Action, Guard, Seen, decide
+
+BEFORE, AFTER = (3, "0x1", "Move"), (4, "0x2", "Move")
+WATCHING = Guard(has_accepted=True, step=BEFORE)
+MOVED = Seen(time=10.0, updates=5, step=AFTER)
+
+
+def action(guard: Guard, seen: Seen) -> Action:
+    return decide(guard, seen)[1]
+
+
+def test_a_finished_tool_is_corrected_in_its_own_undo_step() -> None:
+    assert action(WATCHING, MOVED) is Action.REPLACE
+
+
+def test_a_running_tool_is_left_alone() -> None:
+    guard, what = decide(WATCHING, replace(MOVED, busy=True))
+    assert what is Action.WAIT
+    assert action(guard, MOVED) is Action.REPLACE
+
+
+def test_nothing_changed_is_nothing_to_do_and_the_step_is_remembered() -> None:
+    guard, what = decide(WATCHING, replace(MOVED, changed=False))  # a selection made a step
+    assert what is Action.REST
+    assert guard.step == AFTER
+
+
+@pytest.mark.parametrize(
+    ("guard", "seen"),
+    [
+        (Guard(), MOVED),  # nothing accepted so far
+        (WATCHING, replace(MOVED, accepted_by_us=True)),
+        (WATCHING, replace(MOVED, frame_changed=True)),
+    ],
+)
+def test_what_has_no_state_to_go_on_from_is_tested_and_not_written(guard: Guard, seen: Seen) -> None:
+    assert action(guard, seen) is Action.ACCEPT
+
+
+def test_what_undo_restored_is_written_only_if_it_fails() -> None:
+    guard = WATCHING.went_through_history(AFTER)
+    assert action(guard, MOVED) is Action.WRITE
+
+
+def test_what_the_redo_panel_made_again_is_a_tools_result() -> None:
+    guard = WATCHING.went_through_history(BEFORE)
+    assert action(guard, MOVED) is Action.REPLACE
+
+
+def test_a_sculpt_stroke_leaves_the_undo_stack_alone() -> None:
+    assert action(WATCHING, replace(MOVED, sculpting=True)) is Action.WRITE
+
+
+def test_a_change_without_an_undo_step_waits_until_it_is_still() -> None:
+    seen = replace(MOVED, step=BEFORE)
+    guard, what = decide(WATCHING, seen)
+    assert what is Action.WAIT
+    assert action(guard, replace(seen, time=10.0 + STILL / 2)) is Action.WAIT
+    assert action(guard, replace(seen, time=10.0 + STILL)) is Action.PUSH
+
+
+def test_a_number_field_that_goes_on_is_waited_for_and_then_replaced() -> None:
+    seen = replace(MOVED, step=BEFORE)
+    guard, _ = decide(WATCHING, seen)
+    guard, what = decide(guard, replace(seen, time=10.0 + STILL, updates=6))
+    assert what is Action.WAIT
+    assert action(guard, replace(MOVED, updates=6)) is Action.REPLACE  # released: the step is there
+
+
+def test_without_knowledge_of_the_undo_stack_a_step_is_added() -> None:
+    seen = replace(MOVED, step=None)
+    guard, what = decide(replace(WATCHING, step=None), seen)
+    assert what is Action.WAIT
+    assert action(guard, replace(seen, time=10.0 + STILL)) is Action.PUSH
+
+
+def test_settling_forgets_what_led_there() -> None:
+    guard = WATCHING.went_through_history(AFTER).settled(AFTER, True)
+    assert guard == Guard(True, AFTER)
