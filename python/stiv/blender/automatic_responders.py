@@ -12,6 +12,7 @@ from stiv.blender.movability import check_placement, check_unconstrained
 from stiv.blender.movers import Mover
 from stiv.blender.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.blender.transform_locks import is_locked
 
 
 def automatic_responders(
@@ -20,8 +21,8 @@ def automatic_responders(
     """Rigid movers, not selected, for the visible objects of role "auto" that nothing hinders.
 
     An object hangs together with its children. Left out, and so in the way, is a family of which a member is a mover
-    already, has another role or a constraint, is animated, linked or without size, or looks at or is looked at by an
-    object outside, through modifiers, constraints or instances.
+    already, has another role or a constraint, is animated, linked, locked or without size, or looks at or is looked at
+    by an object outside, through modifiers, constraints or instances.
     """
     taken = {mover.reference.name for mover in movers}
     tied = _tied_outside()
@@ -44,6 +45,8 @@ def _are_free(family: Sequence[bpy.types.Object], settings: EditSettings) -> boo
         return False
     try:
         check_placement(family[0])
+        if is_locked(family[0]):
+            return False
         for child in family[1:]:
             check_unconstrained(child)
     except InputError:

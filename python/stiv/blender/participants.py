@@ -20,6 +20,7 @@ from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlooke
 from stiv.blender.rigid_placement import rigid_part
 from stiv.blender.settings import EditSettings
 from stiv.blender.soft_handles import soft_parts
+from stiv.blender.transform_locks import without_held
 
 TOLERANCE = 1e-5  # of the size of an object: what float32 and the mathematics of the modifiers leave
 
@@ -32,7 +33,8 @@ def make_parts(
     kind: str,
 ) -> tuple[list[Part], list[RigidGroup]]:
     """All parts, and the groups that move as one. Raises InputError for what cannot be moved, nothing changed."""
-    groups = rigid_groups(list(movers))
+    movers = without_held(movers, kind)
+    groups = rigid_groups(movers)
     bent = {mover.reference: _bent_by(mover.reference, meshes) for mover in movers if mover.role == "lattice"}
     _check_independent(movers, groups, bent, meshes)
     parts = [_rigid(group, meshes, settings, kind) for group in groups]

@@ -18,6 +18,7 @@ from stiv.blender.placement import about, nearest_rotation, nearest_turn, rotati
 from stiv.blender.references import ObjectReference
 from stiv.blender.rigid_groups import RigidGroup
 from stiv.blender.settings import EditSettings
+from stiv.blender.transform_locks import may_turn
 
 
 def rigid_part(group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, settings: EditSettings, kind: str) -> Part:
@@ -106,7 +107,12 @@ class PlacementWriter:
 
 
 def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str) -> bool:
-    """Can all roots hold a rotation? One below an unevenly scaled parent cannot. Raises InputError for rotations."""
+    """Can all roots hold a rotation? One below an unevenly scaled parent, or with locks, cannot.
+
+    Raises InputError for rotations, where the parent is the reason; what is locked is moved without being turned.
+    """
+    if not all(may_turn(root.reference.find()) for root in group.roots):
+        return False
     for root, start in zip(group.roots, starts, strict=True):
         if not start.holds_rotations():
             if kind == "rotate":
