@@ -18,7 +18,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
+.PHONY: test-long peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -73,6 +73,9 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
+
+test-long: build/venv/stiv ## Run the long forms: a batch of 200 scenes killed 50 times
+	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 
 clean: ## Remove everything that was built or downloaded
 	rm -rf build dist

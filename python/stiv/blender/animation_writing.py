@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes a resolved animation into the open scene: keyframes of placements, and a shape key for each key of a shape.
+
+What is written stands for itself: parents, constraints, modifiers and animation of the object that made the old motion
+are taken off. Interpolation is linear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+import bpy
+import mathutils
+import numpy as np
+
+from stiv.blender.animation_parts import MovingPart, stored_placement
+from stiv.blender.animation_poses import Track
+from stiv.blender.animation_resolving import Key, Resolved
+from stiv.blender.arrays import Floats, Singles, transform_points
+from stiv.blender.frame_checking import go_to
+
+
+def write_animation(context: bpy.types.Context, tracks: Sequence[Track], resolved: Resolved) -> None:
+    """Replace the animation of all that moves. The scene ends at the first frame."""
+    go_to(context.scene, resolved.keys[0].frame)
+    meshes = _evaluated_meshes(context, tracks, resolved.parts)
+    for part in resolved.parts:
+        for index in part.tracks:
+            _free(tracks[index].mesh.owner.find())
+    first = 0
+    with _linear_keys(context):
+        for part in resolved.parts:
+            rows = slice(first, first + len(part.controls))
+            first = rows.stop
+            keys = [Key(key.frame, key.controls[rows]) for key in resolved.keys]
+            if part.frame is None:
+                _write_placements(part, tracks, keys)
+            else:
+                _write_shape(part, tracks[part.tracks[0]], meshes[part.tracks[0]], keys)
+    go_to(context.scene, resolved.keys[0].frame)
+
+
+def _evaluated_meshes(
+    context: bpy.types.Context, tracks: Sequence[Track], parts: Sequence[MovingPart]
+) -> dict[int, bpy.types.Mesh]:
+    """Meshes of their own for what changes its shape, as Blender shows it at the first frame."""
+    graph = context.evaluated_depsgraph_get()
+    meshes = {}
+    for index in (part.tracks[0] for part in parts if part.frame is not None):
+        ob = tracks[index].mesh.owner.find()
+        meshes[index] = bpy.data.meshes.new_from_object(ob.evaluated_get(graph), depsgraph=graph)
+        meshes[index].name = f"{ob.name} resolved"
+    return meshes
+
+
+def _free(ob: bpy.types.Object) -> None:
+    """Nothing but its own location, rotation and scale places the object from now on."""
+    ob.animation_data_clear()
+    ob.constraints.clear()
+    ob.parent = None
+    ob.delta_location, ob.delta_scale = (0, 0, 0), (1, 1, 1)
+    ob.delta_rotation_euler, ob.delta_rotation_quaternion = (0, 0, 0), (1, 0, 0, 0)
+    ob.rotation_mode = "QUATERNION"
+
+
+def _write_placements(part: MovingPart, tracks: Sequence[Track], keys: Sequence[Key]) -> None:
+    for index in part.tracks:
+        ob, last = tracks[index].mesh.owner.find(), None
+        for key in keys:
+            location, rotation, scale = stored_placement(ob, part.motion(key.controls) @ tracks[index].matrices[0])
+            if last is not None and rotation.dot(last) < 0:
+                rotation = -rotation  # the same rotation, and the short way there
+            last = rotation
+            _place(ob, location, rotation, scale)
+            for path in ("location", "rotation_quaternion", "scale"):
+                ob.keyframe_insert(path, frame=key.frame)
+
+
+def _write_shape(part: MovingPart, track: Track, mesh: bpy.types.Mesh, keys: Sequence[Key]) -> None:
+    """Absolute shape keys, run through in time: at each key exactly that shape, between two a straight way."""
+    assert part.frame is not None
+    ob = track.mesh.owner.find()
+    ob.modifiers.clear()
+    ob.data = mesh
+    _place(ob, *stored_placement(ob, track.matrices[0]))
+    for key in keys:
+        block = ob.shape_key_add(name=f"frame {key.frame:g}", from_mix=False)
+        block.interpolation = "KEY_LINEAR"
+        block.data.foreach_set("co", _local(part.frame, key.controls).ravel())
+    shapes = mesh.shape_keys
+    shapes.use_relative = False
+    for key, block in zip(keys, shapes.key_blocks, strict=True):
+        shapes.eval_time = block.frame
+        shapes.keyframe_insert("eval_time", frame=key.frame)
+    mesh.vertices.foreach_set("co", _local(part.frame, keys[0].controls).ravel())
+    mesh.update()
+
+
+def _local(frame: Floats, world: Floats) -> Singles:
+    """Coordinates in the object's frame as they are stored, (m, 3)."""
+    return transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+
+
+def _place(ob: bpy.types.Object, location: mathutils.Vector, rotation: mathutils.Quaternion, scale: Floats) -> None:
+    ob.location, ob.rotation_quaternion, ob.scale = location, rotation, np.asarray(scale)
+
+
+@contextmanager
+def _linear_keys(context: bpy.types.Context) -> Iterator[None]:
+    """New keyframes are interpolated linearly for as long as this lasts."""
+    edit = context.preferences.edit
+    before = edit.keyframe_new_interpolation_type
+    edit.keyframe_new_interpolation_type = "LINEAR"
+    try:
+        yield
+    finally:
+        edit.keyframe_new_interpolation_type = before

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv resolve`: an animation that goes through nothing."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import stiv
+from stiv import InputError
+from stiv.checks.findings import Finding
+from stiv.command_line.blender_module import require_blender
+from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.frame_ranges import frame_range
+from stiv.command_line.installed_blender import add_blender_option
+from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.progress import progress_bar
+from stiv.command_line.quiet import quiet_blender
+
+if TYPE_CHECKING:
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+SCHEMA, VERSION = "stiv-resolve", 1
+
+_DESCRIPTION = """\
+Corrects an animation so that nothing goes through anything: the pose of each frame is the goal, and what was accepted
+for the frame before is the start. Placements are written as keyframes, shapes as shape keys, into a new file, which is
+checked once more, frames and the ways between them, before it takes its place. Scripts in the file are not run.
+docs/animation.md says what is written how."""
+_EXAMPLES = """\
+examples:
+  stiv resolve walk.blend --frames 1:120 -o resolved.blend
+  stiv resolve walk.blend --frames scene -o resolved.blend --hold Hand --report frames.json
+
+exit codes: 0 done, 4 the first frame, or what Blender shows of the result, is not free of intersections (nothing is
+written), 2 bad input, 1 wrong usage, 3 internal error, 5 cancelled"""
+
+
+def add_to(subcommands: Subparsers) -> None:
+    """Adds the subcommand to the parser."""
+    parser = subcommands.add_parser(
+        "resolve",
+        help="correct an animation so that nothing goes through anything",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene with the animation")
+    parser.add_argument("--frames", type=frame_range, required=True, metavar="A:B[:STEP]", help="frames, or `scene`")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
+    parser.add_argument("--hold", action="append", default=[], metavar="NAME", help="object that does not give way")
+    parser.add_argument("--separation", type=float, default=0.0, metavar="X", help="distance to keep, world units")
+    parser.add_argument("--report", type=Path, metavar="F", help="write what each frame came to to F, as JSON")
+    add_blender_option(parser)
+    parser.set_defaults(run=_run)
+
+
+def _run(arguments: argparse.Namespace) -> ExitCode:
+    for path in (arguments.output, arguments.report):
+        require_folder(path)
+    if not arguments.scene.is_file():
+        raise InputError(f"{arguments.scene}: there is no such file")
+    try:
+        with quiet_blender():
+            left, frames = _resolve(arguments)
+    except stiv.StartIntersectsError as error:
+        print(f"{arguments.scene}: the first frame: {error}")
+        return ExitCode.NOT_FREE
+    if arguments.report is not None:
+        write_json(arguments.report, report_of(arguments.scene, left, frames))
+    print(summary(arguments.scene, left, frames))
+    return ExitCode.NOT_FREE if left else ExitCode.DONE
+
+
+def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dict[str, Any]]]:
+    """What Blender shows to meet in the result, and what each frame came to; writes the file if nothing meets."""
+    scene = arguments.scene
+    files, poses, resolving, writing, checking = (
+        require_blender(f"stiv.blender.{name}", scene)
+        for name in ("blend_files", "animation_poses", "animation_resolving", "animation_writing", "frame_checking")
+    )
+    context = files.open_blend(scene)
+    chosen = arguments.frames
+    first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
+    frames = list(range(first, last + 1, step))
+    try:
+        tracks = poses.read_tracks(context, frames)
+        with progress_bar("frames", len(frames)) as advance:
+            resolved = resolving.resolve(tracks, frames, arguments.hold, arguments.separation, 0, advance)
+    except stiv.StartIntersectsError:
+        raise
+    except InputError as error:
+        raise InputError(f"{scene}: {error}") from error
+    writing.write_animation(context, tracks, resolved)
+    alike = _alike(tracks, resolved.parts)
+    try:
+        with written_atomically(arguments.output) as temporary:
+            files.save_blend(temporary)
+            looks = checking.check_frames(files.open_blend(temporary), [key.frame for key in resolved.keys])
+            left = [found for look in looks for found in look.findings if not _keeps(found, alike)]
+            if left:
+                raise _NotFreeError
+    except _NotFreeError:
+        pass
+    return left, resolved.frames
+
+
+class _NotFreeError(Exception):
+    """Keeps what is not free from taking the place of the output."""
+
+
+def report_of(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The report (python/stiv/schemas/resolve.schema.json)."""
+    pairs = [str(finding) for finding in left[:100]]
+    return {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "scene": scene.name,
+        "free": not left,
+        "pairs": pairs,
+        "frames": list(frames),
+    }
+
+
+def summary(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]]) -> str:
+    """What was done, in a few lines."""
+    if left:
+        lines = [f"{scene}: {len(left)} pairs meet in what Blender shows of the result; nothing was written"]
+        return "\n".join(lines + [f"  {finding}" for finding in left[:10]])
+    corrected = [frame for frame in frames if frame["rounds"] > 0]
+    blocked = sum(frame["status"] == "blocked" for frame in frames)
+    away = max((frame["distance"] for frame in frames), default=0.0)
+    told = f"{len(frames)} frames, {len(corrected)} corrected, {blocked} blocked; at most {away:.4g} from the animation"
+    return f"{scene}: {told}"
+
+
+def _alike(tracks: Sequence[Any], parts: Sequence[Any]) -> dict[str, int]:
+    """Objects that do not change their relation to each other have the same number: the still ones, each group."""
+    numbers = {track.mesh.owner.name: -1 for track in tracks}
+    for number, part in enumerate(parts):
+        numbers.update({tracks[index].mesh.owner.name: number for index in part.tracks if part.frame is None})
+        numbers.update({tracks[index].mesh.owner.name: -2 - index for index in part.tracks if part.frame is not None})
+    return numbers
+
+
+def _keeps(finding: Finding, alike: dict[str, int]) -> bool:
+    """Is this between what never moves against each other, and was there before?"""
+    one, other = (alike[name] for name in finding.objects)
+    return one == other and one >= -1
