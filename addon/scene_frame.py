@@ -3,54 +3,85 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import bmesh
 import numpy as np
 
-from .transform.frame import Frame, orthonormal
+from . import scene_axes
+from .modal.proportional import Proportional
+from .transform.frame import Frame
 from .transform.pivot import pivot_of
 from .transform.view import Vector, View
 
 
-def read_frame(context: Any, *, orientation: str = "") -> Frame:
-    """Pivot and axes of the scene's settings, and the view if the context has one.
-
-    Args:
-        context: Blender's context.
-        orientation: "GLOBAL" or "LOCAL"; empty takes the scene's.
-
-    """
+def read_frame(context: Any) -> Frame:
+    """Pivot and axes of the scene's settings, and the view if the context has one."""
     scene = context.scene
+    choice = scene.tool_settings.transform_pivot_point
     pivot = pivot_of(
-        _selected_points(context),
-        scene.tool_settings.transform_pivot_point,
-        cursor=np.array(scene.cursor.location),
-        active=_active_point(context),
+        selected_points(context), choice, cursor=np.array(scene.cursor.location), active=active_point(context)
     )
-    return Frame(pivot, _axes(context, orientation or scene_orientation(context)), _view(context))
+    first, second = (scene_axes.axes_of(context, name) for name in orientation_names(context))
+    return Frame(pivot, first, _view(context), second, individual=choice == "INDIVIDUAL_ORIGINS")
 
 
-def scene_orientation(context: Any) -> str:
-    """Give "LOCAL" where the scene says so, otherwise "GLOBAL"."""
-    return "LOCAL" if context.scene.transform_orientation_slots[0].type == "LOCAL" else "GLOBAL"
+def orientation_names(context: Any) -> tuple[str, str]:
+    """The scene's orientation, and the one that an axis key pressed twice takes."""
+    chosen = context.scene.transform_orientation_slots[0].type
+    return chosen, "LOCAL" if chosen == "GLOBAL" else "GLOBAL"
+
+
+def seen_anew(context: Any, frame: Frame) -> Frame:
+    """The frame in the view as it is now; the same object if the view has not changed."""
+    view = _view(context)
+    if view is None or frame.view is None:
+        return frame
+    same = view.size == frame.view.size and np.array_equal(view.projection, frame.view.projection)
+    return frame if same else replace(frame, view=view)
 
 
 def notes(context: Any) -> list[str]:
     """Settings of the scene that a transform does not follow, for the header."""
     found = []
-    if context.scene.tool_settings.transform_pivot_point == "INDIVIDUAL_ORIGINS":
-        found.append("individual origins are not supported: about their median")
-    chosen = context.scene.transform_orientation_slots[0].type
-    if chosen not in {"GLOBAL", "LOCAL"}:
-        found.append(f"orientation {chosen.title()} is not supported: global axes")
+    chosen = orientation_names(context)[0]
+    if not scene_axes.is_followed(context, chosen):
+        found.append(f"orientation {chosen.title()} is not supported here: global axes")
+    tools = context.scene.tool_settings
+    if context.mode == "OBJECT" and tools.use_proportional_edit_objects:
+        found.append("proportional editing of objects is not supported")
+    if context.mode != "OBJECT" and tools.use_proportional_edit:
+        if tools.use_proportional_projected:
+            found.append("proportional editing from view is not supported: by distance in space")
+        if tools.transform_pivot_point == "INDIVIDUAL_ORIGINS":
+            found.append("proportional editing about individual origins is not supported: about their median")
     return found
 
 
-def _axes(context: Any, orientation: str) -> Vector:
-    if orientation != "LOCAL" or context.active_object is None:
-        return np.eye(3)
-    return orthonormal(np.array(context.active_object.matrix_world)[:3, :3])
+def read_proportional(context: Any) -> Proportional:
+    """Proportional editing as the scene has it; of points in Edit Mode only."""
+    tools = context.scene.tool_settings
+    return Proportional(
+        context.mode != "OBJECT",
+        tools.use_proportional_edit,
+        max(_size_owner(tools)[0], 1e-6),
+        tools.proportional_edit_falloff,
+        tools.use_proportional_connected,
+    )
+
+
+def keep_proportional(context: Any, proportional: Proportional) -> None:
+    """Let the scene have what a drag ended with, as Blender's own transforms do."""
+    if proportional.active:
+        tools = context.scene.tool_settings
+        setattr(tools, _size_owner(tools)[1], proportional.size)
+        tools.proportional_edit_falloff = proportional.falloff
+
+
+def _size_owner(tools: Any) -> tuple[float, str]:
+    name = "proportional_size" if hasattr(tools, "proportional_size") else "proportional_distance"
+    return getattr(tools, name), name
 
 
 def _view(context: Any) -> View | None:
@@ -60,7 +91,8 @@ def _view(context: Any) -> View | None:
     return View(np.array(data.perspective_matrix), (max(region.width, 1), max(region.height, 1)))
 
 
-def _selected_points(context: Any) -> Vector:
+def selected_points(context: Any) -> Vector:
+    """Origins of the selected objects, or the selected vertices or lattice points, (k, 3) in world space."""
     if context.mode == "OBJECT":
         points = [np.array(thing.matrix_world.translation) for thing in context.selected_objects]
     else:
@@ -77,7 +109,8 @@ def _selected_inside(thing: Any) -> list[Vector]:
     return [np.array(thing.matrix_world @ position) for position in positions]
 
 
-def _active_point(context: Any) -> Vector | None:
+def active_point(context: Any) -> Vector | None:
+    """The origin of the active object, or the middle of the active element in Edit Mode; None where there is none."""
     thing = context.active_object
     if thing is None:
         return None

@@ -5,21 +5,22 @@ from __future__ import annotations
 
 from typing import Any
 
+from .modal.request import Request
 from .object_choices import object_choices
 
 DRAG_BUDGET = 0.1  # seconds that one solve may hold the interface
 
 
-def edit_settings(scene: Any, time_budget: float = 0.0) -> Any:
-    """`stiv.blender.EditSettings` of a scene; `time_budget` in seconds, 0 for none."""
+def edit_settings(scene: Any, request: Request | None = None, time_budget: float = 0.0) -> Any:
+    """`stiv.blender.EditSettings` of a scene; a request has the last word. `time_budget` in seconds, 0 for none."""
     from stiv.blender import EditSettings  # the add-on registers without the native module
 
     chosen = scene.stiv
     return EditSettings(
         separation=chosen.separation,
-        responders=chosen.responders,
+        responders=chosen.responders if request is None else request.responders,
         object_response=chosen.object_response,
-        interference=chosen.interference,
+        interference=chosen.interference if request is None else request.interference,
         time_budget=time_budget,
         **object_choices(scene),
     )

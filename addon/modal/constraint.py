@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which axes a transform may use."""
+"""Which axes a transform may use, and whose."""
 
 from __future__ import annotations
 
@@ -11,10 +11,19 @@ AXIS_NAMES = "XYZ"
 
 @dataclass(frozen=True)
 class Constraint:
-    """An axis lock. `axis` None: free; `plane`: everything but `axis`."""
+    """An axis lock.
+
+    Attributes:
+        axis: None: free.
+        plane: everything but `axis`.
+        second: the axes are not those of the scene's orientation, but the second choice: local where the scene says
+            global, and global where it says anything else.
+
+    """
 
     axis: int | None = None
     plane: bool = False
+    second: bool = False
 
     @property
     def axes(self) -> tuple[int, ...]:
@@ -31,6 +40,7 @@ class Constraint:
         return "" if self.axis is None else "".join(AXIS_NAMES[axis] for axis in self.axes)
 
     def toggled(self, axis: int, *, plane: bool) -> Constraint:
-        """Lock to an axis or a plane; the same lock once more lets go."""
-        wanted = Constraint(axis, plane)
-        return Constraint() if wanted == self else wanted
+        """Lock to an axis or a plane; the same lock once more takes the second choice of axes, then lets go."""
+        if (self.axis, self.plane) != (axis, plane):
+            return Constraint(axis, plane)
+        return Constraint() if self.second else Constraint(axis, plane, second=True)

@@ -4,17 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from enum import Enum
 from typing import Any, Protocol
 
 from .events import Event
-from .state import Effect, State, step
+from .pointer import Pointer
+from .request import Request
+from .state import Effect, Phase, State, step
 
 
 class Edit(Protocol):
     """What a drag needs of an edit of the scene; `stiv.blender.BlenderEdit` is one."""
 
-    def drag(self, matrix: Any) -> Any:
+    @property
+    def interference(self) -> bool:
+        """Whether anything gives way."""
+
+    def set_interference(self, on: bool) -> str:
+        """Switch it; says why not, or where that led back to."""
+
+    def drag(self, motion: Any) -> Any:
         """Solve for an absolute goal."""
 
     def settle(self) -> Any:
@@ -33,7 +43,7 @@ class Progress(Enum):
     RUNNING = "running"
     FINISHED = "finished"
     VALUE_GIVEN = "value given"
-    """Confirmed by a typed number: everything is restored, and `transform` is to be applied as a script would."""
+    """Confirmed by typed numbers: everything is restored, and `transform` is to be applied as a script would."""
     CANCELLED = "cancelled"
 
 
@@ -49,13 +59,19 @@ class Drag:
     until the user types on; anything else restores the scene and ends the drag with the exception in `error`.
     """
 
-    def __init__(self, edit: Edit, measure: Callable[[State], Any], matrix: Callable[[Any], Any], state: State):
-        """Start a drag.
+    def __init__(
+        self,
+        begin: Callable[[Request], Edit],
+        measure: Callable[[State], Any],
+        motion: Callable[[Any, State], Any],
+        state: State,
+    ):
+        """Start a drag; what `begin` raises comes out, with nothing changed.
 
         Args:
-            edit: begun, nothing solved yet.
+            begin: an edit of the scene as it is; again when the state requests another one.
             measure: from a state to the transform that it asks for.
-            matrix: from such a transform to a (4, 4) world matrix.
+            motion: from such a transform, and the state, to what an edit drags to.
             state: the state before the first event.
 
         """
@@ -66,14 +82,28 @@ class Drag:
         self.report: Any = None
         self.note = ""
         self.error: Exception | None = None
-        self._edit = edit
+        self.edit = begin(state.request)
+        self._begun = state.request
+        self._begin = begin
         self._measure = measure
-        self._matrix = matrix
+        self._motion = motion
         self._pending = False
 
-    def handle(self, event: Event) -> Progress:
-        """Take one event."""
-        return self._guarded(lambda: self._carry_out(event))
+    def handle(self, event: Event) -> Effect:
+        """Take one event; says what it asked for."""
+        effect = Effect.NONE
+
+        def take() -> None:
+            nonlocal effect
+            effect = self._carry_out(event)
+
+        self._guarded(take)
+        return effect
+
+    def look(self, pointer: Pointer) -> None:
+        """The view changed: solve for what the pointer means in it."""
+        self.state = replace(self.state, pointer=pointer)
+        self._pending = True
 
     def tick(self) -> Progress:
         """Solve for the latest goal, if it is not yet reached."""
@@ -91,57 +121,92 @@ class Drag:
                 self._fail(error)
         return self.progress
 
-    def _carry_out(self, event: Event) -> None:
+    def _carry_out(self, event: Event) -> Effect:
         self.state, effect = step(self.state, event)
         if effect is Effect.UPDATE:
             self._pending = True
         elif effect is Effect.CONFIRM:
             self._confirm()
         elif effect is Effect.CANCEL:
-            self._edit.restore()
+            self.edit.restore()
             self.progress = Progress.CANCELLED
+        return effect
 
     def _solve_pending(self) -> None:
         if not self._pending:
             return
         self._pending = False
-        self.transform = self._measure(self.state)
+        refusal = self._begin_again()
         try:
-            self.result = self._edit.drag(self._matrix(self.transform))
-        except ValueError as refusal:
-            self.note = str(refusal)
+            wanted = self._measure(self.state)
+            self.result = self.edit.drag(self._motion(wanted, self.state))
+        except ValueError as error:
+            self.note = str(error)
             return
-        self.note = ""
+        self.transform = wanted
+        self.note = refusal
         self._pending = self.result.status == "budget"
         self._write()
 
+    def _begin_again(self) -> str:
+        """Another edit from the start where another is requested; where that is refused, the old one goes on.
+
+        Interference alone is switched in the edit that is there.
+        """
+        request = self.state.request
+        if request == replace(self._begun, interference=request.interference):
+            return self._switch_interference() if request != self._begun else ""
+        self.edit.restore()
+        try:
+            self.edit = self._begin(self.state.request)
+        except ValueError as error:
+            self.state = replace(self.state, request=self._begun)
+            return str(error)
+        self._begun = self.state.request
+        return ""
+
+    def _switch_interference(self) -> str:
+        reason = self.edit.set_interference(self.state.request.interference)
+        self._begun = replace(self._begun, interference=self.edit.interference)
+        self.state = replace(self.state, request=self._begun)
+        return reason
+
     def _confirm(self) -> None:
         if self.state.typed.active:
-            self.transform = self._measure(self.state)
-            self._edit.restore()
-            self.progress = Progress.VALUE_GIVEN
+            self._give_value()
             return
         if self._pending or self.result is not None:
             self._finish_dragged()
         self.progress = Progress.FINISHED
 
+    def _give_value(self) -> None:
+        """What is no number cannot be confirmed: the drag goes on, and says so."""
+        try:
+            self.transform = self._measure(self.state)
+        except ValueError as error:
+            self.note = str(error)
+            self.state = replace(self.state, phase=Phase.DRAGGING)
+            return
+        self.edit.restore()
+        self.progress = Progress.VALUE_GIVEN
+
     def _finish_dragged(self) -> None:
         if self._pending:
-            self.transform = self._measure(self.state)
-            self.result = self._edit.drag(self._matrix(self.transform))
-        settled = self._edit.settle()
-        self.result = settled if settled.status != "unchanged" else self.result
-        self._write()
+            self._solve_pending()
+        if self.result is not None:
+            settled = self.edit.settle()
+            self.result = settled if settled.status != "unchanged" else self.result
+            self._write()
 
     def _write(self) -> None:
-        self.report = self._edit.write()
+        self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
 
     def _fail(self, error: Exception) -> None:
         self.error = error
         self.progress = Progress.CANCELLED
-        put_back(self._edit, error)
+        put_back(self.edit, error)
 
 
 def put_back(edit: Edit, error: Exception) -> None:

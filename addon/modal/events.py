@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 POINTER_MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 SHIFT_KEYS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"})
+CTRL_KEYS = frozenset({"LEFT_CTRL", "RIGHT_CTRL"})
 
 
 @dataclass(frozen=True)

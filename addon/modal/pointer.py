@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 PRECISION = 0.1  # of the motion counts while Shift is held
 
@@ -42,6 +42,10 @@ class Pointer:
         )
         turn = self.turn + share * self._turn_to(mouse)
         return Pointer(self.start, mouse, effective, self.centre, turn)
+
+    def seen_anew(self, start: tuple[float, float], centre: tuple[float, float] | None) -> Pointer:
+        """After the view changed: where the start and the pivot are seen now. What was turned so far stays turned."""
+        return replace(self, start=start, effective=self.last, centre=centre)
 
     def _turn_to(self, mouse: tuple[float, float]) -> float:
         if self.centre is None:

@@ -14,28 +14,43 @@ _VERDICTS = {
     "budget": "not settled yet",
     "cancelled": "cancelled",
     "unchanged": "",
+    "unguarded": "interference ignored",
 }
 
 
-def header_text(state: State, transform: str, verdict: str, notes: Sequence[str] = ()) -> str:
-    """One line: the value, the lock, the typed text, what became of it."""
+def header_text(
+    state: State, transform: str, verdict: str, notes: Sequence[str] = (), axes: tuple[str, str] = ("", "")
+) -> str:
+    """One line: the value, the lock, the typed text, what became of it. `axes` names both choices of axes."""
     parts = [transform]
     if state.constraint.label:
-        parts.append(f"along {state.constraint.label}")
+        parts.append(f"along {axes[state.constraint.second]} {state.constraint.label}".replace("  ", " "))
     if state.typed.active:
-        parts.append(f"[{state.typed.text}|]")
-    if state.precise:
-        parts.append("precise")
+        parts.append(state.typed.text(state.components))
+    parts.extend(text for text in (state.proportional.text, *_modes(state)) if text)
     return "  |  ".join(part for part in ["  ".join(parts), verdict, *notes] if part)
+
+
+def _modes(state: State) -> list[str]:
+    """What is not as usual."""
+    who = "" if state.request.responders == "selected" else f"gives way: {state.request.responders}"
+    return ["precise" if state.precise else "", "snap" if state.snapping else "", who]
 
 
 def status_text(state: State) -> str:
     """The keys that do something now."""
-    keys = ["Enter, Space, Left Mouse: confirm", "Esc, Right Mouse: cancel", "X Y Z: axis", "Shift+X/Y/Z: plane"]
-    keys.append("0-9 . -: value" if not state.typed.active else "Backspace: delete")
-    if not state.typed.active:
-        keys.append("Shift: precise")
-    return "    ".join(keys)
+    if state.typed.expression:
+        keys = ["Enter: confirm", "Esc: cancel", "+ - * / ( ) and units: expression", "Tab: next", "Backspace: delete"]
+        return "    ".join(keys)
+    keys = ["Enter, Space, Left Mouse: confirm", "Esc, Right Mouse: cancel", "G R S: kind", "X Y Z: axis"]
+    keys.append("Shift+X/Y/Z: plane")
+    if state.typed.active:
+        keys += ["Tab: next", "=: expression", "Backspace: delete"]
+    else:
+        keys += ["0-9 . - =: value", "Shift: precise", "Ctrl: snap"]
+    if state.proportional.available:
+        keys += ["O: proportional", *(["Wheel, Page: size", "Shift+O: falloff"] if state.proportional.on else [])]
+    return "    ".join([*keys, "W: who gives way", "I: interference"])
 
 
 def verdict_text(status: str, blocking: Sequence[str] = ()) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import bpy
 
 from ..modal.events import Event
+from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.texts import header_text, status_text
 from ..transform.frame import Frame
@@ -34,9 +35,19 @@ def centre(frame: Frame) -> tuple[float, float] | None:
     return frame.view.project(frame.pivot) or (frame.view.size[0] / 2.0, frame.view.size[1] / 2.0)
 
 
-def show(context: bpy.types.Context, state: State, value: str, verdict: str, notes: Sequence[str]) -> None:
+def pointer_seen_anew(pointer: Pointer, before: Frame, after: Frame) -> Pointer:
+    """The pointer where the start and the pivot are seen in another view."""
+    if before.view is None or after.view is None:
+        return pointer
+    start = after.view.project(before.view.beside(pointer.start, before.pivot))
+    return pointer.seen_anew(start or pointer.start, centre(after))
+
+
+def show(
+    context: bpy.types.Context, state: State, value: str, verdict: str, notes: Sequence[str], axes: tuple[str, str]
+) -> None:
     """Write header and status bar, and have the views drawn again."""
-    text = header_text(state, value, verdict, notes)
+    text = header_text(state, value, verdict, notes, axes)
     for area in _views(context):
         area.header_text_set(text)
         area.tag_redraw()

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.props import FloatVectorProperty
 
-from ..modal.state import State
-from ..transform.frame import Frame
-from ..transform.translation import Translation, measure_translation
+from ..transform.translation import Translation
 from .adapter import TransformOperator
 
 
@@ -26,10 +26,11 @@ class STIV_OT_move(TransformOperator, bpy.types.Operator):
         """The transform of the properties."""
         return Translation(np.array(self.value))
 
-    def measure(self, state: State, frame: Frame) -> Translation:
-        """The transform that a drag asks for."""
-        return measure_translation(state, frame)
+    def own_values(self) -> tuple[Any, ...]:
+        """The properties, to be compared."""
+        return tuple(self.value)
 
-    def keep(self, transform: Translation) -> None:
-        """Store a transform for the redo panel."""
-        self.value = transform.vector
+    @staticmethod
+    def arguments(transform: Translation) -> dict[str, Any]:
+        """The properties of a transform."""
+        return {"value": transform.vector.tolist()}

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty
 
-from ..modal.state import State
-from ..transform.frame import Frame
-from ..transform.rotation import Rotation, measure_rotation
+from ..transform.rotation import Rotation
 from .adapter import TransformOperator
 
 
@@ -31,10 +31,11 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
             raise ValueError("the axis of rotation is (0, 0, 0): give it a direction")
         return Rotation(self.angle, axis / length)
 
-    def measure(self, state: State, frame: Frame) -> Rotation:
-        """The transform that a drag asks for."""
-        return measure_rotation(state, frame)
+    def own_values(self) -> tuple[Any, ...]:
+        """The properties, to be compared."""
+        return (self.angle, *self.axis)
 
-    def keep(self, transform: Rotation) -> None:
-        """Store a transform for the redo panel."""
-        self.angle, self.axis = transform.angle, transform.axis
+    @staticmethod
+    def arguments(transform: Rotation) -> dict[str, Any]:
+        """The properties of a transform."""
+        return {"angle": transform.angle, "axis": transform.axis.tolist()}

@@ -3,19 +3,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatVectorProperty
 
-from .. import scene_frame
-from ..modal.state import State
-from ..transform.frame import Frame
-from ..transform.scaling import Scaling, measure_scaling
+from ..scene_axes import active_axes
+from ..transform.scaling import Scaling
 from .adapter import TransformOperator
 
 ORIENTATIONS = (
     ("GLOBAL", "Global", "Along the axes of the world"),
     ("LOCAL", "Local", "Along the axes of the active object"),
+    ("DRAGGED", "As Dragged", "Along the axes that the drag used"),
 )
 
 
@@ -28,23 +29,24 @@ class STIV_OT_scale(TransformOperator, bpy.types.Operator):
 
     value: FloatVectorProperty(name="Scale", description="Factors", default=(1.0, 1.0, 1.0), subtype="XYZ")
     orientation: EnumProperty(name="Orientation", description="Axes of the factors", items=ORIENTATIONS)
-
-    def frame(self, context: bpy.types.Context) -> Frame:
-        """Pivot of the scene; axes as the property says, so that the redo panel means what the drag did."""
-        return scene_frame.read_frame(context, orientation=self.orientation)
-
-    def prepare(self, context: bpy.types.Context) -> None:
-        """Take the scene's orientation for a drag."""
-        self.orientation = scene_frame.scene_orientation(context)
+    axes: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
 
     def given(self) -> Scaling:
         """The transform of the properties."""
-        return Scaling(np.array(self.value))
+        if self.orientation == "GLOBAL":
+            return Scaling(np.array(self.value))
+        dragged = self.orientation == "DRAGGED"
+        axes = np.array(self.axes).reshape(3, 3) if dragged else active_axes(bpy.context)
+        return Scaling(np.array(self.value), axes)
 
-    def measure(self, state: State, frame: Frame) -> Scaling:
-        """The transform that a drag asks for."""
-        return measure_scaling(state, frame)
+    def own_values(self) -> tuple[Any, ...]:
+        """The properties, to be compared."""
+        return (*self.value, self.orientation, *self.axes)
 
-    def keep(self, transform: Scaling) -> None:
-        """Store a transform for the redo panel."""
-        self.value = transform.factors
+    @staticmethod
+    def arguments(transform: Scaling) -> dict[str, Any]:
+        """The properties of a transform."""
+        if np.array_equal(transform.axes, np.eye(3)):
+            return {"value": transform.factors.tolist(), "orientation": "GLOBAL"}
+        axes = transform.axes.ravel().tolist()
+        return {"value": transform.factors.tolist(), "orientation": "DRAGGED", "axes": axes}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..modal.constraint import Constraint
 from .view import Vector, View
 
 
@@ -18,12 +19,20 @@ class Frame:
         pivot: (3,) fixed point of rotations and scalings.
         axes: (3, 3) unit columns that X, Y and Z stand for.
         view: the view that the pointer is in; None where values are given.
+        second_axes: (3, 3) those of an axis key pressed twice.
+        individual: whether each object or island of vertices has a pivot of its own.
 
     """
 
     pivot: Vector
     axes: Vector = field(default_factory=lambda: np.eye(3))
     view: View | None = None
+    second_axes: Vector = field(default_factory=lambda: np.eye(3))
+    individual: bool = False
+
+    def axes_of(self, constraint: Constraint) -> Vector:
+        """The axes that a lock refers to, (3, 3) columns."""
+        return self.second_axes if constraint.second else self.axes
 
 
 def about(pivot: Vector, linear: Vector) -> Vector:

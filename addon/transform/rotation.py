@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..modal.state import State
+from ..modal.typed_number import Read
 from .frame import Frame, about
+from .snapping import Snap
 from .view import Vector
 
 
@@ -27,6 +29,11 @@ class Rotation:
         linear = np.eye(3) + math.sin(self.angle) * cross + (1.0 - math.cos(self.angle)) * (cross @ cross)
         return about(frame.pivot, linear)
 
+    @property
+    def rotation(self) -> Vector:
+        """As a rotation vector, whole turns included."""
+        return self.angle * self.axis
+
     def part(self, fraction: float) -> Rotation:
         """A fraction of the way to it, 0 to 1."""
         return Rotation(fraction * self.angle, self.axis)
@@ -36,12 +43,21 @@ class Rotation:
         return f"Rotate {math.degrees(self.angle):.4g}°"
 
 
-def measure_rotation(state: State, frame: Frame) -> Rotation:
-    """What a drag asks for: about the locked axis, or the line of sight when none is locked. Typed angles: degrees."""
+def read_degrees(text: str) -> float:
+    """A number of degrees, in radians."""
+    return math.radians(float(text))
+
+
+def measure_rotation(state: State, frame: Frame, read: Read = read_degrees, snap: Snap | None = None) -> Rotation:
+    """What a drag asks for: about the locked axis, or the line of sight when none is locked.
+
+    ValueError for typed text that is no angle; `read` gives radians.
+    """
     toward = np.array([0.0, 0.0, 1.0]) if frame.view is None else frame.view.toward_viewer(frame.pivot)
     locked = state.constraint.axis
-    axis = toward if locked is None else frame.axes[:, locked]
+    axis = toward if locked is None else frame.axes_of(state.constraint)[:, locked]
     if state.typed.active:
-        return Rotation(math.radians(state.typed.value or 0.0), axis)
+        return Rotation(state.typed.value(0, read) or 0.0, axis)
     # Seen from behind, an axis turns the other way round.
-    return Rotation(state.pointer.turn * (1.0 if axis @ toward >= 0.0 else -1.0), axis)
+    angle = state.pointer.turn * (1.0 if axis @ toward >= 0.0 else -1.0)
+    return Rotation(snap.angle(angle, fine=state.precise) if snap is not None and snap.applies(state) else angle, axis)

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..modal.pointer import Pointer
 from ..modal.state import State
-from ..modal.typed_number import TypedNumber
+from ..modal.typed_number import Read
 from .frame import Frame, about
+from .snapping import Snap
 from .view import Pixel, Vector
 
 LEAST_FACTOR = 1e-3  # the pointer alone neither collapses nor mirrors
@@ -20,17 +21,19 @@ LEAST_RADIUS = 1.0  # pixels, where the drag starts on the pivot itself
 
 @dataclass(frozen=True)
 class Scaling:
-    """A scaling by `factors` (3,) along the frame's axes."""
+    """A scaling by `factors` (3,) along `axes`, (3, 3) unit columns."""
 
     factors: Vector
+    axes: Vector = field(default_factory=lambda: np.eye(3))
+    rotation = None  # as a rotation vector: there is none
 
     def matrix(self, frame: Frame) -> Vector:
         """(4, 4) world matrix about the frame's pivot."""
-        return about(frame.pivot, frame.axes @ np.diag(self.factors) @ frame.axes.T)
+        return about(frame.pivot, self.axes @ np.diag(self.factors) @ self.axes.T)
 
     def part(self, fraction: float) -> Scaling:
         """A fraction of the way to it, 0 to 1."""
-        return Scaling(1.0 + fraction * (self.factors - 1.0))
+        return Scaling(1.0 + fraction * (self.factors - 1.0), self.axes)
 
     def text(self) -> str:
         """For the header."""
@@ -38,16 +41,27 @@ class Scaling:
         return f"Scale {x:.4g}" if x == y == z else f"Scale X {x:.4g}  Y {y:.4g}  Z {z:.4g}"
 
 
-def measure_scaling(state: State, frame: Frame) -> Scaling:
-    """What a drag asks for, on the axes that are not locked."""
-    factor = _typed(state.typed) if state.typed.active else _dragged(state.pointer)
+def measure_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:
+    """What a drag asks for, on the axes that are not locked. One typed number alone counts for all of them.
+
+    ValueError for typed text that is no factor.
+    """
     factors = np.ones(3)
-    factors[list(state.constraint.axes)] = factor
-    return Scaling(factors)
+    free = list(state.constraint.axes)
+    if state.typed.active:
+        factors[free] = _typed(state, read)
+    else:
+        factor = _dragged(state.pointer)
+        snaps = snap is not None and snap.applies(state)
+        factors[free] = snap.factor(factor, fine=state.precise) if snaps else factor
+    return Scaling(factors, frame.axes_of(state.constraint))
 
 
-def _typed(typed: TypedNumber) -> float:
-    return 1.0 if typed.value is None else typed.value
+def _typed(state: State, read: Read) -> list[float]:
+    values = [state.typed.value(i, read) for i in range(state.components)]
+    if values[1:] == [None] * len(values[1:]):
+        values = values[:1] * len(values)
+    return [1.0 if value is None else value for value in values]
 
 
 def _dragged(pointer: Pointer) -> float:

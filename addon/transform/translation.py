@@ -9,7 +9,9 @@ import numpy as np
 
 from ..modal.constraint import Constraint
 from ..modal.state import State
+from ..modal.typed_number import Read
 from .frame import Frame
+from .snapping import Snap
 from .view import Vector, View
 
 GRAZING = np.sin(np.radians(5.0))  # an axis or plane seen under a smaller angle cannot be pointed at
@@ -31,6 +33,8 @@ class Translation:
         matrix[:3, 3] = self.vector
         return matrix
 
+    rotation = None  # as a rotation vector: there is none
+
     def part(self, fraction: float) -> Translation:
         """A fraction of the way to it, 0 to 1."""
         return Translation(fraction * self.vector)
@@ -41,13 +45,25 @@ class Translation:
         return f"Move X {x:.4g}  Y {y:.4g}  Z {z:.4g}  (distance {np.linalg.norm(self.vector):.4g})"
 
 
-def measure_translation(state: State, frame: Frame) -> Translation:
-    """What a drag asks for. A typed number counts along the locked axis, or X when none is locked."""
+def measure_translation(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Translation:
+    """What a drag asks for. Typed numbers count along the axes that are left, in order.
+
+    ValueError for typed text that is no length.
+    """
     if state.typed.active:
-        return Translation((state.typed.value or 0.0) * frame.axes[:, state.constraint.axes[0]])
+        return Translation(_typed(state, frame, read))
     if frame.view is None:
         return Translation(np.zeros(3))
-    return Translation(_dragged(state, frame, frame.view))
+    vector = _dragged(state, frame, frame.view)
+    if snap is not None and snap.applies(state):
+        vector = snap.translation(vector, state.pointer.last, frame, state.constraint, fine=state.precise)
+    return Translation(vector)
+
+
+def _typed(state: State, frame: Frame, read: Read) -> Vector:
+    axes = frame.axes_of(state.constraint)[:, list(state.constraint.axes)]
+    values = [state.typed.value(i, read) or 0.0 for i in range(state.components)]
+    return np.asarray(axes @ np.array(values))
 
 
 def _dragged(state: State, frame: Frame, view: View) -> Vector:
@@ -56,7 +72,7 @@ def _dragged(state: State, frame: Frame, view: View) -> Vector:
     if state.constraint.axis is None or not shift.any():
         return shift
     rays = view.ray(start, frame.pivot), view.ray(end, frame.pivot)
-    axis = frame.axes[:, state.constraint.axis]
+    axis = frame.axes_of(state.constraint)[:, state.constraint.axis]
     exact = _on_locked(state.constraint, axis, frame.pivot, rays)
     if exact is not None and _before_horizon(exact, shift, view, frame.pivot):
         return exact

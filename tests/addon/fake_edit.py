@@ -16,6 +16,25 @@ class FakeEdit:
     accepted: float = 0.0
     shown: float = 0.0
     goals: list[float] = field(default_factory=list)
+    requests: list[Any] = field(default_factory=list)
+    interference: bool = True
+    moving = frozenset({"Box"})
+    start_digest = "start"
+    controls = ()
+
+    def begun(self, request: Any) -> "FakeEdit":
+        """Stands for the beginning of an edit, the first and each that is requested later ("again")."""
+        for name in ("begin", "again") if self.requests else ():
+            if name in self.failing:
+                raise self.failing[name]
+        self.requests.append(request)
+        self.interference = request.interference
+        return self
+
+    def set_interference(self, on: bool) -> str:
+        self._called("interference")
+        self.interference = on
+        return ""
 
     def drag(self, matrix: Any) -> Any:
         self._called("drag")

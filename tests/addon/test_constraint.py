@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import itertools
+from dataclasses import replace
 
 import pytest
 
@@ -20,6 +21,13 @@ def test_an_axis_leaves_itself_and_a_plane_the_others(lock: Constraint) -> None:
 
 
 @pytest.mark.parametrize(("before", "wanted"), list(itertools.product([Constraint(), *LOCKS], LOCKS)))
-def test_toggling_replaces_and_the_same_lock_lets_go(before: Constraint, wanted: Constraint) -> None:
+def test_another_lock_replaces(before: Constraint, wanted: Constraint) -> None:
     after = before.toggled(wanted.axis, plane=wanted.plane)
-    assert after == (Constraint() if before == wanted else wanted)
+    assert after == (replace(wanted, second=True) if before == wanted else wanted)
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_the_same_lock_takes_other_axes_and_then_lets_go(lock: Constraint) -> None:
+    again = lock.toggled(lock.axis, plane=lock.plane)
+    assert again == replace(lock, second=True) and again.axes == lock.axes
+    assert again.toggled(lock.axis, plane=lock.plane) == Constraint()

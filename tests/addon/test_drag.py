@@ -7,17 +7,20 @@ from test_state import EVENTS
 
 from stiv_addon.modal.drag import Drag, Progress
 from stiv_addon.modal.events import Event
+from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
-from stiv_addon.modal.state import State
+from stiv_addon.modal.request import Request
+from stiv_addon.modal.state import Effect, State
 
 
 def new_drag(edit: FakeEdit) -> Drag:
     """A drag whose goal is a hundredth of the pointer's x, or the typed number."""
+    return Drag(edit.begun, measure, lambda value, state: value, State(Pointer.at((0.0, 0.0))))
 
-    def measure(state: State) -> float:
-        return (state.typed.value or 0.0) if state.typed.active else state.pointer.effective[0] / 100.0
 
-    return Drag(edit, measure, lambda value: value, State(Pointer.at((0.0, 0.0))))
+def measure(state: State) -> float:
+    typed = state.typed.value(0, lambda text: evaluate(text, {"": 1.0}.get))
+    return (typed or 0.0) if state.typed.active else state.pointer.effective[0] / 100.0
 
 
 def move_to(x: float) -> Event:
@@ -39,15 +42,16 @@ def test_confirm_solves_what_is_left_settles_and_writes() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(30))
-    assert drag.handle(Event("LEFTMOUSE")) is Progress.FINISHED
-    assert edit.calls == ["drag", "settle", "write"]
+    assert drag.handle(Event("LEFTMOUSE")) is Effect.CONFIRM and drag.progress is Progress.FINISHED
+    assert edit.calls == ["drag", "write", "settle", "write"]
     assert edit.shown == drag.transform == 0.3
 
 
 def test_confirm_without_a_motion_touches_nothing() -> None:
     edit = FakeEdit()
-    assert new_drag(edit).handle(Event("RET")) is Progress.FINISHED
-    assert edit.calls == []
+    drag = new_drag(edit)
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.FINISHED and edit.calls == [] and drag.transform is None
 
 
 def test_a_typed_value_restores_and_is_left_to_the_caller() -> None:
@@ -57,7 +61,8 @@ def test_a_typed_value_restores_and_is_left_to_the_caller() -> None:
     drag.tick()
     drag.handle(Event("TWO"))
     drag.tick()
-    assert drag.handle(Event("RET")) is Progress.VALUE_GIVEN
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.VALUE_GIVEN
     assert edit.calls[-1] == "restore"
     assert (drag.transform, edit.shown) == (2.0, 0.0)
 
@@ -68,7 +73,8 @@ def test_cancel_restores(key: str) -> None:
     drag = new_drag(edit)
     drag.handle(move_to(70))
     drag.tick()
-    assert drag.handle(Event(key)) is Progress.CANCELLED
+    drag.handle(Event(key))
+    assert drag.progress is Progress.CANCELLED
     assert edit.calls[-1] == "restore"
     assert edit.shown == 0.0 and drag.error is None
 
@@ -112,7 +118,7 @@ def test_a_scene_that_is_gone_ends_too() -> None:
     drag.handle(move_to(40))
     assert drag.tick() is Progress.CANCELLED
     assert "gone as well" in drag.error.__notes__[0]
-    assert drag.handle(Event("RET")) is Progress.CANCELLED
+    assert drag.handle(Event("RET")) is Effect.NONE
 
 
 def test_abort_restores_once() -> None:
@@ -123,8 +129,87 @@ def test_abort_restores_once() -> None:
     assert edit.calls == ["restore"]
 
 
+def test_another_request_begins_again_from_the_start() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    drag.handle(Event("R"))
+    drag.handle(Event("W"))
+    drag.tick()
+    assert edit.calls == ["drag", "write", "restore", "drag", "write"]
+    assert edit.requests == [Request(), Request("rotate", "unselected")]
+
+
+def test_a_refused_request_is_told_and_the_old_one_goes_on() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    edit.failing["begin"] = ValueError("it cannot be turned")
+    drag.handle(Event("R"))
+    assert drag.tick() is Progress.RUNNING
+    assert (drag.note, drag.state.kind, edit.shown) == ("it cannot be turned", "move", 0.7)
+
+
+def test_a_request_and_a_confirmation_at_once_end_in_the_new_kind() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.handle(Event("S"))
+    drag.handle(Event("LEFTMOUSE"))
+    assert edit.requests[-1].kind == drag.state.kind == "scale" and edit.shown == 0.7
+
+
+def test_a_refusal_at_the_confirmation_keeps_what_was_accepted() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    edit.failing["drag"] = ValueError("beyond the horizon")
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.shown == 0.7 and drag.transform == 0.7
+
+
+@pytest.mark.parametrize("keys", [["EQUAL", "TWO", "NUMPAD_PLUS"], ["EQUAL", "A"]])
+def test_what_is_no_number_cannot_be_confirmed(keys: list[str]) -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    for key in keys:
+        drag.handle(Event(key))
+    drag.tick()
+    assert drag.note
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.RUNNING and drag.note
+    drag.handle(Event("ESC"))
+    assert drag.progress is Progress.CANCELLED and drag.error is None
+
+
+def test_interference_is_switched_without_beginning_again() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.handle(Event("I"))
+    drag.tick()
+    drag.tick()
+    assert edit.calls == ["interference", "drag", "write"] and not edit.interference
+    drag.handle(Event("I"))
+    drag.tick()
+    assert edit.interference and len(edit.requests) == 1
+
+
+def test_another_view_solves_for_the_pointer_in_it() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(30))
+    drag.tick()
+    drag.look(Pointer.at((60.0, 0.0)))
+    drag.tick()
+    assert edit.goals == [0.3, 0.6]
+
+
 FAULTS = st.dictionaries(
-    st.sampled_from(["drag", "settle", "write"]), st.sampled_from([RuntimeError("broken"), ValueError("no")])
+    st.sampled_from(["drag", "settle", "write", "again"]), st.sampled_from([RuntimeError("broken"), ValueError("no")])
 )
 
 
@@ -138,6 +223,8 @@ def test_every_sequence_ends_shown_as_accepted_or_restored(
         drag.handle(event)
         if number % 3 == 0:
             drag.tick()
+    if drag.progress is Progress.RUNNING:  # a number that is none cannot be confirmed
+        drag.handle(Event("ESC"))
     assert drag.progress is not Progress.RUNNING
     assert edit.shown == (edit.accepted if drag.progress is Progress.FINISHED else 0.0)
     before = list(edit.calls)

@@ -17,8 +17,15 @@ import mathutils  # noqa: E402
 import stiv_addon  # noqa: E402
 from stiv_addon import availability  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
-from stiv_addon.operators import CLASSES  # noqa: E402
+from stiv_addon.operators import CLASSES, outcomes  # noqa: E402
 from stiv_addon.panels.drawing import draw_problem  # noqa: E402
+
+
+class Motion(SimpleNamespace):
+    """Stands for that of `stiv.blender`."""
+
+    def __init__(self, matrix: Any, pivot: Any, individual: bool, influence: Any, rotation: Any) -> None:
+        super().__init__(matrix=matrix, pivot=pivot, individual=individual, influence=influence, rotation=rotation)
 
 
 class RecordingEdit:
@@ -36,8 +43,14 @@ class RecordingEdit:
         RecordingEdit.begun = edit
         return edit
 
-    def apply(self, matrix: Any, path: Any) -> Any:
-        self.matrix = np.array(matrix)
+    start_digest = "start"
+
+    def take_up(self, controls: Any) -> bool:
+        self.matrix = controls
+        return True
+
+    def apply(self, motion: Any, path: Any) -> Any:
+        self.motion, self.matrix = motion, np.array(motion.matrix)
         assert path(1.0) == pytest.approx(self.matrix)
         assert path(0.0) == pytest.approx(np.eye(4))
         if self.failing is not None:
@@ -67,6 +80,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
+    plain |= {"Motion": Motion, "Influence": lambda *given: given}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)
@@ -128,6 +142,43 @@ def test_settings_and_roles_of_the_scene_are_passed_on(scene: Any) -> None:
     assert settings.time_budget == 0.0
 
 
+def test_choices_of_a_drag_are_properties() -> None:
+    bpy.context.scene.tool_settings.transform_pivot_point = "INDIVIDUAL_ORIGINS"
+    chosen = {"proportional": True, "proportional_size": 2.5, "proportional_falloff": "SHARP"}
+    bpy.ops.stiv.rotate(angle=0.5, responders="all", interference="OFF", **chosen)
+    edit = RecordingEdit.begun
+    assert edit.settings.responders == "all" and not edit.settings.interference and edit.motion.individual
+    np.testing.assert_allclose(edit.motion.rotation, [0.0, 0.0, 0.5])
+    with pytest.raises(TypeError):
+        bpy.ops.stiv.move(falloff="ODD")
+
+
+def test_the_outcome_of_a_drag_is_taken_up_again_from_the_same_start(scene: Any) -> None:
+    ended = np.eye(4)
+    ended[:3, 3] = 0.0, 7.0, 0.0
+    result = SimpleNamespace(status="blocked", blocking=(), rounds=1, patches=0, energy=0.0, timings={}, counters={})
+    result.events = SimpleNamespace(kind=[])
+    number = outcomes.keep(outcomes.Outcome("start", ended, result, None))
+    RecordingEdit.begun = None
+    bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # what the drag does at its end
+    assert RecordingEdit.begun is None
+    bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # the redo panel
+    np.testing.assert_array_equal(scene.location, (1.0, 9.0, 3.0))
+    assert json.loads(bpy.context.window_manager.stiv_last_edit)["status"] == "blocked"
+    bpy.ops.stiv.move(value=(0.0, 1.0, 0.0), outcome=number)  # with another value
+    np.testing.assert_array_equal(scene.location, (1.0, 10.0, 3.0))
+    outcomes.find(number).start = "another"
+    bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # from another start
+    np.testing.assert_array_equal(scene.location, (1.0, 19.0, 3.0))
+
+
+def test_old_outcomes_are_forgotten() -> None:
+    numbers = [outcomes.keep(outcomes.Outcome(str(i), None, None, None)) for i in range(outcomes.MOST + 3)]
+    assert outcomes.find(numbers[0]) is None and outcomes.find(numbers[-1]).start == str(outcomes.MOST + 2)
+    outcomes.clear()
+    assert outcomes.find(numbers[-1]) is None and outcomes.find(0) is None
+
+
 def test_median_of_selected_vertices_is_the_pivot_in_edit_mode(scene: Any) -> None:
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
@@ -147,7 +198,7 @@ def test_selected_lattice_points_are_the_pivot_in_edit_mode() -> None:
 
 def test_without_the_native_module_operators_say_why(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(availability, "problem", lambda: "the native module is missing")
-    assert not any(cls.poll(bpy.context) for cls in CLASSES)
+    assert not any(cls.poll(bpy.context) for cls in CLASSES if "INTERNAL" not in cls.bl_options)
     with pytest.raises(RuntimeError, match="the native module is missing"):
         bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
 

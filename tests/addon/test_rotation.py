@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from views import VIEWS, looking
+from views import VIEWS, looking, typed
 
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import State
-from stiv_addon.modal.typed_number import TypedNumber
 from stiv_addon.transform.frame import Frame
 from stiv_addon.transform.rotation import Rotation, measure_rotation
 from stiv_addon.transform.view import View
@@ -26,7 +26,7 @@ def turned(view: View, quarter_turns: int, constraint: Constraint) -> np.ndarray
         angle = math.copysign(i, quarter_turns) * math.pi / 6.0
         pointer = pointer.moved((centre[0] + 100.0 * math.cos(angle), centre[1] + 100.0 * math.sin(angle)))
     frame = Frame(PIVOT, view=view)
-    return measure_rotation(State(pointer, constraint), frame).matrix(frame)
+    return measure_rotation(State(pointer, constraint=constraint), frame).matrix(frame)
 
 
 @pytest.mark.parametrize("view", [VIEWS["top"], VIEWS["corner parallel"], looking((6, -5, 4), tuple(PIVOT))])
@@ -48,7 +48,7 @@ def test_an_axis_seen_from_behind_turns_the_other_way(eye: tuple, sign: float) -
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("plane", [False, True])
 def test_typed_degrees_turn_counter_clockwise_about_the_locked_axis(axis: int, plane: bool) -> None:
-    state = State(Pointer.at((0.0, 0.0)), Constraint(axis, plane), TypedNumber("90"))
+    state = State(Pointer.at((0.0, 0.0)), Request("rotate"), Constraint(axis, plane), typed("90"))
     matrix = measure_rotation(state, Frame(PIVOT, view=VIEWS["below perspective"])).matrix(Frame(np.zeros(3)))
     following = np.eye(3)[(axis + 1) % 3]
     np.testing.assert_allclose(matrix[:3, :3] @ following, np.eye(3)[(axis + 2) % 3], atol=1e-12)

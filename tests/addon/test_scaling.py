@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
+from views import typed
 
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import State
-from stiv_addon.modal.typed_number import TypedNumber
+from stiv_addon.modal.typed_values import TypedValues
 from stiv_addon.transform.frame import Frame, orthonormal
 from stiv_addon.transform.scaling import LEAST_FACTOR, measure_scaling
 
@@ -32,7 +34,7 @@ def test_the_pointer_alone_neither_collapses_nor_explodes() -> None:
 
 @pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.label)
 def test_only_the_axes_left_are_scaled(lock: Constraint) -> None:
-    state = State(Pointer.at((500.0, 300.0), CENTRE), lock, TypedNumber("3"))
+    state = State(Pointer.at((500.0, 300.0), CENTRE), Request("scale"), lock, typed("3"))
     frame = Frame(PIVOT, TILTED)
     matrix = measure_scaling(state, frame).matrix(frame)
     for axis in range(3):
@@ -42,9 +44,14 @@ def test_only_the_axes_left_are_scaled(lock: Constraint) -> None:
     np.testing.assert_allclose(matrix @ np.append(PIVOT, 1.0), np.append(PIVOT, 1.0), atol=1e-12)
 
 
-@pytest.mark.parametrize(("typed", "expected"), [(TypedNumber("", True), 1.0), (TypedNumber("2", True), -2.0)])
-def test_typed_factors(typed: TypedNumber, expected: float) -> None:
-    assert measure_scaling(State(Pointer.at((0.0, 0.0)), typed=typed), Frame(PIVOT)).factors[0] == expected
+@pytest.mark.parametrize(("typed_values", "expected"), [(typed("-"), 1.0), (typed("-2"), -2.0)])
+def test_typed_factors(typed_values: TypedValues, expected: float) -> None:
+    assert measure_scaling(State(Pointer.at((0.0, 0.0)), typed=typed_values), Frame(PIVOT)).factors[0] == expected
+
+
+def test_several_typed_factors_count_for_their_axes() -> None:
+    state = State(Pointer.at((0.0, 0.0)), Request("scale"), typed=typed("2", "", "4"))
+    np.testing.assert_array_equal(measure_scaling(state, Frame(PIVOT)).factors, [2.0, 1.0, 4.0])
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 2, 3), (1e-6, 1, 1e6)])

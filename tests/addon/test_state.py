@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -6,6 +8,8 @@ from hypothesis import strategies as st
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.proportional import Proportional
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import CANCEL_KEYS, CONFIRM_KEYS, Effect, Phase, State, step
 
 SHIFT = frozenset({"shift"})
@@ -41,7 +45,8 @@ def test_axis_keys_lock(key: str, axis: int) -> None:
     state, effect = step(start(), Event(key))
     assert (state.constraint, effect) == (Constraint(axis), Effect.UPDATE)
     assert after(Event(key, modifiers=SHIFT)).constraint == Constraint(axis, plane=True)
-    assert after(Event(key), Event(key)).constraint == Constraint()
+    assert after(Event(key), Event(key)).constraint == Constraint(axis, second=True)
+    assert after(Event(key), Event(key), Event(key)).constraint == Constraint()
     assert step(start(), Event(key, modifiers=frozenset({"ctrl"}))) == (start(), Effect.NONE)
 
 
@@ -52,9 +57,9 @@ def test_a_motion_asks_for_an_update_with_the_latest_place() -> None:
 
 def test_a_typed_number_outlives_motions_and_gives_way_when_deleted() -> None:
     typed = after(Event("TWO"), Event("MINUS"), Event("PERIOD"), Event("FIVE"))
-    assert typed.typed.value == -2.5
+    assert typed.typed.value(0, float) == -2.5
     moved, effect = step(typed, Event("MOUSEMOVE", "NOTHING", (500.0, 0.0)))
-    assert (moved.typed.value, effect) == (-2.5, Effect.NONE)
+    assert (moved.typed.value(0, float), effect) == (-2.5, Effect.NONE)
     for _ in range(4):
         moved, effect = step(moved, Event("BACK_SPACE"))
     assert effect is Effect.UPDATE
@@ -68,14 +73,79 @@ def test_shift_makes_motions_precise_while_held() -> None:
     assert state.pointer.effective == pytest.approx((110.0, 100.0))
 
 
-@pytest.mark.parametrize("key", ["A", "G", "TAB", "F5", "WINDOW_DEACTIVATE", "TIMER", "WHEELUPMOUSE", "NONE"])
+@pytest.mark.parametrize("key", ["A", "F5", "WINDOW_DEACTIVATE", "TIMER", "NONE", "PAGE_UP", "O", "LEFT_ALT"])
 def test_other_events_change_nothing(key: str) -> None:
     assert step(start(), Event(key)) == (start(), Effect.NONE)
 
 
+@pytest.mark.parametrize(("key", "kind"), [("G", "move"), ("R", "rotate"), ("S", "scale")])
+def test_another_kind_goes_on_with_lock_number_and_pointer(key: str, kind: str) -> None:
+    before = after(Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)), Event("X"), Event("TWO"))
+    for state, _ in (step(replace(before, request=Request(other)), Event(key)) for other in ("move", "rotate")):
+        assert state == replace(before, request=Request(kind))
+
+
+def test_numbers_without_a_component_are_dropped() -> None:
+    typed = after(Event("ONE"), Event("TAB"), Event("TWO"), Event("TAB"), Event("THREE"))
+    assert [typed.typed.value(i, float) for i in range(3)] == [1, 2, 3]
+    plane, _ = step(typed, Event("X", modifiers=SHIFT))
+    assert [plane.typed.value(i, float) for i in range(3)] == [1, 2, None]
+    turned, _ = step(typed, Event("R"))
+    assert [turned.typed.value(i, float) for i in range(3)] == [1, None, None] and turned.typed.index == 0
+
+
+@pytest.mark.parametrize("key", ["G", "R", "S", "X", "I", "W", "O", "SPACE", "SLASH"])
+def test_in_an_expression_keys_are_characters(key: str) -> None:
+    before = after(Event("ONE"), Event("EQUAL", text="="))
+    state, effect = step(before, Event(key))
+    assert effect is Effect.UPDATE
+    assert state == replace(before, typed=state.typed) and len(state.typed.numbers[0].digits) == 2
+
+
+@pytest.mark.parametrize("key", ["RET", "ESC", "LEFTMOUSE", "RIGHTMOUSE"])
+def test_an_expression_ends_like_everything_else(key: str) -> None:
+    assert step(after(Event("EQUAL", text="=")), Event(key))[0].phase is not Phase.DRAGGING
+
+
+@pytest.mark.parametrize("key", ["MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION", "TRACKPADPAN"])
+@pytest.mark.parametrize("value", ["PRESS", "RELEASE", "NOTHING"])
+def test_the_view_is_left_to_blender(key: str, value: str) -> None:
+    assert step(start(), Event(key, value)) == (start(), Effect.PASS)
+
+
+def test_the_wheel_changes_the_size_of_proportional_editing() -> None:
+    before = replace(start(), proportional=Proportional(True, True, 2.0))
+    larger, effect = step(before, Event("WHEELDOWNMOUSE"))
+    assert effect is Effect.UPDATE and larger.proportional.size > 2.0
+    assert step(before, Event("PAGE_DOWN"))[0].proportional.size < 2.0
+    assert step(before, Event("WHEELDOWNMOUSE", modifiers=frozenset({"alt"}))) == (before, Effect.PASS)
+    assert step(before, Event("MIDDLEMOUSE")) == (before, Effect.PASS)
+    assert not step(before, Event("O"))[0].proportional.on
+    assert step(before, Event("O", modifiers=SHIFT))[0].proportional.falloff == "SPHERE"
+    assert step(start(), Event("O")) == (start(), Effect.NONE)
+
+
+def test_ctrl_held_and_shift_tab_turn_snapping_round() -> None:
+    held, effect = step(start(), Event("LEFT_CTRL", modifiers=frozenset({"ctrl"})))
+    assert held.snapping and effect is Effect.UPDATE
+    assert step(held, Event("LEFT_CTRL", "RELEASE")) == (start(), Effect.UPDATE)
+    assert step(held, Event("MOUSEMOVE", "NOTHING", (100.0, 100.0)))[0].snapping is False
+    switched, effect = step(start(), Event("TAB", modifiers=SHIFT))
+    assert switched.snapping and effect is Effect.UPDATE
+    assert step(switched, Event("LEFT_SHIFT"))[1] is Effect.UPDATE  # finer steps
+    assert step(start(), Event("LEFT_SHIFT"))[1] is Effect.NONE
+
+
+def test_keys_ask_for_who_responds_and_whether_anything_does() -> None:
+    assert after(Event("I")).request == Request(interference=False)
+    assert after(Event("I"), Event("I")).request == Request()
+    found = [after(*[Event("W")] * times).request.responders for times in range(4)]
+    assert sorted(set(found)) == ["all", "selected", "unselected"] and found[3] == found[0]
+
+
 POINTER_KEYS = ["MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "TIMER"]
-OTHER_KEYS = ["A", "G", "S", "TAB", "LEFT_SHIFT", "RIGHT_SHIFT"]
-NUMBER_KEYS = ["ZERO", "NUMPAD_3", "PERIOD", "COMMA", "MINUS", "BACK_SPACE"]
+OTHER_KEYS = ["A", *"GRSIWO", "TAB", "LEFT_SHIFT", "RIGHT_CTRL", "PAGE_UP", "WHEELUPMOUSE", "EQUAL"]
+NUMBER_KEYS = ["ZERO", "NUMPAD_3", "PERIOD", "COMMA", "MINUS", "SLASH", "NUMPAD_ASTERIX", "BACK_SPACE"]
 KEYS = st.sampled_from([*"XYZ", *POINTER_KEYS, *OTHER_KEYS, *NUMBER_KEYS, *sorted(CONFIRM_KEYS | CANCEL_KEYS)])
 EVENTS = st.builds(
     Event,

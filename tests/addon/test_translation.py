@@ -3,12 +3,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from views import VIEWS, looking
+from views import VIEWS, looking, typed
 
 from stiv_addon.modal.constraint import Constraint
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State
-from stiv_addon.modal.typed_number import TypedNumber
 from stiv_addon.transform.frame import Frame, orthonormal
 from stiv_addon.transform.translation import measure_translation
 from stiv_addon.transform.view import View
@@ -75,17 +74,31 @@ def test_beyond_the_horizon_the_motion_stays_in_proportion() -> None:
 
 @pytest.mark.parametrize("lock", [Constraint(), *LOCKS], ids=lambda lock: lock.label)
 def test_a_typed_number_counts_along_the_first_axis_left(lock: Constraint) -> None:
-    state = State(Pointer.at((0.0, 0.0)).moved((50.0, 50.0)), constraint=lock, typed=TypedNumber("2.5", True))
+    state = State(Pointer.at((0.0, 0.0)).moved((50.0, 50.0)), constraint=lock, typed=typed("-2.5"))
     vector = measure_translation(state, Frame(PIVOT, TILTED, VIEWS["top"])).vector
     np.testing.assert_allclose(vector, -2.5 * TILTED[:, lock.axes[0]])
 
 
+@pytest.mark.parametrize("lock", [Constraint(), Constraint(0, plane=True), Constraint(1, plane=True)])
+def test_typed_numbers_fill_the_axes_left_in_order(lock: Constraint) -> None:
+    state = State(Pointer.at((0.0, 0.0)), constraint=lock, typed=typed("1", "", "3").limited(len(lock.axes)))
+    vector = measure_translation(state, Frame(PIVOT, TILTED)).vector
+    expected = TILTED[:, list(lock.axes)] @ [1.0, 0.0, 3.0][: len(lock.axes)]
+    np.testing.assert_allclose(vector, expected, atol=1e-12)
+
+
+def test_an_axis_pressed_twice_is_that_of_the_second_choice() -> None:
+    state = State(Pointer.at((0.0, 0.0)), constraint=Constraint(1, second=True), typed=typed("2"))
+    vector = measure_translation(state, Frame(PIVOT, np.eye(3), second_axes=TILTED)).vector
+    np.testing.assert_allclose(vector, 2.0 * TILTED[:, 1])
+
+
 def test_a_sign_alone_moves_nothing() -> None:
-    state = State(Pointer.at((0.0, 0.0)), typed=TypedNumber("", True))
+    state = State(Pointer.at((0.0, 0.0)), typed=typed("-"))
     assert not measure_translation(state, Frame(PIVOT)).vector.any()
 
 
 def test_the_matrix_moves_points_by_the_vector() -> None:
-    state = State(Pointer.at((0.0, 0.0)), typed=TypedNumber("3"))
+    state = State(Pointer.at((0.0, 0.0)), typed=typed("3"))
     matrix = measure_translation(state, Frame(PIVOT)).matrix(Frame(PIVOT))
     np.testing.assert_array_equal(matrix @ [1.0, 2.0, 3.0, 1.0], [4.0, 2.0, 3.0, 1.0])

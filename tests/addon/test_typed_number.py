@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiv_addon.modal.events import Event
-from stiv_addon.modal.typed_number import MAX_DIGITS, TypedNumber, typed_character
+from stiv_addon.modal.typed_number import MAX_DIGITS, TypedNumber, expression_character, typed_character
 
 
 def number(keys: str) -> TypedNumber:
@@ -32,12 +32,16 @@ def number(keys: str) -> TypedNumber:
         ("12\b\b", None, ""),
         ("-1\b", None, "-"),
         ("-1\b\b", None, ""),
+        ("4/", 0.25, "1/4"),
+        ("4//", 4.0, "4"),
+        ("/-2", -0.5, "-1/2"),
+        ("2/\b\b", None, ""),
         ("\b", None, ""),
     ],
 )
 def test_keys_give_the_number(keys: str, value: float | None, text: str) -> None:
     typed = number(keys)
-    assert (typed.value, typed.text) == (value, text)
+    assert (typed.value(), typed.text) == (value, text)
     assert typed.active == bool(text)
 
 
@@ -45,10 +49,10 @@ def test_keys_give_the_number(keys: str, value: float | None, text: str) -> None
 def test_any_keys_leave_a_number_that_python_reads_alike(keys: str) -> None:
     typed = number(keys)
     assert len(typed.digits) <= MAX_DIGITS
-    assert typed.value is None or typed.value == float(typed.text)
+    assert typed.value() is None or typed.value() == float(typed.text)
 
 
-@given(st.text("0123456789.-\b", max_size=40))
+@given(st.text("0123456789.-/\b", max_size=40))
 def test_backspace_deletes_everything_in_the_end(keys: str) -> None:
     assert not number(keys + "\b" * (MAX_DIGITS + 1)).active
 
@@ -65,9 +69,40 @@ def test_backspace_deletes_everything_in_the_end(keys: str) -> None:
         (Event("BACK_SPACE", text="\b"), "\b"),
         (Event("ONE", text="&"), "1"),  # the digit row of a French keyboard
         (Event("FIVE", modifiers=frozenset({"ctrl"}), text="5"), ""),
+        (Event("SLASH", text="/"), "/"),
+        (Event("NUMPAD_SLASH"), "/"),
         (Event("A", text="a"), ""),
         (Event("A", text="12"), ""),
     ],
 )
 def test_events_type_characters(event: Event, character: str) -> None:
     assert typed_character(event) == character
+
+
+@pytest.mark.parametrize(
+    ("event", "character"),
+    [
+        (Event("C", text="c"), "c"),
+        (Event("C"), "c"),
+        (Event("NUMPAD_PLUS"), "+"),
+        (Event("SPACE", text=" "), " "),
+        (Event("SEVEN", text="(", modifiers=frozenset({"shift"})), "("),
+        (Event("EQUAL", text="="), "="),
+        (Event("F5"), ""),
+        (Event("LEFT_ALT"), ""),
+        (Event("C", text="c", modifiers=frozenset({"ctrl"})), ""),
+    ],
+)
+def test_expressions_take_what_can_be_printed(event: Event, character: str) -> None:
+    assert expression_character(event) == character
+
+
+def test_a_number_becomes_an_expression_as_it_is_shown() -> None:
+    assert number("4-/").as_expression() == TypedNumber("-1/4", expression=True)
+    assert TypedNumber("-1/4", expression=True).typed("-").digits == "-1/4-"
+
+
+def test_what_reads_the_number_decides_its_value() -> None:
+    assert number("4-/").value(lambda text: 10.0 * float(text)) == -1.0 / 40.0
+    with pytest.raises(ValueError, match="1/0"):
+        number("0/").value()

@@ -3,9 +3,17 @@
 
 import numpy as np
 
+from stiv_addon.modal.typed_number import TypedNumber
+from stiv_addon.modal.typed_values import TypedValues
 from stiv_addon.transform.view import View
 
 SIZE = (800, 600)
+
+
+def typed(*texts: str) -> TypedValues:
+    """Numbers typed one after the other, as with Tab."""
+    numbers = [TypedNumber(text.lstrip("-"), text.startswith("-")) for text in texts]
+    return TypedValues((*numbers, *[TypedNumber()] * (3 - len(numbers))), len(numbers) - 1)
 
 
 def looking(eye: tuple, target: tuple = (0.0, 0.0, 0.0), *, parallel: bool = False) -> View:

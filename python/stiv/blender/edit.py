@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -124,6 +125,34 @@ class BlenderEdit:
     def assembly(self) -> Assembly:
         """The surface's objects and faces, with the cuts of bent faces that are kept free."""
         return self._solving.assembly
+
+    @property
+    def start_digest(self) -> str:
+        """Of the surface and the controls at the beginning: equal where an edit begins at the same state."""
+        return _digest(self.assembly.positions, self._start)
+
+    @property
+    def moving(self) -> frozenset[str]:
+        """Names of the objects whose surface follows the transform."""
+        meshes = self.assembly.meshes
+        return frozenset(meshes[index].owner.name for part in self._parts if part.rule.moves for index in part.surfaces)
+
+    def take_up(self, controls: ArrayLike) -> bool:
+        """Go on from controls, (m, 3), that an edit from the same beginning accepted. False, with nothing changed, if
+        they are not free of intersections here.
+        """
+        accepted = np.asarray(controls, np.float64)
+        if accepted.shape != self._start.shape:
+            return False
+        if self._unguarded is not None:
+            self._unguarded = accepted
+            return True
+        try:
+            self._solving.go_on_from(accepted, accepted)
+        except stiv.StartIntersectsError:
+            self._solving.go_on_from(self._start, self._start)
+            return False
+        return True
 
     @property
     def interference(self) -> bool:
@@ -307,6 +336,13 @@ class BlenderEdit:
         diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
         count = increments(path, points, STEP * diagonal, MOST_STEPS)
         return ((k + 1) / count for k in range(count))
+
+
+def _digest(*arrays: Floats) -> str:
+    found = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        found.update(np.ascontiguousarray(array).tobytes())
+    return found.hexdigest()
 
 
 def _times(fraction: float, vector: Floats | None) -> Floats | None:

@@ -12,8 +12,10 @@ bpy = pytest.importorskip("bpy")
 
 from fake_edit import FakeEdit  # noqa: E402
 
-from stiv_addon.operators import interface  # noqa: E402
-from stiv_addon.operators.adapter import TransformOperator  # noqa: E402
+from stiv_addon.modal.pointer import Pointer  # noqa: E402
+from stiv_addon.modal.state import State  # noqa: E402
+from stiv_addon.operators import dragging, interface  # noqa: E402
+from stiv_addon.operators.dragging import Dragging  # noqa: E402
 from stiv_addon.transform.frame import Frame  # noqa: E402
 
 
@@ -33,24 +35,27 @@ class Area:
         self.drawn += 1
 
 
-class Probe(TransformOperator):
-    """A transform whose value is a hundredth of the pointer's x."""
+class Value(SimpleNamespace):
+    """A transform that is a number."""
 
-    bl_label = "Probe"
+    rotation = None
+
+    def text(self) -> str:
+        return f"{self.value}"
+
+
+class Probe(Dragging):
+    """A drag whose value is a hundredth of the pointer's x."""
+
     kind = "move"
 
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
+        self._frame, self._snap, self._readers = Frame(np.zeros(3)), None, {}
+        self._axes, self._notes = ("GLOBAL", "LOCAL"), []
 
     def report(self, kind: set, text: str) -> None:
         self.reports.append((kind, text))
-
-    def measure(self, state: Any, frame: Frame) -> Any:
-        value = state.pointer.effective[0] / 100.0
-        return SimpleNamespace(text=lambda: f"{value}", matrix=lambda frame: value)
-
-    def keep(self, transform: Any) -> None:
-        self.kept = transform
 
 
 class Context(SimpleNamespace):
@@ -65,9 +70,8 @@ class Context(SimpleNamespace):
             modal_handler_add=self.modals.append,
             stiv_last_edit="",
         )
-        tools = SimpleNamespace(transform_pivot_point="MEDIAN_POINT")
-        scene = SimpleNamespace(tool_settings=tools, transform_orientation_slots=[SimpleNamespace(type="GLOBAL")])
-        super().__init__(mode="OBJECT", region=None, workspace=None, window=None, scene=scene, window_manager=manager)
+        nothing = dict.fromkeys(("region", "region_data", "workspace", "window"))
+        super().__init__(mode="OBJECT", **nothing, window_manager=manager)
 
 
 def event(kind: str, value: str = "PRESS", x: int = 0) -> Any:
@@ -83,8 +87,11 @@ def edit() -> FakeEdit:
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Context]:
     monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
+    monkeypatch.setattr(dragging, "measure", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0))
+    monkeypatch.setattr(dragging, "make_motion", lambda transform, *rest: transform.value)
+    monkeypatch.setattr(dragging, "make_influence", lambda proportional: None)
     operator, context = Probe(), Context()
-    operator._start(context, event("M"), Frame(np.zeros(3)), edit)
+    operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begun)
     return operator, context
 
 
@@ -143,6 +150,12 @@ def test_what_cannot_be_restored_is_said(started: Any, edit: FakeEdit) -> None:
     operator.modal(context, event("TIMER"))
     assert operator.reports == [({"ERROR"}, "broken; while restoring: the box is gone")]
     expect_clean(context)
+
+
+def test_what_turns_the_view_is_left_to_blender(started: Any) -> None:
+    operator, context = started
+    assert operator.modal(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
+    assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
 
 
 def test_another_mode_ends_the_drag(started: Any, edit: FakeEdit) -> None:

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a typed expression amounts to: + - * / ** ( ), pi, and numbers with units. Nothing is looked up or called."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+MAX_LENGTH = 60
+
+_TOKEN = re.compile(r"\s*(?:(\d+\.?\d*|\.\d+)|(\*\*|[-+*/()^])|([A-Za-zµμ°]+|'{1,2}|\"))")
+
+Units = Callable[[str], float | None]  # the factor of a unit by its name; "" for a number without one; None: unknown
+
+
+def evaluate(text: str, units: Units) -> float:
+    """The value of an expression. A number counts in its unit; without any unit, all of it in that of "".
+
+    Raises ValueError, which says what is wrong.
+    """
+    if len(text) > MAX_LENGTH:
+        raise ValueError("this is too long")
+    reader = _Reader(_tokens(text), units)
+    try:
+        value = reader.all()
+    except (OverflowError, ZeroDivisionError):
+        value = math.nan
+    if not isinstance(value, float) or not math.isfinite(value):
+        raise ValueError(f"{text!r} is not a finite number")
+    return value if reader.has_units else value * (units("") or 1.0)
+
+
+def _tokens(text: str) -> list[str]:
+    tokens, place = [], 0
+    text = text.rstrip()
+    while place < len(text):
+        match = _TOKEN.match(text, place)
+        if match is None:
+            raise ValueError(f"{text[place]!r} is not understood")
+        tokens.append(match.group().strip())
+        place = match.end()
+    return tokens
+
+
+class _Reader:
+    """Recursive descent over tokens; the last one is "", the end."""
+
+    def __init__(self, tokens: list[str], units: Units):
+        self.has_units = False
+        self._tokens = [*tokens, ""]
+        self._units = units
+        self._place = 0
+
+    def all(self) -> float:
+        value = self._sum()
+        if self._next():
+            raise ValueError(f"{self._next()!r} is not expected here")
+        return value
+
+    def _next(self) -> str:
+        return self._tokens[self._place]
+
+    def _taken(self, *wanted: str) -> str:
+        """The next token if it is one of those wanted, which is then behind us; otherwise empty."""
+        token = self._next()
+        if token not in wanted or not token:
+            return ""
+        self._place += 1
+        return token
+
+    def _sum(self) -> float:
+        value = self._product()
+        while operator := self._taken("+", "-"):
+            other = self._product()
+            value = value + other if operator == "+" else value - other
+        return value
+
+    def _product(self) -> float:
+        value = self._signed()
+        while operator := self._taken("*", "/"):
+            other = self._signed()
+            value = value * other if operator == "*" else value / other
+        return value
+
+    def _signed(self) -> float:
+        if self._taken("-"):
+            return -self._signed()
+        if self._taken("+"):
+            return self._signed()
+        return self._power()
+
+    def _power(self) -> float:
+        base = self._atom()
+        return base ** self._signed() if self._taken("**", "^") else base  # complex is refused in the end
+
+    def _atom(self) -> float:
+        if self._taken("("):
+            value = self._sum()
+            if not self._taken(")"):
+                raise ValueError("a parenthesis is open")
+            return value
+        if self._taken("pi"):
+            return math.pi
+        return self._quantities()
+
+    def _quantities(self) -> float:
+        """A number, or several with units one after the other: 1m 20cm."""
+        value, has_unit = self._quantity()
+        while has_unit and (self._next()[:1].isdigit() or self._next().startswith(".")):
+            following, has_unit = self._quantity()
+            value += following
+        return value
+
+    def _quantity(self) -> tuple[float, bool]:
+        """A number, and whether a unit follows it."""
+        token = self._next()
+        if not (token[:1].isdigit() or token.startswith(".")):
+            raise ValueError(f"a number is missing before {token!r}" if token else "a number is missing")
+        self._place += 1
+        unit = self._next()
+        if not unit or unit[0].isdigit() or unit[0] in ".+-*/()^":
+            return float(token), False
+        factor = self._units(unit)
+        if factor is None:
+            raise ValueError(f"{unit!r} is not a unit")
+        self._place += 1
+        self.has_units = True
+        return float(token) * factor, True

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Proportional editing during a drag: whether, how far, and with what falloff."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+FALLOFFS = ("SMOOTH", "SPHERE", "ROOT", "INVERSE_SQUARE", "SHARP", "LINEAR", "CONSTANT", "RANDOM")
+GROWTH = 1.1  # of the size, one notch of the wheel
+LARGER_KEYS = frozenset({"PAGE_UP", "WHEELDOWNMOUSE"})  # as in Blender's own transforms
+SMALLER_KEYS = frozenset({"PAGE_DOWN", "WHEELUPMOUSE"})
+
+
+@dataclass(frozen=True)
+class Proportional:
+    """`available`: in Edit Mode; `size` in world units; `connected`: measured along the edges of the cage."""
+
+    available: bool = False
+    on: bool = False
+    size: float = 1.0
+    falloff: str = "SMOOTH"
+    connected: bool = False
+
+    @property
+    def active(self) -> bool:
+        """Whether points near the selection follow."""
+        return self.available and self.on
+
+    def toggled(self) -> Proportional:
+        """Switched on or off, where there is any."""
+        return replace(self, on=self.available and not self.on)
+
+    def with_next_falloff(self) -> Proportional:
+        """The next falloff of the list."""
+        return replace(self, falloff=FALLOFFS[(FALLOFFS.index(self.falloff) + 1) % len(FALLOFFS)])
+
+    def resized(self, key: str) -> Proportional:
+        """After a notch of the wheel, or a page key."""
+        return replace(self, size=self.size * (GROWTH if key in LARGER_KEYS else 1.0 / GROWTH))
+
+    @property
+    def text(self) -> str:
+        """For the header."""
+        if not self.active:
+            return ""
+        how = self.falloff.replace("_", " ").lower()
+        return f"proportional {self.size:.4g} {how}{' connected' if self.connected else ''}"
