@@ -10,6 +10,14 @@ namespace stiv::bindings {
 namespace {
 
 using SurfacePointer = std::shared_ptr<Surface>;
+using DeformationPointer = std::shared_ptr<Deformation>;
+
+/// Without a deformation every vertex is a control.
+CagedSurface caged_surface(const SurfacePointer& surface, const DeformationPointer& deformation,
+                           const SurfacePointer& cage) {
+  if (deformation == nullptr) return without_cage(surface);
+  return {surface, deformation, cage};
+}
 
 const char* name_of(RepairStatus status) {
   switch (status) {
@@ -95,29 +103,33 @@ Positions step(const SurfacePointer& surface, const Positions& start, const Posi
   return contraction_step(*surface, contraction_system(*surface, start, moves), q, smoothing);
 }
 
-py::dict run_contraction(const SurfacePointer& surface, const Positions& q, const std::vector<unsigned char>& moves,
+py::dict run_contraction(const SurfacePointer& surface, const DeformationPointer& deformation,
+                         const SurfacePointer& cage, const Controls& p, const std::vector<unsigned char>& moves,
                          const ContractionOptions& options, int threads, const CancelToken* cancel,
                          const py::object& progress) {
   return dict_of(call(threads, cancel, progress, [&](Execution& execution) {
     try {
-      return contract(surface, q, moves, options, execution);
+      return contract(caged_surface(surface, deformation, cage), p, moves, options, execution);
     } catch (const Interrupted&) {
-      return ContractionResult{q, false, {}};
+      return ContractionResult{p, false, {}};
     }
   }));
 }
 
-py::dict run_expansion(const SurfacePointer& surface, const Positions& from, const Positions& target,
-                       const EditOptions& options, const CancelToken* cancel, const py::object& progress) {
+py::dict run_expansion(const SurfacePointer& surface, const DeformationPointer& deformation, const Controls& from,
+                       const Controls& target, const EditOptions& options, const CancelToken* cancel,
+                       const py::object& progress) {
   return bindings::dict_of(call(options.threads, cancel, progress, [&](Execution& execution) {
-    return expand(surface, from, target, options, execution);
+    return expand(surface, caged_surface(surface, deformation, surface).deformation, from, target, options, execution);
   }));
 }
 
-py::dict run_repair(const SurfacePointer& surface, const Positions& q, const RepairOptions& options,
-                    const CancelToken* cancel, const py::object& progress) {
-  return dict_of(call(options.edit.threads, cancel, progress,
-                      [&](Execution& execution) { return repair(surface, q, options, execution); }));
+py::dict run_repair(const SurfacePointer& surface, const DeformationPointer& deformation, const SurfacePointer& cage,
+                    const Controls& p, const RepairOptions& options, const CancelToken* cancel,
+                    const py::object& progress) {
+  return dict_of(call(options.edit.threads, cancel, progress, [&](Execution& execution) {
+    return repair(caged_surface(surface, deformation, cage), p, options, execution);
+  }));
 }
 
 }  // namespace

@@ -196,6 +196,8 @@ def contraction_step(
 ) -> _Floats: ...
 def contract(
     surface: Surface,
+    deformation: Deformation | None,
+    cage: Surface | None,
     positions: _Floats,
     moves: list[int],
     options: ContractionOptions,
@@ -205,6 +207,7 @@ def contract(
 ) -> dict[str, Any]: ...
 def expand(
     surface: Surface,
+    deformation: Deformation | None,
     positions: _Floats,
     target: _Floats,
     options: EditOptions,
@@ -213,6 +216,8 @@ def expand(
 ) -> dict[str, Any]: ...
 def repair(
     surface: Surface,
+    deformation: Deformation | None,
+    cage: Surface | None,
     positions: _Floats,
     options: RepairOptions,
     cancel: CancelToken | None,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -10,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
+from stiv._native import Deformation, InputError
 from stiv.arrays import Floats, as_count, as_floats, as_number
-from stiv.editing import CancelToken, EditOptions, EditResult, Progress, native_options, result_of
+from stiv.editing import CancelToken, EditOptions, EditResult, Progress, StorageFrame, native_options, result_of
 from stiv.surface import Surface, as_surface
 
 
@@ -29,7 +31,7 @@ class ContractionOptions:
 class ContractionResult:
     """What a contraction came to."""
 
-    positions: NDArray[np.float64]  #: (N, 3) of the step that left the fewest pairs; the start if none left fewer
+    positions: NDArray[np.float64]  #: (m, 3) of the step that left the fewest pairs; the start if none left fewer
     free: bool  #: nothing intersects there
     pairs: list[int]  #: number of intersecting pairs at the start and after each step
 
@@ -58,7 +60,7 @@ def contraction_step(
     first = q if start is None else as_floats(start, "start", (len(q), 3))
     strength = as_number(smoothing, "smoothing", 0)
     if strength == 0:
-        raise _native.InputError("smoothing must be above 0")
+        raise InputError("smoothing must be above 0")
     return _native.contraction_step(whole.native, first, q, as_marks(moves, len(q)), strength)
 
 
@@ -67,8 +69,11 @@ def contract(
     positions: ArrayLike,
     options: ContractionOptions | None = None,
     *,
+    deformation: Deformation | None = None,
+    cage: Surface | ArrayLike | None = None,
     moves: ArrayLike | None = None,
     single_precision: bool = True,
+    storage: Sequence[StorageFrame] = (),
     threads: int = 0,
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
@@ -76,17 +81,23 @@ def contract(
     """Contract until the exact test finds nothing that intersects, or until intersections grow.
 
     surface           Surface, or its triangles (F, 3)
-    positions         (N, 3)
-    moves             (N,) of bool: vertices that move; None: all
-    single_precision  positions are rounded as float32 will store them, before they are tested
+    positions         (m, 3) controls: the positions of all vertices, if there is no deformation
+    deformation       from the controls to the surface; None: every vertex is a control
+    cage              Surface of the controls, or its triangles (C, 3): what is smoothed; needed with a deformation
+    moves             (m,) of bool: controls that move; None: all
+    single_precision  controls are rounded as float32 will store them, before they are tested
+    storage           frames in which they are stored, as in EditOptions; empty: world coordinates for all
     cancel, progress  as for EditSession.edit; a cancelled contraction gives the start, and no counts of pairs
     """
-    q = as_floats(positions, "positions", (None, 3))
-    whole = as_surface(surface, len(q))
+    p = as_floats(positions, "positions", (None, 3))
+    whole, mesh = as_caged(surface, deformation, cage, len(p))
     native = native_contraction(options or ContractionOptions())
-    native.storage = [_native.StorageFrame(0, len(q), np.eye(4))] if single_precision else []
-    marks = as_marks(moves, len(q))
-    values = _native.contract(whole.native, q, marks, native, as_count(threads, "threads"), cancel, progress)
+    frames = [_native.StorageFrame(each.first, each.count, np.asarray(each.frame, float)) for each in storage]
+    native.storage = (frames or [_native.StorageFrame(0, len(p), np.eye(4))]) if single_precision else []
+    values = _native.contract(
+        whole.native, deformation, mesh.native, p, as_marks(moves, len(p)), native, as_count(threads, "threads"),
+        cancel, progress,
+    )  # fmt: skip
     return ContractionResult(**values)
 
 
@@ -96,22 +107,38 @@ def expand(
     target: ArrayLike,
     options: EditOptions | None = None,
     *,
+    deformation: Deformation | None = None,
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
 ) -> EditResult:
     """Take a surface free of intersections toward any `target` with the same vertices, with interference on.
 
     surface            Surface, or its triangles (F, 3)
-    positions, target  (N, 3) each; every vertex is a control
+    positions, target  (m, 3) controls each: the positions of all vertices, if there is no deformation
+    deformation        from the controls to the surface; None: every vertex is a control
     cancel, progress   as for EditSession.edit
 
     One edit, then settling: what a contraction is undone with. Raises StartIntersectsError if `positions` intersect.
     """
-    q = as_floats(positions, "positions", (None, 3))
-    whole = as_surface(surface, len(q))
-    goal = as_floats(target, "target", (len(q), 3))
+    p = as_floats(positions, "positions", (None, 3))
+    whole = as_surface(surface, len(p) if deformation is None else deformation.vertex_count)
+    goal = as_floats(target, "target", (len(p), 3))
     native = native_options(options or EditOptions())
-    return result_of(_native.expand(whole.native, q, goal, native, cancel, progress), whole)
+    return result_of(_native.expand(whole.native, deformation, p, goal, native, cancel, progress), whole)
+
+
+def as_caged(
+    surface: Surface | ArrayLike, deformation: Deformation | None, cage: Surface | ArrayLike | None, controls: int
+) -> tuple[Surface, Surface]:
+    """Return the surface and the mesh of its controls: the surface itself, if there is no deformation."""
+    if deformation is None:
+        if cage is not None:
+            raise InputError("cage: goes with a deformation, and there is none")
+        whole = as_surface(surface, controls)
+        return whole, whole
+    if cage is None:
+        raise InputError("cage: the triangles of the controls are needed with a deformation")
+    return as_surface(surface, deformation.vertex_count), as_surface(cage, controls)
 
 
 def as_marks(moves: ArrayLike | None, count: int) -> list[int]:
@@ -120,7 +147,7 @@ def as_marks(moves: ArrayLike | None, count: int) -> list[int]:
         return []
     marks = np.asarray(moves)
     if marks.dtype != bool or marks.shape != (count,):
-        raise _native.InputError(f"moves: expected ({count},) of bool, not {marks.shape} of {marks.dtype}")
+        raise InputError(f"moves: expected ({count},) of bool, not {marks.shape} of {marks.dtype}")
     result: list[int] = marks.astype(int).tolist()
     return result
 
@@ -133,5 +160,5 @@ def native_contraction(options: ContractionOptions) -> Any:
         try:
             setattr(native, option.name, value)
         except TypeError as error:
-            raise _native.InputError(f"{option.name}: {value!r} is of the wrong type") from error
+            raise InputError(f"{option.name}: {value!r} is of the wrong type") from error
     return native

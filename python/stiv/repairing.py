@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
+from stiv._native import Deformation, InputError
 from stiv.arrays import Indices, as_floats, as_number
-from stiv.contraction import ContractionOptions, as_marks, native_contraction
+from stiv.contraction import ContractionOptions, as_caged, as_marks, native_contraction
 from stiv.editing import CancelToken, EditOptions, Progress, native_options
-from stiv.surface import Surface, as_surface
+from stiv.surface import Surface
 from stiv.welding import Welded, weld
 
 _REFUSALS = {
@@ -30,8 +31,9 @@ class RepairOptions:
 
     contraction: ContractionOptions = field(default_factory=ContractionOptions)
     edit: EditOptions = field(default_factory=EditOptions)  #: separation, storage, threads; time budget of the whole
-    moves: ArrayLike | None = None  #: (N,) of bool: what may move; None: everything of deformable bodies
-    weld: bool = False  #: make coincident vertices one first; the result then has a surface of its own
+    moves: ArrayLike | None = None  #: (m,) of bool: what may move; None: everything of deformable bodies
+    #: make coincident vertices one first; the result then has a surface of its own. Not with a deformation
+    weld: bool = False
     good_deviation: float = 0.01  #: what deviates no more is taken at once, else other ways are tried as well
     max_deviation: float = 0.05  #: what deviates more is refused
 
@@ -46,7 +48,7 @@ class RepairResult:
     refusal: str  #: "", "coincident", "held", "not_freed" or "too_far"
     message: str  #: the refusal in words
     surface: Surface  #: the one given; with `weld` the welded one
-    positions: NDArray[np.float64]  #: (N', 3) of that surface
+    positions: NDArray[np.float64]  #: (N', 3) of that surface; with a deformation the controls, (m, 3)
     vertex_map: Indices  #: (N,) vertex of that surface for each one given
     pairs: Indices  #: (K, 2) triangles that intersect at `positions`
     loose_edge_pairs: Indices  #: (K, 2) loose edges and triangles that they meet
@@ -65,13 +67,17 @@ def repair(
     positions: ArrayLike,
     options: RepairOptions | None = None,
     *,
+    deformation: Deformation | None = None,
+    cage: Surface | ArrayLike | None = None,
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
 ) -> RepairResult:
     """Remove intersections that a surface already has: contract it until there are none, expand it with interference.
 
     surface           Surface, or its triangles (F, 3); only deformable bodies are moved
-    positions         (N, 3)
+    positions         (m, 3) controls: the positions of all vertices, if there is no deformation
+    deformation       from the controls to the surface; None: every vertex is a control
+    cage              Surface of the controls, or its triangles (C, 3): what is contracted; needed with a deformation
     cancel, progress  as for EditSession.edit
 
     Success is claimed only where the exact test says so; otherwise the positions stay as they were, and what intersects
@@ -80,15 +86,18 @@ def repair(
     """
     chosen = options or RepairOptions()
     q = as_floats(positions, "positions", (None, 3))
-    given = as_surface(surface, len(q))
-    whole = weld(given, q) if chosen.weld else Welded(given, q, np.arange(len(q), dtype=np.int32))
+    given, mesh = as_caged(surface, deformation, cage, len(q))
+    if chosen.weld and deformation is not None:
+        raise InputError("weld: what a deformation moves cannot be welded; weld its cage before")
+    whole = weld(given, q) if chosen.weld else Welded(given, q, np.arange(given.vertex_count, dtype=np.int32))
     native = _native.RepairOptions()
     native.contraction = native_contraction(chosen.contraction)
     native.edit = native_options(chosen.edit)
-    native.moves = as_marks(_moves_after(whole, chosen.moves, len(q)), len(whole.positions))
+    moves = chosen.moves if deformation is not None else _moves_after(whole, chosen.moves, len(q))
+    native.moves = as_marks(moves, len(whole.positions))
     native.good_deviation = as_number(chosen.good_deviation, "good_deviation", 0)
     native.max_deviation = as_number(chosen.max_deviation, "max_deviation", 0)
-    values = _native.repair(whole.surface.native, whole.positions, native, cancel, progress)
+    values = _native.repair(whole.surface.native, deformation, mesh.native, whole.positions, native, cancel, progress)
     message = _REFUSALS[values["refusal"]].format(**values)
     return RepairResult(message=message, surface=whole.surface, vertex_map=whole.vertex_map, **values)
 

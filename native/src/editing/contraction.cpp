@@ -118,23 +118,26 @@ Positions contraction_step(const Surface& surface, const ContractionSystem& syst
   return contracted;
 }
 
-ContractionResult contract(const std::shared_ptr<const Surface>& surface, const Positions& q,
-                           const std::vector<unsigned char>& moves, const ContractionOptions& options,
-                           Execution& execution) {
+ContractionResult contract(const CagedSurface& caged, const Controls& p, const std::vector<unsigned char>& moves,
+                           const ContractionOptions& options, Execution& execution) {
   check(options);
+  check_caged(caged, p);
   const FloatingPointScope floating_point;
-  const ContractionSystem system = contraction_system(*surface, q, moves);
-  IntersectionTest test(surface);
-  Positions now = as_stored(q, options.storage);
-  ContractionResult result{now, false, {find_static_pairs(test, now, execution).count()}};
+  const ContractionSystem system = contraction_system(*caged.cage, p, moves);
+  IntersectionTest test(caged.surface);
+  const auto pairs_at = [&](const Controls& at) {
+    return find_static_pairs(test, caged.deformation->surface(at), execution).count();
+  };
+  Controls now = as_stored(p, options.storage);
+  ContractionResult result{now, false, {pairs_at(now)}};
   Index fewest = result.pairs.front();
   double smoothing = options.smoothing;
   for (int step = 0; step < options.max_steps && fewest > 0; ++step) {
     execution.check();
     execution.report("contraction", static_cast<double>(step) / options.max_steps);
-    now = as_stored(contraction_step(*surface, system, now, smoothing), options.storage);
+    now = as_stored(contraction_step(*caged.cage, system, now, smoothing), options.storage);
     smoothing *= options.growth;
-    const Index pairs = find_static_pairs(test, now, execution).count();
+    const Index pairs = pairs_at(now);
     result.pairs.push_back(pairs);
     if (pairs > options.tolerance * fewest) break;
     if (pairs >= fewest) continue;

@@ -12,7 +12,7 @@ namespace stiv {
 
 /// What a try to contract a surface until nothing intersects came to.
 struct Contracted {
-  Positions positions;
+  Controls positions;
   Index pairs = 0;  ///< that intersect there
   Index steps = 0;
 };
@@ -20,11 +20,18 @@ struct Contracted {
 /// One way to contract, from positions at which something intersects.
 struct ContractionTry {
   std::string what;  ///< name of the body, "all", "components", "regions"
-  std::function<Contracted(const Positions& start, Execution& execution)> run;
+  std::function<Contracted(const Controls& start, Execution& execution)> run;
 };
 
-/// The ways to contract in the order in which they are worth trying. `movable` marks the vertices that may move.
-std::vector<ContractionTry> contraction_tries(const std::shared_ptr<const Surface>& surface, const StaticPairs& pairs,
-                                              const Marks& movable, const ContractionOptions& options);
+/// What may move: `controls` (m), and the vertices that those move, (N); `supports` of all controls.
+struct Movable {
+  Marks controls;
+  Marks vertices;
+  std::vector<std::vector<Index>> supports;
+};
+
+/// The ways to contract in the order in which they are worth trying.
+std::vector<ContractionTry> contraction_tries(const CagedSurface& caged, const StaticPairs& pairs,
+                                              const Movable& movable, const ContractionOptions& options);
 
 }  // namespace stiv

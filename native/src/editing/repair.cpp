@@ -14,17 +14,23 @@ namespace stiv {
 
 namespace {
 
-/// The marks given, without what does not belong to a deformable body.
-Marks movable_vertices(const Surface& surface, const Marks& asked) {
-  const auto count = static_cast<std::size_t>(surface.vertex_count());
+/// The marks given, without controls that move anything but deformable bodies.
+Movable movable_of(const CagedSurface& caged, const Marks& asked) {
+  const auto count = static_cast<std::size_t>(caged.deformation->control_count());
   if (!asked.empty() && asked.size() != count)
-    throw InputError("the marks of what may move have " + std::to_string(asked.size()) + " entries, the surface has " +
-                     std::to_string(count) + " vertices");
-  Marks movable(count);
+    throw InputError("the marks of what may move have " + std::to_string(asked.size()) + " entries, there are " +
+                     std::to_string(count) + " controls");
+  const Surface& surface = *caged.surface;
+  const auto is_deformable = [&](Index vertex) {
+    return surface.bodies()[static_cast<std::size_t>(surface.body_of(vertex))].mobility == Mobility::deformable;
+  };
+  Movable movable{Marks(count), {}, supports_of(*caged.deformation)};
   for (std::size_t k = 0; k < count; ++k) {
-    const auto body = static_cast<std::size_t>(surface.body_of(static_cast<Index>(k)));
-    movable[k] = surface.bodies()[body].mobility == Mobility::deformable && (asked.empty() || asked[k] != 0);
+    const std::vector<Index>& support = movable.supports[k];
+    movable.controls[k] =
+        (asked.empty() || asked[k] != 0) && std::all_of(support.begin(), support.end(), is_deformable);
   }
+  movable.vertices = moved_by(movable.controls, movable.supports, surface.vertex_count());
   return movable;
 }
 
@@ -69,20 +75,20 @@ double relative_deviation(const Positions& from, const Positions& to, const Mark
 /// One repair: the tries in their order, the best expansion so far, and what is to be said when none is good.
 class Repair {
  public:
-  Repair(std::shared_ptr<const Surface> surface, const Positions& q, RepairOptions options, Execution& execution)
-      : surface_(std::move(surface)),
-        start_(q),
+  Repair(CagedSurface caged, const Controls& p, RepairOptions options, Execution& execution)
+      : caged_(std::move(caged)),
+        start_(p),
+        surface_at_start_(caged_.deformation->surface(p)),
         options_(std::move(options)),
-        movable_(movable_vertices(*surface_, options_.moves)),
-        test_(surface_),
+        movable_(movable_of(caged_, options_.moves)),
+        test_(caged_.surface),
         execution_(execution) {
-    surface_->check_positions(q);
     if (options_.edit.single_precision && options_.edit.storage.empty())
-      options_.edit.storage.push_back({0, surface_->vertex_count(), Eigen::Matrix4d::Identity()});
+      options_.edit.storage.push_back({0, static_cast<Index>(p.rows()), Eigen::Matrix4d::Identity()});
     if (!options_.edit.single_precision) options_.edit.storage.clear();
     options_.contraction.storage = options_.edit.storage;
     options_.edit.weights = Eigen::Map<const Eigen::Array<unsigned char, Eigen::Dynamic, 1>>(
-                                movable_.data(), static_cast<Index>(movable_.size()))
+                                movable_.controls.data(), static_cast<Index>(movable_.controls.size()))
                                 .cast<double>();
     if (options_.edit.time_budget > 0) execution.set_time_budget(options_.edit.time_budget);
     options_.edit.time_budget = 0;
@@ -91,7 +97,7 @@ class Repair {
   RepairResult run() {
     result_.positions = start_;
     try {
-      result_.pairs = find_static_pairs(test_, start_, execution_);
+      result_.pairs = find_static_pairs(test_, surface_at_start_, execution_);
       result_.pairs_before = result_.fewest_pairs = result_.pairs.count();
       if (!result_.pairs.empty()) untangle();
     } catch (const Interrupted&) {
@@ -107,26 +113,26 @@ class Repair {
 
  private:
   void untangle() {
-    if (any_coincide(*surface_, start_, result_.pairs)) return refuse(RepairRefusal::coincident);
-    if (any_held(*surface_, result_.pairs, movable_)) return refuse(RepairRefusal::held);
-    Positions fewest = start_;
-    for (const ContractionTry& way : contraction_tries(surface_, result_.pairs, movable_, options_.contraction)) {
+    if (any_coincide(*caged_.surface, surface_at_start_, result_.pairs)) return refuse(RepairRefusal::coincident);
+    if (any_held(*caged_.surface, result_.pairs, movable_.vertices)) return refuse(RepairRefusal::held);
+    Controls fewest = start_;
+    for (const ContractionTry& way : contraction_tries(caged_, result_.pairs, movable_, options_.contraction)) {
       follow(way, start_, fewest);
       if (is_good()) return conclude();
     }
     // What no try freed from the start, parts around what is left may free from the best of them.
     if (!best_found_ && fewest != start_) {
-      const Positions best = fewest;
+      const Controls best = fewest;
       follow(regions_try(), best, fewest);
     }
     conclude();
   }
 
   ContractionTry regions_try() const {
-    return contraction_tries(surface_, result_.pairs, movable_, options_.contraction).back();
+    return contraction_tries(caged_, result_.pairs, movable_, options_.contraction).back();
   }
 
-  void follow(const ContractionTry& way, const Positions& from, Positions& fewest) {
+  void follow(const ContractionTry& way, const Controls& from, Controls& fewest) {
     execution_.check();
     const Contracted contracted = way.run(from, execution_);
     result_.steps += contracted.steps;
@@ -137,13 +143,13 @@ class Repair {
     if (contracted.pairs == 0) expand_back(contracted.positions, way.what);
   }
 
-  void expand_back(const Positions& contracted, const std::string& what) {
-    EditResult expanded = expand(surface_, contracted, start_, options_.edit, execution_);
+  void expand_back(const Controls& contracted, const std::string& what) {
+    EditResult expanded = expand(caged_.surface, caged_.deformation, contracted, start_, options_.edit, execution_);
     if (execution_.cancel_requested()) throw Interrupted("cancelled");
-    const double deviation = relative_deviation(start_, expanded.surface, movable_);
+    const double deviation = relative_deviation(surface_at_start_, expanded.surface, movable_.vertices);
     if (best_found_ && deviation >= result_.deviation) return;
     best_found_ = true;
-    best_ = std::move(expanded.surface);
+    best_ = std::move(expanded.controls);
     result_.deviation = deviation;
     result_.contracted = what;
   }
@@ -160,29 +166,31 @@ class Repair {
     if (!best_found_) return refuse(RepairRefusal::not_freed);
     if (result_.deviation > options_.max_deviation) return refuse(RepairRefusal::too_far);
     Execution uninterrupted(execution_.threads());
-    if (!find_static_pairs(test_, best_, uninterrupted).empty()) return refuse(RepairRefusal::not_freed);
+    if (!find_static_pairs(test_, caged_.deformation->surface(best_), uninterrupted).empty())
+      return refuse(RepairRefusal::not_freed);
     result_.status = RepairStatus::repaired;
     result_.positions = best_;
     result_.pairs = {};
   }
 
-  std::shared_ptr<const Surface> surface_;
-  const Positions& start_;
+  CagedSurface caged_;
+  const Controls& start_;
+  Positions surface_at_start_;
   RepairOptions options_;
-  Marks movable_;
+  Movable movable_;
   IntersectionTest test_;
   Execution& execution_;
   RepairResult result_;
   bool best_found_ = false;
-  Positions best_;
+  Controls best_;
 };
 
 }  // namespace
 
-RepairResult repair(const std::shared_ptr<const Surface>& surface, const Positions& q, const RepairOptions& options,
-                    Execution& execution) {
+RepairResult repair(const CagedSurface& caged, const Controls& p, const RepairOptions& options, Execution& execution) {
+  check_caged(caged, p);
   const FloatingPointScope floating_point;
-  return Repair(surface, q, options, execution).run();
+  return Repair(caged, p, options, execution).run();
 }
 
 }  // namespace stiv

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/editing/expansion.hpp"
 #include "stiv/error.hpp"
 #include "tangled_scenes.hpp"
@@ -135,6 +137,23 @@ TEST_CASE("a cancelled repair changes nothing, whenever it is cancelled") {
     CHECK(result.status == RepairStatus::cancelled);
     check_unchanged(scene, result);
   }
+}
+
+TEST_CASE("a cage is contracted until its surface is free, and expanded back") {
+  const Scene scene = spike_through_sheet();
+  const Index count = scene.surface->vertex_count();
+  WeightMatrix twice(count, count);
+  twice.setIdentity();
+  twice *= 2;
+  const CagedSurface caged{scene.surface, make_linear(twice), scene.surface};
+  Execution execution(1);
+  const RepairResult result = repair(caged, scene.controls, {}, execution);
+  CHECK(result.status == RepairStatus::repaired);
+  CHECK(pairs_at(scene, 2 * result.positions).empty());
+  CHECK(result.deviation == doctest::Approx(repaired(scene).deviation).epsilon(0.1));
+  CHECK_THROWS_AS(repair({scene.surface, make_identity(count - 1), scene.surface}, scene.controls, {}, execution),
+                  InputError);
+  CHECK_THROWS_AS(repair(caged, scene.controls.topRows(count - 1), {}, execution), InputError);
 }
 
 TEST_CASE("expansion goes toward any target, and never through anything") {

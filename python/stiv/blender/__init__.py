@@ -3,21 +3,30 @@
 
 from stiv.blender.changes import Change, Changes, compare
 from stiv.blender.checking import SceneCheck, check_scene, read_surface
+from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
+from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.following import Followed, follow
 from stiv.blender.loop_objects import add_refined, remove_refined
 from stiv.blender.loop_surfaces import refresh
 from stiv.blender.motion import Influence, Motion
+from stiv.blender.repairing import BlenderRepair, RepairSettings, repair_scene
+from stiv.blender.reshaping import ReshapeReport
 from stiv.blender.scene_state import ObjectState, SceneState, read_state
 from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
 from stiv.blender.verification import FacePair
 
 __all__ = [
+    "BlenderContraction",
     "BlenderEdit",
+    "BlenderExpansion",
+    "BlenderRepair",
     "Change",
     "Changes",
+    "ContractionSettings",
     "EditSettings",
+    "ExpansionSettings",
     "FacePair",
     "Followed",
     "Handles",
@@ -25,6 +34,8 @@ __all__ = [
     "LoopSurface",
     "Motion",
     "ObjectState",
+    "RepairSettings",
+    "ReshapeReport",
     "SceneChangedError",
     "SceneCheck",
     "SceneState",
@@ -33,9 +44,12 @@ __all__ = [
     "add_refined",
     "check_scene",
     "compare",
+    "contract_scene",
+    "expand_scene",
     "follow",
     "read_state",
     "read_surface",
     "refresh",
     "remove_refined",
+    "repair_scene",
 ]

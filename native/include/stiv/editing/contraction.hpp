@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stiv/acceptance/storage.hpp"
+#include "stiv/editing/caged_surface.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/surface.hpp"
 
@@ -43,16 +44,24 @@ struct ContractionOptions {
 };
 
 struct ContractionResult {
-  Positions positions;       ///< (N, 3) of the step that left the fewest pairs; the start if none left fewer
+  Controls positions;        ///< (m, 3) of the step that left the fewest pairs; the start if none left fewer
   bool free = false;         ///< nothing intersects there
   std::vector<Index> pairs;  ///< number of intersecting pairs at the start and after each step
 };
 
-/// Steps until nothing intersects, or until intersections grow: contraction can create some. [P5.2; DESIGN 4, "Traps"]
-/// @param moves as for contraction_system
+/// Steps of the cage until nothing of the surface intersects, or until intersections grow: contraction can create some.
+/// [P5.2; DESIGN 4, "Traps"]
+/// @param p (m, 3) controls
+/// @param moves (m) as for contraction_system of the cage
 /// @throws InputError for shapes and options that do not fit; Interrupted
-ContractionResult contract(const std::shared_ptr<const Surface>& surface, const Positions& q,
-                           const std::vector<unsigned char>& moves, const ContractionOptions& options,
-                           Execution& execution);
+ContractionResult contract(const CagedSurface& caged, const Controls& p, const std::vector<unsigned char>& moves,
+                           const ContractionOptions& options, Execution& execution);
+
+/// The same for a surface that is its own cage, at q, (N, 3).
+inline ContractionResult contract(const std::shared_ptr<const Surface>& surface, const Positions& q,
+                                  const std::vector<unsigned char>& moves, const ContractionOptions& options,
+                                  Execution& execution) {
+  return contract(without_cage(surface), q, moves, options, execution);
+}
 
 }  // namespace stiv

@@ -14,7 +14,7 @@ namespace stiv {
 struct RepairOptions {
   ContractionOptions contraction;
   EditOptions edit;                  ///< of the expansion: separation, storage, time budget (of the whole), threads
-  std::vector<unsigned char> moves;  ///< (N) nonzero where a vertex may move; empty: all of deformable bodies
+  std::vector<unsigned char> moves;  ///< (m) nonzero where a control may move; empty: all of deformable bodies
   double good_deviation = 0.01;      ///< a repair that deviates no more is taken at once; else others are tried as well
   double max_deviation = 0.05;       ///< a repair that deviates more is refused
 };
@@ -38,24 +38,30 @@ enum class RepairRefusal {
 struct RepairResult {
   RepairStatus status = RepairStatus::already_free;
   RepairRefusal refusal = RepairRefusal::none;
-  Positions positions;     ///< (N, 3); those given unless repaired
+  Controls positions;      ///< (m, 3); those given unless repaired
   StaticPairs pairs;       ///< what intersects at `positions`
   Index pairs_before = 0;  ///< number of pairs at the positions given
   Index fewest_pairs = 0;  ///< number of pairs that the best contraction left
   Index steps = 0;         ///< steps of contraction, of all tries
-  double deviation = 0;    ///< root mean square distance of the best repair from the positions given, over what may
-                           ///< move and in its diagonals; set when refused as too far as well
+  double deviation = 0;    ///< root mean square distance of the best repaired surface from the one given, over what
+                           ///< may move and in its diagonals; set when refused as too far as well
   std::string contracted;  ///< what was contracted: names of bodies, "components" or "regions"
   Counters counters;
   Timings timings;
 };
 
-/// Removes intersections that a surface already has: contracts it until the exact test finds none, then expands it back
-/// with interference. [P5.2, Figure 5] Tried in this order, until one comes near enough: each body that all pairs have
-/// in common, closed ones first; all bodies that take part; their connected components one after the other; the parts
-/// around what intersects. Success is claimed only where the exact test says so; nothing is made worse.
+/// Removes intersections that a surface already has: contracts its cage until the exact test finds none, then expands
+/// it back with interference. [P5.2, Figure 5] Tried in this order, until one comes near enough: each body that all
+/// pairs have in common, closed ones first; all bodies that take part; their connected components one after the other;
+/// the parts around what intersects. Success is claimed only where the exact test says so; nothing is made worse.
+/// @param p (m, 3) controls
 /// @throws InputError for shapes and options that do not fit
-RepairResult repair(const std::shared_ptr<const Surface>& surface, const Positions& q, const RepairOptions& options,
-                    Execution& execution);
+RepairResult repair(const CagedSurface& caged, const Controls& p, const RepairOptions& options, Execution& execution);
+
+/// The same for a surface that is its own cage, at q, (N, 3).
+inline RepairResult repair(const std::shared_ptr<const Surface>& surface, const Positions& q,
+                           const RepairOptions& options, Execution& execution) {
+  return repair(without_cage(surface), q, options, execution);
+}
 
 }  // namespace stiv
