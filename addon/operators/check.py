@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.check`: find intersections of the scene as it is, and select the objects they are in."""
+"""`stiv.check`: find intersections of the scene as it is, and select the objects and faces they are in."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
@@ -15,7 +16,7 @@ MOST = 5  # pairs of objects that the summary lists
 
 
 class STIV_OT_check(bpy.types.Operator):
-    """Find intersections of all visible surfaces by the exact test, and select the objects that they are in."""
+    """Find intersections of all visible surfaces by the exact test, and select the faces and objects that meet."""
 
     bl_idname = "stiv.check"
     bl_label = "Check for Intersections"
@@ -32,6 +33,7 @@ class STIV_OT_check(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Check, show, select."""
         from stiv.blender import check_scene  # the add-on registers without the native module
+        from stiv.blender.face_selection import faces_of, select_faces
 
         try:
             found = check_scene(context, edit_settings(context.scene))
@@ -39,19 +41,21 @@ class STIV_OT_check(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         pairs = Counter((pair.first.object, pair.second.object) for pair in found.pairs)
-        text = summary(pairs)
-        context.window_manager.stiv_check.summary = text
-        self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
         if pairs and context.mode == "OBJECT":
             select(context, {name for pair in pairs for name in pair})
+        chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
+        text = summary(pairs, chosen)
+        context.window_manager.stiv_check.summary = text
+        self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
         return {"FINISHED"}
 
 
-def summary(pairs: Counter[tuple[str, str]]) -> str:
-    """How many pairs of triangles meet, and in which objects; one line each."""
+def summary(pairs: Counter[tuple[str, str]], chosen: Mapping[str, int]) -> str:
+    """How many pairs of triangles meet, in which objects, one line each, and how many faces are selected."""
     if not pairs:
         return "No intersections"
-    lines = [f"{pairs.total()} intersecting pairs of triangles"]
+    faces = f", {sum(chosen.values())} faces selected" if chosen else ""
+    lines = [f"{pairs.total()} intersecting pairs of triangles in {len({n for p in pairs for n in p})} objects{faces}"]
     for (first, second), count in pairs.most_common(MOST):
         lines.append(f"{first}: {count}, with itself" if first == second else f"{first}, {second}: {count}")
     if len(pairs) > MOST:

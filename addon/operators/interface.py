@@ -55,6 +55,13 @@ def show(
         context.workspace.status_text_set(status_text(state))
 
 
+def say(context: bpy.types.Context, text: str) -> None:
+    """Write a line of text into the headers of the views."""
+    for area in _views(context):
+        area.header_text_set(text)
+        area.tag_redraw()
+
+
 def clear(context: bpy.types.Context) -> None:
     """Give header and status bar back."""
     for area in _views(context):

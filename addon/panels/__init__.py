@@ -6,6 +6,15 @@ from .deformation import STIV_PT_deformation
 from .edit import STIV_PT_edit
 from .guard import STIV_PT_guard
 from .loop import STIV_PT_loop
+from .repair import STIV_PT_repair
 from .roles import STIV_PT_roles
 
-CLASSES = (STIV_PT_edit, STIV_PT_guard, STIV_PT_roles, STIV_PT_deformation, STIV_PT_loop, STIV_PT_check)
+CLASSES = (
+    STIV_PT_edit,
+    STIV_PT_guard,
+    STIV_PT_roles,
+    STIV_PT_deformation,
+    STIV_PT_loop,
+    STIV_PT_check,
+    STIV_PT_repair,
+)

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+
 import bmesh
 import bpy
 import numpy as np
@@ -50,3 +53,22 @@ def _select_vertices(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
         vertex.select = bool(select_it)
     edited.select_flush_mode()
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+@contextmanager
+def selected(context: bpy.types.Context, names: Collection[str]) -> Iterator[None]:
+    """Within, exactly these objects are selected, in Object Mode; then those before. Raises InputError."""
+    layer = context.view_layer
+    missing = [name for name in names if name not in layer.objects]
+    if missing:
+        raise InputError(f'there is no object "{missing[0]}" in the view layer')
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    before = [ob.name for ob in layer.objects if ob.select_get()]
+    try:
+        for ob in layer.objects:
+            ob.select_set(ob.name in names)
+        yield
+    finally:
+        for ob in layer.objects:
+            ob.select_set(ob.name in before)

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading of mesh files: OBJ, PLY (ascii and binary) and NPZ, safe against files made to harm."""
+"""Mesh files: OBJ, PLY (ascii and binary) and NPZ, read safely against files made to harm, and written."""
 
 from stiv.mesh_files.mesh import Mesh
 from stiv.mesh_files.reading import SUFFIXES, read_mesh
+from stiv.mesh_files.repositioning import write_repositioned
+from stiv.mesh_files.welded import welded_mesh
+from stiv.mesh_files.writing import require_writer, write_mesh
 
-__all__ = ["SUFFIXES", "Mesh", "read_mesh"]
+__all__ = ["SUFFIXES", "Mesh", "read_mesh", "require_writer", "welded_mesh", "write_mesh", "write_repositioned"]

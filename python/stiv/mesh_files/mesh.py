@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,15 @@ from stiv import InputError
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles with the objects they belong to."""
+    """Triangles with the objects they belong to, and the polygons that they were cut from."""
 
     vertices: NDArray[np.float64]  # (N, 3)
     triangles: NDArray[np.int32]  # (F, 3)
     object_names: tuple[str, ...]
     triangle_object: NDArray[np.int32]  # (F,) index into object_names
+    corners: NDArray[np.int32]  # (C,) vertices of all polygons behind one another
+    counts: NDArray[np.int32]  # (P,) corners of each polygon
+    polygon_object: NDArray[np.int32]  # (P,) index into object_names
 
 
 def checked_mesh(
@@ -27,7 +30,10 @@ def checked_mesh(
     object_names: tuple[str, ...],
     triangle_object: NDArray[np.int64] | None = None,
 ) -> Mesh:
-    """A mesh whose coordinates are finite and whose indices are in range. Raises InputError naming the element."""
+    """A mesh of triangles whose coordinates are finite and whose indices are in range.
+
+    Raises InputError naming the element.
+    """
     owner = np.zeros(len(triangles), np.int64) if triangle_object is None else triangle_object
     if owner.shape != (len(triangles),) or (len(owner) and not 0 <= owner.min() <= owner.max() < len(object_names)):
         raise InputError("the objects that triangles belong to do not fit the triangles and the object names")
@@ -39,7 +45,25 @@ def checked_mesh(
         first = int(np.argmin(inside))
         corners = triangles[first].tolist()
         raise InputError(f"triangle {first}: index out of range in {corners}; there are {len(vertices)} vertices")
-    return Mesh(vertices, triangles.astype(np.int32), object_names, owner.astype(np.int32))
+    kept, owners = triangles.astype(np.int32), owner.astype(np.int32)
+    return Mesh(vertices, kept, object_names, owners, kept.ravel(), np.full(len(kept), 3, np.int32), owners)
+
+
+def polygon_mesh(
+    vertices: NDArray[np.float64],
+    corners: NDArray[np.int64],
+    counts: NDArray[np.int64],
+    object_names: tuple[str, ...],
+    polygon_object: NDArray[np.int64] | None = None,
+) -> Mesh:
+    """A mesh of polygons cut into fans; checked as `checked_mesh` does."""
+    owner = np.zeros(len(counts), np.int64) if polygon_object is None else polygon_object
+    triangle_object = np.repeat(owner, np.maximum(counts - 2, 0))
+    mesh = checked_mesh(vertices, fans(corners, counts), object_names, triangle_object)
+    if len(corners) and not 0 <= corners.min() <= corners.max() < len(vertices):  # of a face with too few corners
+        raise InputError(f"face index out of range; there are {len(vertices)} vertices")
+    polygons = (corners.astype(np.int32), counts.astype(np.int32), owner.astype(np.int32))
+    return replace(mesh, corners=polygons[0], counts=polygons[1], polygon_object=polygons[2])
 
 
 def fans(corners: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from stiv import InputError
-from stiv.mesh_files.mesh import Mesh, checked_mesh, fans
+from stiv.mesh_files.mesh import Mesh, polygon_mesh
 
 
 @dataclass
@@ -32,11 +32,10 @@ def read_obj(path: Path) -> Mesh:
                 _read_line(line.split(), contents, path.stem)
             except (ValueError, IndexError, OverflowError) as error:
                 raise InputError(f"line {number}: {error}") from error
-    counts = np.array(contents.counts, np.int64)
-    triangles = fans(np.array(contents.corners, np.int64), counts)
-    owners = np.repeat(np.array(contents.owners, np.int64), np.maximum(counts - 2, 0))
+    corners, counts = np.array(contents.corners, np.int64), np.array(contents.counts, np.int64)
     vertices = np.array(contents.vertices, float).reshape(-1, 3)
-    return checked_mesh(vertices, triangles, tuple(contents.names) or (path.stem,), owners)
+    names = tuple(contents.names) or (path.stem,)
+    return polygon_mesh(vertices, corners, counts, names, np.array(contents.owners, np.int64))
 
 
 def _read_line(words: list[str], contents: _Contents, default_name: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv import InputError
-from stiv.mesh_files.mesh import Mesh, checked_mesh, fans
+from stiv.mesh_files.mesh import Mesh, polygon_mesh
 from stiv.mesh_files.ply_header import Element, Header, Property, read_header
 
 _INDEX_NAMES = ("vertex_indices", "vertex_index")
@@ -32,7 +32,7 @@ def read_ply(path: Path) -> Mesh:
             corners = _corners(lists, element)
     if vertices is None:
         raise InputError('no element "vertex" in it')
-    return checked_mesh(vertices, fans(*corners), (path.stem,))
+    return polygon_mesh(vertices, *corners, (path.stem,))
 
 
 def _coordinates(columns: Columns, element: Element) -> NDArray[np.float64]:

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.repair`: selected meshes lose the intersections that they have."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty
+
+from .reshape import ReshapeOperator
+
+
+class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
+    """Remove the intersections of the selected meshes: contract them until there are none, expand them back."""
+
+    bl_idname = "stiv.repair"
+    bl_label = "Repair Intersections"
+
+    max_deviation: FloatProperty(
+        name="Most Deviation",
+        description="What ends farther from its shape is refused: mean distance in parts of the size of what moves",
+        default=0.05,
+        min=0.0,
+        soft_max=0.2,
+        precision=3,
+    )
+    weld: BoolProperty(
+        name="Weld",
+        description="Make vertices of a mesh one that lie in exactly the same place, before: open seams of imports",
+        default=False,
+    )
+
+    def begin(self, context: bpy.types.Context) -> Any:
+        """Read the scene."""
+        from stiv.blender import BlenderRepair, RepairSettings  # the add-on registers without the native module
+
+        return BlenderRepair.begin(context, RepairSettings(self.settings(context), self.max_deviation, self.weld))

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Repair of a .blend, with Blender as a Python module."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from stiv.command_line.blender_module import require_blender
+from stiv.command_line.output_files import written_atomically
+from stiv.command_line.progress import share_bar
+from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
+
+
+def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOutcome:
+    """Repairs the open meshes of a .blend and saves a copy when Blender's own evaluation is free. Raises InputError.
+
+    Roles that the add-on has stored are followed if it is installed. The selection in the file stays as it is.
+    """
+    files = require_blender("stiv.blender.blend_files", source)
+    with quiet_blender():
+        context = files.open_blend(source)
+        settings = _settings(context, source, choices)
+        outcome = _repair(context, settings, choices, source)
+        if outcome.free:
+            with written_atomically(output) as temporary:
+                files.save_blend(temporary)
+    return outcome
+
+
+def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -> RepairOutcome:
+    blender = require_blender("stiv.blender", source)
+    selecting = require_blender("stiv.blender.selecting", source)
+    found = blender.check_scene(context, settings)
+    before = len(found.pairs)
+    if before == 0:
+        return RepairOutcome("already_free", "", 0, [], 0.0, "")
+    meeting = {each.object for pair in found.pairs for each in (pair.first, pair.second)}
+    names = choices.move or sorted(_that_may_change(context, meeting, settings))
+    if not names:
+        return RepairOutcome("refused", "no mesh that intersects may change", before, _plain(found.pairs), 0.0, "")
+    with selecting.selected(context, names), share_bar("repair") as progress:
+        chosen = blender.RepairSettings(settings, choices.max_deviation, choices.weld)
+        report = blender.repair_scene(context, chosen, progress=progress)
+    left = blender.check_scene(context, settings).pairs
+    if report.changed and left:
+        message = "free of what is to move, but others still intersect; name them with --move"
+        return RepairOutcome("refused", message, before, _plain(left), report.deviation, report.contracted)
+    status = "refused" if left else report.status
+    return RepairOutcome(status, report.message, before, _plain(left), report.deviation, report.contracted)
+
+
+def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
+    if importlib.util.find_spec("stiv_addon") is None:
+        settings = require_blender("stiv.blender", source).EditSettings()
+    else:
+        if not require_blender("stiv.blender.replaying", source).operators_are_there():
+            require_blender("stiv_addon", source).register()
+        settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
+    return replace(settings, separation=choices.separation) if choices.separation else settings
+
+
+def _that_may_change(context: Any, names: set[str], settings: Any) -> set[str]:
+    """Meshes among these objects that are no obstacles."""
+    objects = context.view_layer.objects
+    return {name for name in names if objects[name].type == "MESH" and settings.role(name) != "obstacle"}
+
+
+def _plain(pairs: Any) -> list[tuple[Element, Element]]:
+    return [
+        ((a.object, a.kind, a.number), (b.object, b.kind, b.number)) for a, b in ((p.first, p.second) for p in pairs)
+    ]

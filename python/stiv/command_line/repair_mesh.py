@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Repair of a mesh file, without Blender."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import stiv
+from stiv import InputError
+from stiv.command_line.output_files import written_atomically
+from stiv.command_line.progress import share_bar
+from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
+from stiv.mesh_files import Mesh, read_mesh, welded_mesh, write_mesh, write_repositioned
+
+Floats = NDArray[np.float64]
+Pairs = list[tuple[Element, Element]]
+
+
+def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOutcome:
+    """Repairs a mesh file; the output is written when what was written, read again, is free. Raises InputError.
+
+    An output of the same kind is the input with other positions; one of another kind has polygons and object names.
+    With `weld`, and for another kind, textures and other properties are left out.
+    """
+    mesh = read_mesh(source)
+    if choices.weld:
+        mesh = welded_mesh(mesh)
+    surface = _surface_of(mesh, choices.move)
+    options = stiv.RepairOptions(
+        edit=stiv.EditOptions(separation=choices.separation), max_deviation=choices.max_deviation
+    )
+    with share_bar("repair") as progress:
+        result = stiv.repair(surface, mesh.vertices, options, progress=progress)
+    pairs = [_named_pair(mesh, pair) for pair in result.pairs.tolist()]
+    outcome = RepairOutcome(
+        result.status, result.message, result.pairs_before, pairs, result.deviation, result.contracted
+    )
+    if not outcome.free:
+        return outcome
+    with written_atomically(output) as temporary:
+        if choices.weld or output.suffix.lower() != source.suffix.lower():
+            write_mesh(temporary, replace(mesh, vertices=result.positions))
+        else:
+            write_repositioned(source, temporary, result.positions)
+        _check_written(temporary, surface, output)
+    return outcome
+
+
+def _surface_of(mesh: Mesh, move: tuple[str, ...]) -> stiv.Surface:
+    """One body an object, unless objects share vertices; those that are not named in `move`, if any are, are fixed."""
+    for name in move:
+        if name not in mesh.object_names:
+            raise InputError(f'there is no object "{name}"; there are {", ".join(map(repr, mesh.object_names[:10]))}')
+    owner = np.zeros(len(mesh.vertices), np.int32)
+    owner[mesh.triangles] = mesh.triangle_object[:, None]
+    if (owner[mesh.triangles] != mesh.triangle_object[:, None]).any():
+        if move:
+            raise InputError("objects of the file share vertices and cannot be moved apart; leave out --move")
+        return stiv.Surface(mesh.triangles, len(mesh.vertices))
+    bodies = [stiv.Body(name, "fixed" if move and name not in move else "deformable") for name in mesh.object_names]
+    return stiv.Surface(mesh.triangles, len(mesh.vertices), vertex_body=owner, bodies=bodies)
+
+
+def _check_written(path: Path, surface: stiv.Surface, output: Path) -> None:
+    """The file must be free as another program will read it."""
+    written = read_mesh(path)
+    if len(stiv.find_intersections(written.vertices, stiv.Surface(
+        written.triangles, len(written.vertices), vertex_body=surface.vertex_body, bodies=surface.bodies
+    ))):  # fmt: skip
+        raise InputError(f"{output}: this kind of file cannot hold the result precisely enough; write .npz or .obj")
+
+
+def _named_pair(mesh: Mesh, pair: list[int]) -> tuple[Element, Element]:
+    def element(triangle: int) -> Element:
+        of = int(mesh.triangle_object[triangle])
+        polygon = int(np.searchsorted(np.cumsum(np.maximum(mesh.counts - 2, 0)), triangle, side="right"))
+        first = int(np.flatnonzero(mesh.polygon_object == of)[0])
+        within = int((mesh.polygon_object[first:polygon] == of).sum())
+        return mesh.object_names[of], "face", within
+
+    return element(pair[0]), element(pair[1])

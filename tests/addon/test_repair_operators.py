@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Check, repair, contract, expand and settle as a script calls them, with the core behind them."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import bmesh  # noqa: E402
+
+import stiv_addon  # noqa: E402
+from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
+from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
+from stiv.blender import check_scene  # noqa: E402
+from stiv_addon.operators.reshape import Worker  # noqa: E402
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+@pytest.fixture(autouse=True)
+def empty_scene() -> None:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def add(name: str, vertices: Any, faces: Any, location: Any = (0, 0, 0), select: bool = True) -> Any:
+    data = bpy.data.meshes.new(name)
+    data.from_pydata([tuple(v) for v in vertices], [], [tuple(f) for f in faces])
+    ob = bpy.data.objects.new(name, data)
+    ob.location = location
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.update()
+    ob.select_set(select)
+    bpy.context.view_layer.objects.active = ob
+    return ob
+
+
+def add_tube() -> Any:
+    tube = hairpin(0.28, rings=24, sides=8)
+    return add("Tube", tube.positions, tube.surface.triangles.tolist())
+
+
+def positions(ob: Any) -> np.ndarray:
+    return np.array([v.co for v in ob.data.vertices])
+
+
+def last() -> dict[str, Any]:
+    result: dict[str, Any] = json.loads(bpy.context.window_manager.stiv_last_edit)
+    return result
+
+
+def test_repair_is_one_undo_step_and_reports() -> None:
+    tube = add_tube()
+    before = positions(tube)
+    bpy.ops.ed.undo_push(message="start")
+    assert bpy.ops.stiv.repair("EXEC_DEFAULT", True) == {"FINISHED"}
+    assert check_scene(bpy.context).pairs == ()
+    said = last()
+    assert (said["status"], said["changed"], said["pairs_left"]) == ("repaired", True, 0)
+    assert said["pairs_before"] > 60 and 0 < said["deviation"] < 0.02
+    bpy.ops.ed.undo()
+    assert np.array_equal(positions(bpy.data.objects["Tube"]), before)
+
+
+def test_what_is_refused_raises_with_the_pairs_named() -> None:
+    ball = icosphere(1)
+    one, two = add("One", ball.vertices, ball.faces), add("Two", ball.vertices, ball.faces)
+    with pytest.raises(RuntimeError, match=r'exactly on others.*pairs meet: "One" face 0 and "Two" face 0'):
+        bpy.ops.stiv.repair()
+    assert np.array_equal(positions(one), positions(two))
+    assert last()["status"] == "refused" and last()["pairs"][0] == [["One", "face", 0], ["Two", "face", 0]]
+
+
+def test_contract_expand_and_settle_have_values() -> None:
+    tube = add_tube()
+    before = positions(tube)
+    assert bpy.ops.stiv.contract(steps=12, until_free=True) == {"FINISHED"}
+    assert check_scene(bpy.context).pairs == ()
+    far = np.linalg.norm(positions(tube) - before)
+    assert bpy.ops.stiv.expand(amount=0.5) == {"FINISHED"}
+    half = np.linalg.norm(positions(tube) - before)
+    assert bpy.ops.stiv.expand() == {"FINISHED"}
+    near = np.linalg.norm(positions(tube) - before)
+    assert far > half > near
+    bpy.ops.stiv.settle(rounds=2, smoothness=0.01)
+    assert np.linalg.norm(positions(tube) - before) <= near
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_without_a_shape_to_go_back_to_expand_says_so() -> None:
+    add("Ball", icosphere(1).vertices, icosphere(1).faces)
+    with pytest.raises(RuntimeError, match='object "Ball": no shape to go back to'):
+        bpy.ops.stiv.expand()
+    with pytest.raises(RuntimeError, match='object "Ball": no shape to go back to'):
+        bpy.ops.stiv.settle()
+
+
+def test_nothing_to_do_is_no_undo_step() -> None:
+    add("Ball", icosphere(1).vertices, icosphere(1).faces)
+    assert bpy.ops.stiv.repair() == {"CANCELLED"}
+    assert last()["status"] == "already_free"
+
+
+GRID = ([(x, y, 0.0) for y in (-1, 0, 1) for x in (-1, 0, 1)], [(0, 1, 4, 3), (1, 2, 5, 4), (3, 4, 7, 6), (4, 5, 8, 7)])
+SPIKE = ([(0.6, 0.55, -1), (0.7, 0.55, -1), (0.65, 0.55, 1), (0.6, 5, 0)], [(0, 1, 2), (0, 1, 3)])
+
+
+@pytest.mark.parametrize("levels", [0, 2])
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_check_selects_the_faces_that_meet(levels: int, mode: str) -> None:
+    grid, spike = add("Grid", *GRID, select=False), add("Spike", *SPIKE, select=False)
+    add("Apart", *SPIKE, location=(9, 0, 0))
+    if levels:
+        grid.modifiers.new("Finer", "SUBSURF").levels = levels
+    if mode == "EDIT":
+        bpy.context.view_layer.objects.active = grid
+        bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.stiv.check() == {"FINISHED"}
+    if mode == "EDIT":
+        assert [f.select for f in bmesh.from_edit_mesh(grid.data).faces] == [False, False, False, True]
+        assert tuple(bpy.context.tool_settings.mesh_select_mode) == (False, False, True)
+        bpy.ops.object.mode_set(mode="OBJECT")
+    else:
+        assert {ob.name for ob in bpy.context.selected_objects} == {"Grid", "Spike"}
+    assert [p.select for p in grid.data.polygons] == [False, False, False, True]
+    assert [p.select for p in spike.data.polygons] == [True, False]
+    told = bpy.context.window_manager.stiv_check.summary.splitlines()
+    assert told[0].endswith("in 2 objects, 2 faces selected")
+    assert any(line.startswith("Grid, Spike: ") for line in told)
+
+
+def test_a_worker_solves_beside_blender_and_brings_errors_back() -> None:
+    class Task:
+        def solve(self, cancel: Any, progress: Any) -> None:
+            progress("rounds", 0.5)
+            while not cancel.cancelled:
+                pass
+            raise ValueError("stopped")
+
+    worker = Worker(Task())
+    worker.token.cancel()
+    worker.join()
+    assert worker.progress == ("rounds", 0.5)
+    assert str(worker.error) == "stopped"
