@@ -57,7 +57,7 @@ class RepairResult:
     fewest_pairs: int  #: number of pairs that the best contraction left
     steps: int  #: steps of contraction, of all tries
     deviation: float  #: root mean square distance of the best repair from the start, in diagonals of what may move
-    contracted: str  #: what was contracted: the name of a body, "all", "components" or "regions"
+    contracted: str  #: what was contracted: the name of a body, "all", "shrunk components", "components" or "regions"
     counters: dict[str, int]
     timings: dict[str, float]
 
@@ -82,7 +82,8 @@ def repair(
 
     Success is claimed only where the exact test says so; otherwise the positions stay as they were, and what intersects
     is listed. Tried in this order until one deviates little: each body that all pairs have in common, closed ones
-    first; all that takes part; connected components one after the other; the parts around what intersects.
+    first; all that takes part; connected components shrunk until they are apart, then the parts around what intersects
+    within them; components contracted one after the other; the parts around what intersects.
     """
     chosen = options or RepairOptions()
     q = as_floats(positions, "positions", (None, 3))

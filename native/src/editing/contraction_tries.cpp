@@ -3,19 +3,14 @@
 
 #include <algorithm>
 
+#include "editing/shrinking.hpp"
+
 namespace stiv {
 
 namespace {
 
 constexpr int region_rings[] = {2, 4, 8, 16, 32};
 constexpr int passes_of_region = 4;  // contraction moves the intersections, and the region follows them
-
-/// Which controls to contract so that the vertices of a part are, among those that may move.
-Marks controls_of(const Marks& part, const Movable& movable) {
-  Marks controls = controls_moving(part, movable.supports);
-  for (std::size_t k = 0; k < controls.size(); ++k) controls[k] &= movable.controls[k];
-  return controls;
-}
 
 /// Contracts the vertices of one part of what an earlier contraction left.
 void contract_further(const CagedSurface& caged, const Marks& part, const Movable& movable,
@@ -56,7 +51,23 @@ Contracted contract_regions(const CagedSurface& caged, const Movable& movable, c
   return state;
 }
 
+/// Components apart from each other by shrinking, then what intersects within them.
+Contracted shrink_then_contract(const CagedSurface& caged, const Movable& movable, const ContractionOptions& options,
+                                const Controls& start, Execution& execution) {
+  const Contracted apart = shrink_components(caged, movable, options, start, execution);
+  if (apart.pairs == 0 || apart.positions == start) return apart;
+  Contracted whole = contract_regions(caged, movable, options, apart.positions, execution);
+  whole.steps += apart.steps;
+  return whole;
+}
+
 }  // namespace
+
+Marks controls_of(const Marks& part, const Movable& movable) {
+  Marks controls = controls_moving(part, movable.supports);
+  for (std::size_t k = 0; k < controls.size(); ++k) controls[k] &= movable.controls[k];
+  return controls;
+}
 
 std::vector<ContractionTry> contraction_tries(const CagedSurface& caged, const StaticPairs& pairs,
                                               const Movable& movable, const ContractionOptions& options) {
@@ -77,6 +88,9 @@ std::vector<ContractionTry> contraction_tries(const CagedSurface& caged, const S
       tries.push_back({name, part(marks_of_bodies(surface, {body}, movable.vertices))});
     }
   tries.push_back({"all", part(marks_of_bodies(surface, bodies, movable.vertices))});
+  tries.push_back({"shrunk components", [=](const Controls& start, Execution& execution) {
+                     return shrink_then_contract(caged, movable, options, start, execution);
+                   }});
   tries.push_back({"components", [=](const Controls& start, Execution& execution) {
                      return contract_components(caged, movable, options, start, execution);
                    }});

@@ -19,7 +19,7 @@ struct Contracted {
 
 /// One way to contract, from positions at which something intersects.
 struct ContractionTry {
-  std::string what;  ///< name of the body, "all", "components", "regions"
+  std::string what;  ///< name of the body, "all", "shrunk components", "components", "regions"
   std::function<Contracted(const Controls& start, Execution& execution)> run;
 };
 
@@ -29,6 +29,9 @@ struct Movable {
   Marks vertices;
   std::vector<std::vector<Index>> supports;
 };
+
+/// Which controls move the vertices of a part, among those that may move.
+Marks controls_of(const Marks& part, const Movable& movable);
 
 /// The ways to contract in the order in which they are worth trying.
 std::vector<ContractionTry> contraction_tries(const CagedSurface& caged, const StaticPairs& pairs,

@@ -14,6 +14,8 @@ namespace stiv {
 
 namespace {
 
+constexpr int further_rounds = 4;
+
 /// The marks given, without controls that move anything but deformable bodies.
 Movable movable_of(const CagedSurface& caged, const Marks& asked) {
   const auto count = static_cast<std::size_t>(caged.deformation->control_count());
@@ -154,6 +156,15 @@ class Repair {
     result_.contracted = what;
   }
 
+  /// A new edit from the best repair sometimes comes nearer: other contacts are met first.
+  void come_nearer() {
+    for (int round = 0; round < further_rounds && !is_good(); ++round) {
+      const double before = result_.deviation;
+      expand_back(Controls(best_), result_.contracted);
+      if (!(result_.deviation < before)) return;
+    }
+  }
+
   bool is_good() const { return best_found_ && result_.deviation <= options_.good_deviation; }
 
   void refuse(RepairRefusal reason) {
@@ -164,6 +175,7 @@ class Repair {
   /// Takes the best repair if it is near enough, and if the exact test of all says once more that nothing intersects.
   void conclude() {
     if (!best_found_) return refuse(RepairRefusal::not_freed);
+    if (!execution_.budget_used_up()) come_nearer();
     if (result_.deviation > options_.max_deviation) return refuse(RepairRefusal::too_far);
     Execution uninterrupted(execution_.threads());
     if (!find_static_pairs(test_, caged_.deformation->surface(best_), uninterrupted).empty())

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editing/shrinking.hpp"
 #include "stiv/deformation/identity.hpp"
 #include "stiv/deformation/linear.hpp"
 #include "stiv/editing/expansion.hpp"
@@ -154,6 +155,29 @@ TEST_CASE("a cage is contracted until its surface is free, and expanded back") {
   CHECK_THROWS_AS(repair({scene.surface, make_identity(count - 1), scene.surface}, scene.controls, {}, execution),
                   InputError);
   CHECK_THROWS_AS(repair(caged, scene.controls.topRows(count - 1), {}, execution), InputError);
+}
+
+TEST_CASE("components that smoothing cannot take apart are shrunk until they are") {
+  const Scene scene = spike_through_sheet();  // two components
+  Execution execution(1);
+  const CagedSurface caged = without_cage(scene.surface);
+  const auto supports = supports_of(*caged.deformation);
+  const Movable movable{Marks(supports.size(), 1), Marks(supports.size(), 1), supports};
+  const Contracted apart = shrink_components(caged, movable, {}, scene.controls, execution);
+  CHECK(apart.pairs == 0);
+  CHECK(pairs_at(scene, apart.positions).empty());
+  // What moved is similar to what it was: all edges have become shorter by one factor.
+  double least = 1, most = 0;
+  for (const auto& corners : scene.surface->triangles().rowwise()) {
+    const auto length = [&](const Positions& q) { return (q.row(corners[0]) - q.row(corners[1])).norm(); };
+    const double ratio = length(apart.positions) / length(scene.controls);
+    if (ratio < 0.99) {
+      least = std::min(least, ratio);
+      most = std::max(most, ratio);
+    }
+  }
+  CHECK(most == doctest::Approx(least));
+  CHECK(most <= doctest::Approx(0.5));
 }
 
 TEST_CASE("expansion goes toward any target, and never through anything") {

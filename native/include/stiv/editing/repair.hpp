@@ -45,15 +45,16 @@ struct RepairResult {
   Index steps = 0;         ///< steps of contraction, of all tries
   double deviation = 0;    ///< root mean square distance of the best repaired surface from the one given, over what
                            ///< may move and in its diagonals; set when refused as too far as well
-  std::string contracted;  ///< what was contracted: names of bodies, "components" or "regions"
+  std::string contracted;  ///< what was contracted: names of bodies, "shrunk components", "components" or "regions"
   Counters counters;
   Timings timings;
 };
 
 /// Removes intersections that a surface already has: contracts its cage until the exact test finds none, then expands
 /// it back with interference. [P5.2, Figure 5] Tried in this order, until one comes near enough: each body that all
-/// pairs have in common, closed ones first; all bodies that take part; their connected components one after the other;
-/// the parts around what intersects. Success is claimed only where the exact test says so; nothing is made worse.
+/// pairs have in common, closed ones first; all bodies that take part; their connected components shrunk until they are
+/// apart, then the parts around what intersects within them; the components contracted one after the other; the parts
+/// around what intersects. Success is claimed only where the exact test says so; nothing is made worse.
 /// @param p (m, 3) controls
 /// @throws InputError for shapes and options that do not fit
 RepairResult repair(const CagedSurface& caged, const Controls& p, const RepairOptions& options, Execution& execution);
