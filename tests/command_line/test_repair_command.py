@@ -44,7 +44,7 @@ def balls(distance, size=1.0):
 def test_a_tube_is_repaired_and_nothing_but_positions_changes(tube_obj, tmp_path, capsys):
     out, report = tmp_path / "out.obj", tmp_path / "report.json"
     assert not free(tube_obj)
-    assert program.run(["repair", str(tube_obj), "-o", str(out), "--json", str(report)]) == 0
+    assert program.run(["repair", str(tube_obj), "-o", str(out), "--report", str(report)]) == 0
     assert free(out)
     before, after = tube_obj.read_bytes().split(b"\r\n"), out.read_bytes().split(b"\r\n")
     assert len(before) == len(after)

@@ -21,12 +21,12 @@ from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.cage import CageWriter
 from stiv.blender.evaluated_scene import is_visible, read_scene
 from stiv.blender.mesh_reading import read_edges, read_loose_numbers, read_triangles
+from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal
 from stiv.blender.recutting import Cut, with_cuts
 from stiv.blender.references import ObjectReference
-from stiv.blender.roles import Mover
 from stiv.blender.sessions import deformation_of, mobilities, stacked
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, Verification, Verifier

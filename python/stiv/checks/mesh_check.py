@@ -11,6 +11,7 @@ import stiv
 from stiv import InputError
 from stiv.checks.findings import Element, Finding, Look, Shapes
 from stiv.mesh_files import Mesh
+from stiv.mesh_files.mesh import checked_mesh
 
 
 def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
@@ -41,4 +42,5 @@ def _limited(mesh: Mesh, objects: Collection[str]) -> Mesh:
     if not objects:
         return mesh
     kept = np.isin(mesh.triangle_object, [mesh.object_names.index(name) for name in objects])
-    return Mesh(mesh.vertices, mesh.triangles[kept], mesh.object_names, mesh.triangle_object[kept])
+    triangles, owners = mesh.triangles[kept].astype(np.int64), mesh.triangle_object[kept].astype(np.int64)
+    return checked_mesh(mesh.vertices, triangles, mesh.object_names, owners)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
 from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json
 from stiv.command_line.repair_blend import repair_blend
 from stiv.command_line.repair_mesh import repair_mesh
@@ -57,7 +58,8 @@ def add_to(subcommands: Subparsers) -> None:
         "--max-deviation", type=float, default=0.05, metavar="D",
         help="refuse what ends farther off: root mean square in diagonals of what may move (default 0.05)",
     )  # fmt: skip
-    parser.add_argument("--json", type=Path, metavar="F", help="write what was done to F")
+    parser.add_argument("--json", "--report", type=Path, metavar="F", help="write what was done to F, as JSON")
+    add_blender_option(parser)
     parser.set_defaults(run=_run)
 
 
