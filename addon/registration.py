@@ -5,8 +5,9 @@ import bpy
 
 from . import keymap, live_loops, menus, operators, panels, properties
 from .guard import watching
+from .overlay import showing
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (*properties.CLASSES, *showing.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:
@@ -18,10 +19,12 @@ def register() -> None:
     keymap.register()
     live_loops.register()
     watching.register()
+    showing.register()
 
 
 def unregister() -> None:
     """Take everything away again."""
+    showing.unregister()
     watching.unregister()
     live_loops.unregister()
     keymap.unregister()

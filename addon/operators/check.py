@@ -10,6 +10,7 @@ from typing import Any
 import bpy
 
 from .. import availability
+from ..overlay import showing
 from ..settings import edit_settings
 
 MOST = 5  # pairs of objects that the summary lists
@@ -46,6 +47,7 @@ class STIV_OT_check(bpy.types.Operator):
         chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
         text = summary(pairs, chosen)
         context.window_manager.stiv_check.summary = text
+        showing.show_pairs(context, found.pairs)
         self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
         return {"FINISHED"}
 

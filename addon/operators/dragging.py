@@ -13,6 +13,7 @@ from ..modal.drag import Drag, DragEnded, Progress
 from ..modal.pointer import Pointer
 from ..modal.request import Request
 from ..modal.state import Effect, State
+from ..overlay import showing
 from ..settings import DRAG_BUDGET
 from ..transform.measuring import measure
 from . import interface, outcomes
@@ -114,6 +115,8 @@ class Dragging:
         verdict = outcome_text(drag.result) if drag.result is not None else ""
         told = [text for text in (drag.note, write_failure(drag.report)) if text]
         interface.show(context, drag.state, value, verdict, [*told, *self._notes], self._axes)
+        if drag.result is not None:
+            showing.show_edit(drag.edit, drag.result)
 
     def _end(self, context: bpy.types.Context) -> set[str]:
         drag = self._drag
@@ -147,4 +150,5 @@ class Dragging:
 
     def _leave(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
+        showing.end_edit()
         interface.clear(context)

@@ -6,6 +6,7 @@ from .deformation import STIV_PT_deformation
 from .edit import STIV_PT_edit
 from .guard import STIV_PT_guard
 from .loop import STIV_PT_loop
+from .overlay import STIV_PT_overlay
 from .repair import STIV_PT_repair
 from .roles import STIV_PT_roles
 
@@ -17,4 +18,5 @@ CLASSES = (
     STIV_PT_loop,
     STIV_PT_check,
     STIV_PT_repair,
+    STIV_PT_overlay,
 )

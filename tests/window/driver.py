@@ -37,12 +37,13 @@ class Driver:
 
     def __init__(self, output: Path, names: list[str]):
         """Choose scenarios by name; none means all."""
+        from guard_scenarios import GUARD
         from guide_pictures import PICTURES
         from scenarios import SCENARIOS
         from simulation import Window
 
         self.window = Window(output)
-        known = SCENARIOS | PICTURES
+        known = SCENARIOS | GUARD | PICTURES
         chosen = {name: known[name] for name in names} or known
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

@@ -4,6 +4,7 @@
 from stiv.blender.changes import Change, Changes, compare
 from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
+from stiv.blender.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
@@ -24,6 +25,7 @@ __all__ = [
     "BlenderRepair",
     "Change",
     "Changes",
+    "Contacts",
     "ContractionSettings",
     "EditSettings",
     "ExpansionSettings",
@@ -44,6 +46,7 @@ __all__ = [
     "add_refined",
     "check_scene",
     "compare",
+    "contacts_of",
     "contract_scene",
     "expand_scene",
     "follow",
@@ -52,4 +55,5 @@ __all__ = [
     "refresh",
     "remove_refined",
     "repair_scene",
+    "triangles_of",
 ]

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the overlay with the theme's colours."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+from .content import Content, lines_of, texts_of
+
+ARROW = 0.06  # length of an arrow in distances from the eye to the view's centre
+LINE_WIDTH = 2.0
+FACE_ALPHA = 0.5
+CORNER = (20, 60)  # of the text, pixels from the lower left
+TEXT_SIZE = 12
+
+
+def colours(context: Any) -> dict[str, tuple[float, float, float]]:
+    """Colours by what they are for."""
+    theme = context.preferences.themes[0]
+    return {
+        "contact": tuple(theme.view_3d.vertex_select)[:3],
+        "blocked": tuple(theme.view_3d.object_active)[:3],
+        "clearance": tuple(theme.view_3d.transform)[:3],
+        "intersecting": tuple(theme.console.line_error)[:3],
+        "text": tuple(theme.view_3d.space.text_hi)[:3],
+    }
+
+
+def draw_shapes(content: Content, chosen: Any) -> None:
+    """Triangles and lines, in the 3D view."""
+    context, shader = bpy.context, gpu.shader.from_builtin("UNIFORM_COLOR")
+    colour, length = colours(context), ARROW * context.region_data.view_distance
+    gpu.state.blend_set("ALPHA")
+    gpu.state.line_width_set(LINE_WIDTH)
+    try:
+        if len(content.intersecting) and chosen.intersections:
+            _draw(shader, "TRIS", content.intersecting.reshape(-1, 3), (*colour["intersecting"], FACE_ALPHA))
+        for name, points in lines_of(content, chosen, length).items():
+            _draw(shader, "LINES", points, (*colour[name], 1.0))
+    finally:
+        gpu.state.line_width_set(1.0)
+        gpu.state.blend_set("NONE")
+
+
+def draw_text(content: Content, chosen: Any) -> None:
+    """Numbers, in the lower left corner."""
+    context = bpy.context
+    scale = context.preferences.system.ui_scale
+    blf.size(0, TEXT_SIZE * scale)
+    blf.color(0, *colours(context)["text"], 1.0)
+    for number, text in enumerate(reversed(texts_of(content, chosen, _length_text))):
+        blf.position(0, CORNER[0] * scale, (CORNER[1] + 1.5 * TEXT_SIZE * number) * scale, 0)
+        blf.draw(0, text)
+
+
+def _draw(shader: Any, kind: str, points: Any, colour: tuple[float, ...]) -> None:
+    batch = batch_for_shader(shader, kind, {"pos": points.astype("float32")})
+    shader.bind()
+    shader.uniform_float("color", colour)
+    batch.draw(shader)
+
+
+def _length_text(value: float) -> str:
+    units = bpy.context.scene.unit_settings
+    if units.system == "NONE":
+        return f"{value:.4g}"
+    return bpy.utils.units.to_string(units.system, "LENGTH", value * units.scale_length, precision=6)
