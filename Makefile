@@ -18,7 +18,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: test-long peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
+.PHONY: docs test-long peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -76,6 +76,11 @@ format: build/venv/lint ## Format C++ and Python in place
 
 test-long: build/venv/stiv ## Run the long forms: a batch of 200 scenes killed 50 times
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
+
+docs: ## Make the API reference of the core from its headers: build/docs/html
+	tools/install_debian_packages.sh tools/debian_packages_docs.txt
+	mkdir -p build/docs
+	doxygen docs/Doxyfile
 
 clean: ## Remove everything that was built or downloaded
 	rm -rf build dist

@@ -1,5 +1,5 @@
-# The parts of OpenSubdiv that evaluate subdivision surfaces on the processor (far, with vtr and sdc below it), as a
-# static library without any visible symbol: Blender loads an OpenSubdiv of its own, which must not meet this one.
+# The parts of OpenSubdiv that evaluate subdivision surfaces on the processor (far, with vtr and sdc below it), compiled
+# into the core without any visible symbol: Blender loads an OpenSubdiv of its own, which must not meet this one.
 # STIV_OPENSUBDIV_SOURCE is the folder of its source; tools/opensubdiv_source.sh gets it from Debian.
 
 if(NOT EXISTS "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/stencilTable.h")
@@ -15,7 +15,7 @@ file(GLOB opensubdiv_sources
   "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/sdc/*.cpp"
   "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/vtr/*.cpp")
 
-add_library(stiv_opensubdiv STATIC ${opensubdiv_sources})
+add_library(stiv_opensubdiv OBJECT ${opensubdiv_sources})
 target_include_directories(stiv_opensubdiv SYSTEM PUBLIC "${STIV_OPENSUBDIV_SOURCE}")
 
 set_target_properties(stiv_opensubdiv PROPERTIES
