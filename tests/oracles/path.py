@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether anything comes into contact along a linear step: all pairs, no trees and no roots.
+"""Whether anything comes into contact along a linear step: sorted boxes, no trees and no roots.
 
 Two convex sets are apart if some direction tells them apart. Seen along a fixed direction, the difference of two
 vertices in linear motion is linear in time, so that its values at the two ends of an interval bound all others: any
@@ -7,6 +7,7 @@ direction that works at both ends proves the whole interval free. Which directio
 answer. Where an interval shorter than RESOLUTION cannot be proven free, a contact is reported.
 """
 
+import itertools
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -18,7 +19,8 @@ Integers = NDArray[np.int64]
 
 RESOLUTION = 2.0**-26
 GUARD = 2.0**-45  # relative to the extent: more than 100 times what rounding can do to one height
-ROWS = 4096  # worked on at a time, which bounds the memory
+ROWS = 4096  # pairs examined at a time, which bounds the memory
+PAIRS = 1_000_000  # boxes compared at a time
 
 
 class Contacts(NamedTuple):
@@ -98,14 +100,8 @@ def _pairs_in_reach(
     edges = unique_edges(triangles, loose_edges)
     faces = triangles.reshape(-1, 3)
     for kind, queries, others in (("vf", np.arange(len(start))[:, None], faces), ("ee", edges, edges)):
-        low, high = (_swept(queries, start, end, np.min), _swept(queries, start, end, np.max))
-        others_low, others_high = (_swept(others, start, end, np.min), _swept(others, start, end, np.max))
-        step = max(1, 4_000_000 // max(1, len(others)))
-        for begin in range(0, len(queries), step):
-            part = slice(begin, begin + step)
-            near = (low[part, None] - clearance <= others_high) & (high[part, None] + clearance >= others_low)
-            i, j = np.nonzero(near.all(axis=2))
-            i += begin
+        boxes, other_boxes = _swept_boxes(queries, start, end), _swept_boxes(others, start, end)
+        for i, j in _overlapping(boxes, other_boxes, clearance):
             if kind == "ee":
                 i, j = i[i < j], j[i < j]
             pairs = np.concatenate([queries[i], others[j]], axis=1)
@@ -114,9 +110,44 @@ def _pairs_in_reach(
             yield kind, pairs[~shares]
 
 
-def _swept(primitives: Integers, start: Floats, end: Floats, extreme: np.ufunc) -> Floats:
+def _overlapping(
+    boxes: tuple[Floats, Floats], others: tuple[Floats, Floats], clearance: float
+) -> Iterator[tuple[Integers, Integers]]:
+    """Yield the rows of all boxes (low, high) that come within the clearance of each other.
+
+    Along one axis, boxes that reach a query begin below its end, and at most the widest one's width below its begin.
+    """
+    (low, high), (others_low, others_high) = boxes, others
+    if not len(low) or not len(others_low):
+        return
+    axis = int(np.argmax(others_low.std(axis=0) / np.maximum(np.median(others_high - others_low, axis=0), 1e-300)))
+    order = np.argsort(others_low[:, axis], kind="stable")
+    begins = others_low[order, axis]
+    widest = (others_high - others_low)[:, axis].max()
+    first = np.searchsorted(begins, low[:, axis] - 2 * clearance - widest, "left")
+    count = np.searchsorted(begins, high[:, axis] + 2 * clearance, "right") - first
+    for part in _slices(count, PAIRS):
+        i = np.repeat(np.arange(len(low))[part], count[part])
+        within = np.arange(len(i)) - np.repeat(np.cumsum(count[part]) - count[part], count[part])
+        j = order[np.repeat(first[part], count[part]) + within]
+        for k in (axis, *{0, 1, 2}.difference([axis])):
+            near = low[i, k] - clearance <= others_high[j, k]
+            near &= high[i, k] + clearance >= others_low[j, k]
+            i, j = i[near], j[near]
+        yield i, j
+
+
+def _slices(sizes: Integers, most: int) -> Iterator[slice]:
+    """Yield slices of consecutive rows whose sizes add up to about `most`."""
+    cuts = np.flatnonzero(np.diff(np.cumsum(sizes) // most)) + 1
+    borders = [0, *cuts.tolist(), len(sizes)]
+    yield from (slice(begin, end) for begin, end in itertools.pairwise(borders) if end > begin)
+
+
+def _swept_boxes(primitives: Integers, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """Return low and high corners, (P, 3) each, of all that the primitives pass."""
     corners = np.concatenate([start[primitives], end[primitives]], axis=1)
-    return extreme(corners, axis=1) if corners.size else np.empty((0, 3))
+    return corners.min(axis=1), corners.max(axis=1)
 
 
 def _outline(kind: str, x: Floats) -> Floats:
