@@ -5,10 +5,15 @@ Usage: run_tests.py PART...   with the parts native, sanitizers, python, blender
 """
 
 import os
+import re
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import junit_counts
@@ -17,18 +22,43 @@ from junit_counts import Counts
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
-TIME_LIMIT = 1800  # seconds for one part
+TIME_LIMIT = 2400  # seconds for one command
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
+PRINTING = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run of tests. Those that use every processor themselves, or measure what a user feels, run alone."""
+
+    title: str
+    run: Callable[[], Counts]
+    alone: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a job came to."""
+
+    title: str
+    counts: Counts
+    seconds: float
 
 
 def run(title: str, command: list[str | Path]) -> int:
-    """Run one command from the root of the source tree, with its output shown as it comes; end it when it hangs."""
-    print(f"\n== {title}", flush=True)
-    try:
-        return subprocess.run(command, cwd=ROOT, check=False, timeout=TIME_LIMIT).returncode
-    except subprocess.TimeoutExpired:
-        print(f"{title}: ended after {TIME_LIMIT} s", flush=True)
-        return 1
+    """Run one command from the root of the source tree; its output is shown when it ends. One that hangs is ended."""
+    log = REPORTS / f"{re.sub('[^a-z0-9.-]+', '-', title)}.log"
+    with log.open("wb") as output:
+        try:
+            code = subprocess.run(
+                command, cwd=ROOT, check=False, timeout=TIME_LIMIT, stdout=output, stderr=subprocess.STDOUT
+            ).returncode
+        except subprocess.TimeoutExpired:
+            output.write(f"{title}: ended after {TIME_LIMIT} s\n".encode())
+            code = 1
+    with PRINTING:
+        print(f"\n== {title}\n{log.read_text(errors='replace')}", flush=True)
+    return code
 
 
 def native(title: str, folder: str) -> Counts:
@@ -57,27 +87,42 @@ def lint(title: str) -> Counts:
     return counts
 
 
-def parts(name: str) -> Iterator[tuple[str, Counts]]:
-    """Title and counts of each run that belongs to a part; runs it when asked for."""
+def jobs(name: str) -> Iterator[Job]:
+    """The runs that belong to a part."""
     if name == "native":
-        yield name, native(name, "native")
+        yield Job(name, lambda: native(name, "native"), alone=True)
     elif name == "sanitizers":
-        yield name, native(name, "asan")
+        yield Job(name, lambda: native(name, "asan"), alone=True)
     elif name == "python":
-        yield name, pytest(name, BUILD / "venv", "-m", "not blender")
+        yield Job(name, lambda: pytest(name, BUILD / "venv", "-m", "not blender"))
     elif name == "blender":
         for venv in sorted(BUILD.glob("venv-blender-*")):
             title = venv.name.removeprefix("venv-")
-            yield title, pytest(title, venv, "-m", "blender")
+            yield Job(title, partial(pytest, title, venv, "-m", "blender"))
     elif name == "lint":
-        yield name, lint(name)
+        yield Job(name, lambda: lint(name))
     else:
         raise SystemExit(f"run_tests.py: unknown part {name!r}")
 
 
-def print_row(title: str, counts: Counts, seconds: float) -> None:
+def timed(job: Job) -> Row:
+    """Run one job."""
+    print(f"-- {job.title}: begun", flush=True)
+    start = time.monotonic()
+    return Row(job.title, job.run(), time.monotonic() - start)
+
+
+def run_all(todo: list[Job]) -> list[Row]:
+    """Run the jobs: one by one those that need the machine, then the others, as many at a time as it has processors."""
+    rows = [timed(job) for job in todo if job.alone]
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        return rows + list(pool.map(timed, [job for job in todo if not job.alone]))
+
+
+def print_row(row: Row) -> None:
     """One line of the summary, and a line for each reason for which tests were skipped."""
-    print(f"{title:<20}{counts.passed:>8}{counts.failed:>8}{counts.skipped.total():>9}{seconds:>9.0f}")
+    counts = row.counts
+    print(f"{row.title:<20}{counts.passed:>8}{counts.failed:>8}{counts.skipped.total():>9}{row.seconds:>9.0f}")
     for reason, number in sorted(counts.skipped.items()):
         print(f"    skipped {number}: {reason}")
 
@@ -85,17 +130,12 @@ def print_row(title: str, counts: Counts, seconds: float) -> None:
 def main(names: list[str]) -> int:
     """Run, summarise; 1 if anything failed."""
     REPORTS.mkdir(parents=True, exist_ok=True)
-    rows: list[tuple[str, Counts, float]] = []
-    for name in names:
-        start = time.monotonic()
-        for title, counts in parts(name):
-            rows.append((title, counts, time.monotonic() - start))
-            start = time.monotonic()
+    rows = run_all([job for name in names for job in jobs(name)])
     total = Counts()
     print(f"\n{'part':<20}{'passed':>8}{'failed':>8}{'skipped':>9}{'seconds':>9}")
-    for title, counts, seconds in rows:
-        print_row(title, counts, seconds)
-        total.add(counts)
+    for row in rows:
+        print_row(row)
+        total.add(row.counts)
     print(f"{total.passed} passed, {total.failed} failed", flush=True)
     return int(total.failed > 0)
 
