@@ -26,7 +26,7 @@ def content() -> Content:
 
 def _redraw(settings: Any = None, context: Any = None) -> None:
     """Draw while there is something to draw and the overlay is on; called by Blender for switches too."""
-    if _content and bpy.context.window_manager.stiv_overlay.show:
+    if _content and _is_on():
         _begin()
     else:
         _end()
@@ -79,7 +79,7 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
 def show_edit(edit: Any, result: Any) -> None:
     """A step of a drag: its contacts, and how long it took. edit: a `stiv.blender.BlenderEdit`."""
     global _last_step
-    if not bpy.context.window_manager.stiv_overlay.show:
+    if not _is_on():
         return
     from stiv.blender import contacts_of  # the add-on registers without the native module
 
@@ -118,6 +118,11 @@ def clear() -> None:
     global _content
     _content = Content()
     _end()
+
+
+def _is_on() -> bool:
+    settings = getattr(bpy.context.window_manager, "stiv_overlay", None)  # None before registration
+    return settings is not None and settings.show
 
 
 def _begin() -> None:
