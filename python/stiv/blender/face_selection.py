@@ -93,5 +93,8 @@ def _select(ob: bpy.types.Object, chosen: NDArray[np.bool_]) -> None:
     edges[sides[of_corners]] = True
     mesh.polygons.foreach_set("select", chosen)
     mesh.vertices.foreach_set("select", vertices)
+    # Blender 5.0.1 ends when this attribute is written as `from_pydata` leaves it: one value for all edges.
+    if (attribute := mesh.attributes.get(".select_edge")) is not None:
+        mesh.attributes.remove(attribute)
     mesh.edges.foreach_set("select", edges)
     mesh.update()
