@@ -140,13 +140,27 @@ void bind_options(py::module_& module) {
   py::enum_<ConstraintKind>(module, "ConstraintKind")
       .value("per_patch", ConstraintKind::per_patch)
       .value("single", ConstraintKind::single);
+  py::enum_<ConstraintSolver>(module, "ConstraintSolver")
+      .value("lcp", ConstraintSolver::lcp)
+      .value("linear", ConstraintSolver::linear);
+  py::enum_<MetricKind>(module, "MetricKind")
+      .value("energy", MetricKind::energy)
+      .value("controls", MetricKind::controls);
+  py::enum_<VolumeKind>(module, "VolumeKind")
+      .value("relative", VolumeKind::relative)
+      .value("published", VolumeKind::published);
   py::class_<EditOptions>(module, "EditOptions")
       .def(py::init<>())
       .def_readwrite("separation", &EditOptions::separation)
       .def_readwrite("keep", &EditOptions::keep)
       .def_readwrite("smoothness", &EditOptions::smoothness)
       .def_readwrite("weights", &EditOptions::weights)
+      .def_readwrite("exclude", &EditOptions::excluded)
       .def_readwrite("constraints", &EditOptions::constraints)
+      .def_readwrite("solver", &EditOptions::solver)
+      .def_readwrite("metric", &EditOptions::metric)
+      .def_readwrite("volumes", &EditOptions::volumes)
+      .def_readwrite("narrow_phase", &EditOptions::narrow_phase)
       .def_readwrite("broad_phase", &EditOptions::broad_phase)
       .def_readwrite("max_sub_edits", &EditOptions::max_sub_edits)
       .def_readwrite("max_rounds", &EditOptions::max_rounds)

@@ -20,6 +20,7 @@ from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, Stor
 from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
+from stiv.published_method import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
@@ -27,6 +28,7 @@ from stiv.weights import Weights
 from stiv.welding import Welded, weld
 
 __all__ = [
+    "PAPER_DIFFERENCES",
     "Body",
     "Cage",
     "CancelToken",

@@ -148,6 +148,18 @@ class ConstraintKind(enum.Enum):
     per_patch = 0
     single = 1
 
+class ConstraintSolver(enum.Enum):
+    lcp = 0
+    linear = 1
+
+class MetricKind(enum.Enum):
+    energy = 0
+    controls = 1
+
+class VolumeKind(enum.Enum):
+    relative = 0
+    published = 1
+
 class StorageFrame:
     def __init__(self, first: int, count: int, frame: _Floats) -> None: ...
 

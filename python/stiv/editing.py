@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
 from stiv._native import CancelToken, Deformation, InputError
-from stiv.detection import BROAD_PHASES, Events
+from stiv.arrays import Floats, Indices, as_indices
+from stiv.detection import BROAD_PHASES, NARROW_PHASES, Events
+from stiv.intersections import find_intersections
+from stiv.published_method import PAPER_OPTIONS
 from stiv.surface import Surface, as_surface
 
 __all__ = ["CancelToken", "EditOptions", "EditResult", "EditSession", "StorageFrame", "edit"]
@@ -22,6 +25,26 @@ Progress = Callable[[str, float], None]
 CONSTRAINTS: Mapping[str, _native.ConstraintKind] = {
     "per_patch": _native.ConstraintKind.per_patch,
     "single": _native.ConstraintKind.single,
+}
+SOLVERS: Mapping[str, _native.ConstraintSolver] = {
+    "lcp": _native.ConstraintSolver.lcp,
+    "linear": _native.ConstraintSolver.linear,
+}
+METRICS: Mapping[str, _native.MetricKind] = {
+    "energy": _native.MetricKind.energy,
+    "controls": _native.MetricKind.controls,
+}
+VOLUMES: Mapping[str, _native.VolumeKind] = {
+    "relative": _native.VolumeKind.relative,
+    "published": _native.VolumeKind.published,
+}
+CHOICES: Mapping[str, Mapping[str, Any]] = {
+    "constraints": CONSTRAINTS,
+    "solver": SOLVERS,
+    "metric": METRICS,
+    "volumes": VOLUMES,
+    "narrow_phase": NARROW_PHASES,
+    "broad_phase": BROAD_PHASES,
 }
 
 
@@ -46,16 +69,32 @@ class EditOptions:
     keep: float = 0.5  #: in (0, 1): fraction of its distance that a pair keeps which starts nearer than that
     smoothness: float = 0.1  #: damping of the response: 0.1 smooth, 0.01 tight
     weights: ArrayLike | None = None  #: (m,) response of each control, 0 pins it; None: all 1
+    #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
+    exclude: ArrayLike | str | None = None
     constraints: str = "per_patch"  #: "per_patch" or "single": one constraint for each patch, or one for all
+    solver: str = "lcp"  #: "lcp", contacts push; "linear", they may also pull, and none is kept from round to round
+    metric: str = "energy"  #: "energy", steps that move the surface least; "controls", the controls [Algorithm 1]
+    volumes: str = "relative"  #: "relative", of the approach of two sides; "published", of each side's own motion
+    #: of the rounds: "conservative", or "polynomial" as published; acceptance is always conservative and exact
+    narrow_phase: str = "conservative"
     broad_phase: str = "bvh"  #: "bvh"; "hash_grid" or "brute_force" for comparison
     max_sub_edits: int = 6  #: passes of rounds and acceptance
     max_rounds: int = 60  #: detections and responses in a sub-edit
     accumulated_rounds: int = 12  #: rounds that keep the constraints of the rounds before
-    pull_limit: float = 0.04  #: farthest pull of a drag toward its goal, in diagonals of what may move
+    pull_limit: float = 0.04  #: farthest pull of a drag toward its goal, in diagonals of what may move; 0: none
     single_precision: bool = True  #: controls are stored as float32; False: as they are
     storage: Sequence[StorageFrame] = ()  #: frames of stored controls; empty: world coordinates for all
     time_budget: float = 0.0  #: seconds an edit may take; 0: no limit
     threads: int = 0  #: 0: one for each processor
+
+    @classmethod
+    def paper(cls, **others: Any) -> EditOptions:
+        """Return the method as published (Harmon et al. 2011), the baseline of the benchmarks.
+
+        `stiv.PAPER_DIFFERENCES` says what the defaults do otherwise and why. Accepted states pass the same exact test.
+        Without a separation none is aimed for. constraints="single" and solver="linear" are its variants [3.3].
+        """
+        return cls(**{**PAPER_OPTIONS, **others})
 
 
 @dataclass(frozen=True)
@@ -86,9 +125,11 @@ def _native_value(name: str, value: Any) -> Any:
         return np.zeros(0) if value is None else _as_doubles(value, "weights")
     if name == "storage":
         return [_native.StorageFrame(s.first, s.count, _as_doubles(s.frame, "frame")) for s in value]
-    choices: Mapping[str, Any] | None = {"constraints": CONSTRAINTS, "broad_phase": BROAD_PHASES}.get(name)
-    if choices is None:
+    if name == "exclude":
+        return [] if value is None else as_indices(value, "exclude", (None, 2)).tolist()
+    if name not in CHOICES:
         return value
+    choices = CHOICES[name]
     if value not in choices:
         raise InputError(f"{name}: there is no {value!r}, only " + ", ".join(map(repr, choices)))
     return choices[value]
@@ -114,6 +155,13 @@ def _as_doubles(value: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name}: expected an array of real numbers") from error
 
 
+def _named_pairs(name: str, surface: Surface, deformation: Deformation, controls: Floats) -> Indices:
+    """Return the pairs of triangles that a word stands for."""
+    if name != "intersecting":
+        raise InputError(f"exclude: there is no {name!r}, only 'intersecting', or pairs of triangles")
+    return find_intersections(deformation.surface(controls), surface)
+
+
 def result_of(values: dict[str, Any], surface: Surface) -> EditResult:
     """Return the core's account of an edit as a result."""
     values["events"] = Events(*values["events"])
@@ -126,6 +174,12 @@ class EditSession:
 
     Every accepted state is free of intersections, and reachable from the one before without passing through. A session
     serves one call at a time; sessions are independent of each other. The interpreter lock is released while solving.
+
+    A start that already intersects is refused, unless the pairs that do are excluded (`EditOptions.exclude`). Then,
+    from one accepted state to the next, the number of excluded pairs that intersect never grows, and no other pair
+    ever intersects. It says nothing of how deep an excluded pair goes; but the neighbours of its triangles are
+    guarded, so that it cannot go on through them. Two bodies that stand in each other for good are better told to the
+    surface, as `ignored`: with exclusion they can hardly be moved against each other, as other triangles would meet.
 
     Args:
         surface: triangles, (F, 3) integers, or a :class:`stiv.Surface`.
@@ -146,12 +200,11 @@ class EditSession:
         options: EditOptions | None = None,
     ) -> None:
         self._topology = as_surface(surface, deformation.vertex_count)
-        self._session = _native.EditSession(
-            self._topology.native,
-            deformation,
-            _as_doubles(controls, "controls"),
-            native_options(options or EditOptions()),
-        )
+        start = _as_doubles(controls, "controls")
+        chosen = options or EditOptions()
+        if isinstance(chosen.exclude, str):
+            chosen = replace(chosen, exclude=_named_pairs(chosen.exclude, self._topology, deformation, start))
+        self._session = _native.EditSession(self._topology.native, deformation, start, native_options(chosen))
 
     @property
     def controls(self) -> NDArray[np.float64]:

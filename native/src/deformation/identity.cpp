@@ -11,28 +11,6 @@ namespace stiv {
 
 namespace {
 
-/// M^-1 = W: what is sparse stays sparse.
-class IdentityMetric final : public Metric {
- public:
-  explicit IdentityMetric(Eigen::VectorXd weights) : weights_(std::move(weights)) {}
-
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
-    SparseField step;
-    for (std::size_t k = 0; k < g.index.size(); ++k) {
-      const double weight = weights_[g.index[k]];
-      if (weight == 0) continue;
-      step.index.push_back(g.index[k]);
-      step.value.push_back(weight * g.value[k]);
-    }
-    return step;
-  }
-
-  bool is_local() const override { return true; }
-
- private:
-  Eigen::VectorXd weights_;
-};
-
 class Identity final : public Deformation {
  public:
   explicit Identity(Index vertex_count) : count_(vertex_count) {}
@@ -53,7 +31,7 @@ class Identity final : public Deformation {
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    return std::make_unique<IdentityMetric>(checked_weights(options, count_));
+    return make_control_metric(options, count_, true);  // J is the identity
   }
 
   std::vector<Index> support(Index control) const override { return {control}; }

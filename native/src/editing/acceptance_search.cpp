@@ -30,9 +30,9 @@ Acceptance accept_largest(Problem& problem, const State& accepted, const RoundOu
     execution.check();
     State state = state_at_fraction(problem, accepted, outcome.candidate, fraction, execution);
     if (state.controls == accepted.controls) break;
-    const bool path_known = fraction == 1 && outcome.clear;
+    const bool settled = fraction == 1 && outcome.clear, path_known = settled && problem.rounds_prove_path();
     if (!agreeable(state)) {
-      if (path_known) break;
+      if (settled) break;
       fraction *= 0.5;
       continue;
     }

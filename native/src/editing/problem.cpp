@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editing/problem.hpp"
 
+#include <algorithm>
+
 #include "editing/validation.hpp"
 #include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
@@ -25,6 +27,18 @@ EditOptions checked(EditOptions options, Index control_count) {
   return options;
 }
 
+std::unique_ptr<Metric> metric_of(const Deformation& deformation, const EditOptions& options) {
+  const MetricOptions metric{options.smoothness, options.weights};
+  if (options.metric == MetricKind::controls) return make_control_metric(metric, deformation.control_count());
+  return deformation.metric(metric);
+}
+
+double first_time(const Events& events) {
+  double first = never;
+  for (const Event& event : events) first = std::min(first, event.time);
+  return first;
+}
+
 /// Marks vertices whose position differs in any bit.
 std::vector<unsigned char> moved_vertices(const Positions& from, const Positions& to) {
   std::vector<unsigned char> moved(from.rows());
@@ -42,9 +56,10 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
       rotation_rows_(deformation_->rotation_rows()),
-      metric_(deformation_->metric({options_.smoothness, options_.weights})),
+      metric_(metric_of(*deformation_, options_)),
       detector_(surface_, {.broad_phase = options_.broad_phase}),
-      intersections_(surface_) {
+      intersections_(surface_),
+      excluded_(surface_, options_.excluded) {
   check_controls(controls, "controls");
   const Positions q = deformation_->surface(controls);
   surface_->check_positions(q);
@@ -52,7 +67,11 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
   const MovingExtent extent = moving_extent(*surface_, *deformation_, q);
   diagonal_ = extent.diagonal;
   const double least = least_separation(extent, controls, options_.storage, rotation_rows_);
-  options_.separation = separation_in_force(options_.separation, extent, least);
+  const bool touching = options_.volumes == VolumeKind::published && options_.separation == 0;
+  options_.separation = touching ? least : separation_in_force(options_.separation, extent, least);
+  separation_of_rounds_ = touching ? 0 : options_.separation;
+  if (options_.narrow_phase != NarrowPhase::conservative)
+    round_detector_.emplace(surface_, DetectorOptions{options_.broad_phase, options_.narrow_phase});
 }
 
 void Problem::check_controls(const Controls& controls, const char* what) const {
@@ -69,8 +88,8 @@ void Problem::check_controls(const Controls& controls, const char* what) const {
 
 void Problem::check_start(const Positions& q, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  StartIntersections found{intersections_.find(q, execution), intersections_.find_loose_edges(q, execution),
-                           intersections_.find_loose_vertices(q, execution)};
+  StartIntersections found = find_static_pairs(intersections_, q, execution);
+  found.faces = excluded_.others(found.faces);
   if (found.empty()) return;
   const std::string message = describe(*surface_, found);
   throw StartIntersectsError(message, std::move(found.faces));
@@ -87,21 +106,38 @@ std::optional<Events> Problem::find_events(const Positions& from, const Position
                                            Execution& execution) {
   const ScopedTimer timer(execution.timings.detection);
   const Positions start = centred(from), end = centred(to);
-  if (at_any_cost) return detector_.find(start, end, proximity(), execution);
-  return detector_.find_if_manageable(start, end, proximity(), execution);
+  Detector& detector = round_detector_ ? *round_detector_ : detector_;
+  return remaining_events(detector, start, end, proximity_of_rounds(), at_any_cost, execution);
+}
+
+std::optional<Events> Problem::remaining_events(Detector& detector, const Positions& start, const Positions& end,
+                                                Proximity proximity, bool at_any_cost, Execution& execution) const {
+  std::optional<Events> events = at_any_cost ? detector.find(start, end, proximity, execution)
+                                             : detector.find_if_manageable(start, end, proximity, execution);
+  if (events) excluded_.remove_from(*events);
+  return events;
 }
 
 std::optional<double> Problem::earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
                                              Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
   const Positions start = centred(from), end = centred(to);
+  if (!excluded_.empty()) {
+    const auto events = remaining_events(detector_, start, end, proximity(), at_any_cost, execution);
+    return events ? std::optional(first_time(*events)) : std::nullopt;
+  }
   if (at_any_cost) return detector_.earliest_time(start, end, proximity(), execution);
   return detector_.earliest_time_if_manageable(start, end, proximity(), execution);
 }
 
 bool Problem::is_free(const Positions& from, const Positions& to, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  return intersections_.is_free(to, moved_vertices(from, to), execution);
+  if (excluded_.empty()) return intersections_.is_free(to, moved_vertices(from, to), execution);
+  StaticPairs found = find_static_pairs(intersections_, to, execution);
+  const std::size_t most = intersections_.find(from, execution).size();
+  const bool grown = found.faces.size() > most;
+  found.faces = excluded_.others(found.faces);
+  return !grown && found.empty();
 }
 
 }  // namespace stiv

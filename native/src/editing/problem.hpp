@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "editing/excluded_pairs.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/detection/detector.hpp"
@@ -48,6 +49,10 @@ class Problem {
   const EditOptions& options() const { return options_; }
   const std::vector<Index>& rotation_rows() const { return rotation_rows_; }
   Proximity proximity() const { return {options_.separation, options_.keep}; }
+  /// That of the rounds, which aim for no distance where volumes are as published and none is asked for.
+  Proximity proximity_of_rounds() const { return {separation_of_rounds_, options_.keep}; }
+  /// Does a round without events prove that the way is free?
+  bool rounds_prove_path() const { return !round_detector_ && separation_of_rounds_ == options_.separation; }
   double diagonal() const { return diagonal_; }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
@@ -67,10 +72,13 @@ class Problem {
   std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
   std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
                                       Execution& execution);
-  /// Exact static test; `from` is known to be free.
+  /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`.
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
 
  private:
+  /// All but those of excluded pairs.
+  std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,
+                                         Proximity proximity, bool at_any_cost, Execution& execution) const;
   Positions centred(const Positions& q) const { return q.rowwise() - centre_; }
 
   std::shared_ptr<const Surface> surface_;
@@ -79,9 +87,12 @@ class Problem {
   std::vector<Index> rotation_rows_;
   std::unique_ptr<Metric> metric_;
   Detector detector_;
+  std::optional<Detector> round_detector_;  ///< of the rounds, where it is another one
   IntersectionTest intersections_;
+  ExcludedPairs excluded_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
+  double separation_of_rounds_ = 0;
   std::optional<RoundProgress> unfinished_rounds_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "editing/measurement.hpp"
 #include "stiv/editing/goal.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/volumes/stiv.hpp"
@@ -11,57 +12,8 @@ namespace stiv {
 
 namespace {
 
-/// A sum over a patch can vanish while contacts in it remain, round after round. What a few rounds with patches leave
-/// are few contacts; each of them as a constraint of its own then ends the rounds, as long as the constraints kept
-/// stay few enough to solve for at once.
-constexpr int rounds_with_patches = 2;
-constexpr std::size_t most_constraints = 512;
-
-/// Where each control moves its own part of the surface alone, constraints touch few controls, so that thousands can be
-/// met together, and do not stiffen what lies between them: there each contact is one from the first round on.
-constexpr std::size_t most_local_constraints = 8192;
-
 /// Where even this part of the way has too many pairs near each other, it is not the motion that makes them.
 constexpr double shortest_part = 0x1p-16;
-
-struct Measurement {
-  std::vector<Stiv> stivs;  ///< none if no event tells a way out
-  Index patches = 0;
-  bool each_contact = false;
-};
-
-std::size_t most_constraints_of(const Problem& problem) {
-  return problem.metric().is_local() ? most_local_constraints : most_constraints;
-}
-
-bool may_constrain_each_contact(const Problem& problem, int round) {
-  if (problem.options().constraints != ConstraintKind::per_patch) return false;
-  return round >= rounds_with_patches || problem.metric().is_local();
-}
-
-Index patch_count(const std::vector<Index>& labels) {
-  return labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
-}
-
-Measurement measure(const Problem& problem, const State& accepted, const Eigen::VectorXd& areas, int round,
-                    std::size_t kept, const RoundOutcome& outcome, Execution& execution) {
-  const ScopedTimer timer(execution.timings.volumes);
-  const Surface& surface = problem.surface();
-  const Events& events = outcome.events;
-  const Positions &start = accepted.surface, &end = outcome.candidate.surface;
-  const std::size_t most = most_constraints_of(problem), room = most - std::min(kept, most);
-  std::vector<Region> regions = earliest_regions(surface, events, start, end);
-  std::vector<Index> labels = patch_labels(surface, regions, problem.options().constraints);
-  Measurement measured;
-  measured.patches = patch_count(labels);
-  measured.each_contact = may_constrain_each_contact(problem, round) && regions.size() <= room;
-  if (measured.each_contact) {
-    if (problem.metric().is_local() && events.size() <= room) regions = contact_regions(surface, events, start, end);
-    labels = patch_labels(surface, regions, ConstraintKind::per_contact);
-  }
-  measured.stivs = interference_volumes(events, regions, labels, end, areas, problem.proximity());
-  return measured;
-}
 
 /// Those that the time budget ended, if they are of the same sub-edit; new ones else.
 RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal) {
@@ -95,17 +47,20 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (outcome.clear) return outcome;
     outcome.events = std::move(*events);
     ++execution.counters.rounds;
-    if (kept.size() > most_constraints_of(problem) / 2) kept.drop_inactive();
-    const Measurement measured = measure(problem, accepted, areas, round, kept.size(), outcome, execution);
+    if (kept.size() > most_constraints(problem) / 2) kept.drop_inactive();
+    const Measurement measured = measure(problem, {outcome.events, accepted.surface, outcome.candidate.surface, areas},
+                                         round, kept.size(), execution);
     outcome.patches = measured.patches;
     const ScopedTimer timer(execution.timings.response);
     std::vector<ControlConstraint> rows = control_constraints(
         measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(), accepted.controls);
     if (rows.empty()) return outcome;  // nothing that is free to move can help
-    accumulate = accumulate && (round < options.accumulated_rounds || measured.each_contact);
+    const bool inequalities = options.solver == ConstraintSolver::lcp;
+    accumulate = accumulate && inequalities && (round < options.accumulated_rounds || measured.each_contact);
     if (!accumulate) kept = ConstraintSet();
     kept.add(std::move(rows));
-    p = kept.project(accumulate ? goal : outcome.candidate.controls, execution);
+    const Controls& from = accumulate ? goal : outcome.candidate.controls;
+    p = inequalities ? kept.project(from, execution) : kept.project_as_equations(from);
   }
 }
 

@@ -52,7 +52,7 @@ void check_options(const EditOptions& options, Index control_count) {
   require(std::isfinite(options.smoothness) && options.smoothness > 0, "smoothness must be positive");
   require(options.max_sub_edits >= 1 && options.max_rounds >= 1 && options.accumulated_rounds >= 0,
           "max_sub_edits and max_rounds must be at least 1, accumulated_rounds at least 0");
-  require(std::isfinite(options.pull_limit) && options.pull_limit > 0, "pull_limit must be positive");
+  require(std::isfinite(options.pull_limit) && options.pull_limit >= 0, "pull_limit must not be negative");
   require(std::isfinite(options.time_budget) && options.time_budget >= 0, "time_budget must not be negative");
   check_weights(options.weights, control_count);
   check_storage(options.storage, control_count);

@@ -69,12 +69,27 @@ Controls ConstraintSet::project(const Controls& from, const Execution& execution
   if (sweep_cost(constraints_) < constraints_.size() * constraints_.size())
     return project_by_rows(constraints_, from, multipliers_, options);
   complete_gram();
+  multipliers_ = solve_lcp(gram_, excess_at(from), multipliers_, options);
+  return moved_by_multipliers(from);
+}
+
+Controls ConstraintSet::project_as_equations(const Controls& from) {
+  complete_gram();
+  // Rows that depend on each other are common: the least-squares solution of least length.
+  multipliers_ = gram_.completeOrthogonalDecomposition().solve(-excess_at(from));
+  return moved_by_multipliers(from);
+}
+
+Eigen::VectorXd ConstraintSet::excess_at(const Controls& p) const {
   Eigen::VectorXd excess(static_cast<Eigen::Index>(constraints_.size()));
-  for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, from) - constraints_[r].bound;
-  multipliers_ = solve_lcp(gram_, excess, multipliers_, options);
+  for (Eigen::Index r = 0; r < excess.size(); ++r) excess[r] = dot(constraints_[r].row, p) - constraints_[r].bound;
+  return excess;
+}
+
+Controls ConstraintSet::moved_by_multipliers(const Controls& from) const {
   Controls p = from;
-  for (Eigen::Index r = 0; r < excess.size(); ++r)
-    if (multipliers_[r] > 0) add_scaled(p, multipliers_[r], constraints_[r].step);
+  for (Eigen::Index r = 0; r < multipliers_.size(); ++r)
+    if (multipliers_[r] != 0) add_scaled(p, multipliers_[r], constraints_[r].step);
   return p;
 }
 

@@ -48,20 +48,32 @@ void join_same_event(const std::vector<Region>& regions, Partition& partition) {
     if (regions[order[k]].event == regions[order[k - 1]].event) partition.join(order[k - 1], order[k]);
 }
 
-}  // namespace
-
-std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind) {
-  std::vector<Index> labels(regions.size(), 0);
-  if (kind == ConstraintKind::single) return labels;
-  Partition partition(regions.size());
-  if (kind == ConstraintKind::per_patch) join_neighbours(surface, regions, partition);
-  join_same_event(regions, partition);
+/// The number of each region's part, 0, 1, ... in the order of their first regions.
+std::vector<Index> numbered(Partition& partition, std::size_t size) {
+  std::vector<Index> labels(size, 0);
   Index count = 0;
-  for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) {
+  for (Index k = 0; k < static_cast<Index>(size); ++k) {
     const Index root = partition.root(k);
     labels[k] = root == k ? count++ : labels[root];
   }
   return labels;
+}
+
+}  // namespace
+
+std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind) {
+  if (kind == ConstraintKind::single) return std::vector<Index>(regions.size(), 0);
+  Partition partition(regions.size());
+  if (kind == ConstraintKind::per_patch) join_neighbours(surface, regions, partition);
+  join_same_event(regions, partition);
+  return numbered(partition, regions.size());
+}
+
+std::vector<Index> ring_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind) {
+  if (kind == ConstraintKind::single) return std::vector<Index>(regions.size(), 0);
+  Partition partition(regions.size());
+  join_neighbours(surface, regions, partition);
+  return numbered(partition, regions.size());
 }
 
 }  // namespace stiv

@@ -2,7 +2,8 @@
 #include "stiv/volumes/stiv.hpp"
 
 #include <algorithm>
-#include <tuple>
+
+#include "volumes/gathering.hpp"
 
 namespace stiv {
 
@@ -20,44 +21,20 @@ double region_volume(const Event& event, const Positions& end, double area, Prox
   return area * std::min(approach, -least_violation * target);
 }
 
-struct GradientEntry {
-  Index patch, vertex;
-  Vector3 value;
-};
-
-/// Sums the entries of equal patch and vertex into the patches' fields.
-void gather(std::vector<GradientEntry>& entries, std::vector<Stiv>& stivs) {
-  std::stable_sort(entries.begin(), entries.end(), [](const GradientEntry& a, const GradientEntry& b) {
-    return std::tie(a.patch, a.vertex) < std::tie(b.patch, b.vertex);
-  });
-  for (const GradientEntry& entry : entries) {
-    SparseField& field = stivs[entry.patch].gradient;
-    if (!field.index.empty() && field.index.back() == entry.vertex) {
-      field.value.back() += entry.value;
-    } else {
-      field.index.push_back(entry.vertex);
-      field.value.push_back(entry.value);
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
                                        const std::vector<Index>& labels, const Positions& end,
                                        const Eigen::VectorXd& areas, Proximity proximity) {
-  const Index count = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
-  std::vector<Stiv> stivs(count);
-  std::vector<GradientEntry> entries;
+  StivGathering gathering(labels);
   for (std::size_t k = 0; k < regions.size(); ++k) {
     const Event& event = events[regions[k].event];
     const double area = areas[regions[k].vertex];
-    stivs[labels[k]].volume += region_volume(event, end, area, proximity);
+    gathering.add_volume(labels[k], region_volume(event, end, area, proximity));
     for (int corner = 0; corner < 4; ++corner)  // Eq. 3
-      entries.push_back({labels[k], event.vertices[corner], area * event.weights[corner] * event.normal});
+      gathering.add_gradient(labels[k], event.vertices[corner], area * event.weights[corner] * event.normal);
   }
-  gather(entries, stivs);
-  return stivs;
+  return gathering.stivs();
 }
 
 Eigen::VectorXd region_areas(const Surface& surface, const Positions& q) {

@@ -137,3 +137,17 @@ TEST_CASE("resolver: hundreds of random constraints are all met, and the correct
     CHECK(slack > -1e-8);
   }
 }
+
+TEST_CASE("resolver: constraints as equations are all met, also those that an inequality would let go") {
+  Controls p = Controls::Zero(2, 3);
+  const std::vector<Stiv> stivs{half_space(0, Vector3::UnitX(), -1), half_space(0, Vector3::UnitY(), 0.5),
+                                half_space(0, Vector3::UnitX(), -1, 3)};  // the third repeats the first
+  const Copy deformation(2);
+  const DiagonalMetric metric(Eigen::VectorXd::Ones(2));
+  ConstraintSet set;
+  set.add(control_constraints(stivs, deformation, p, metric, p));
+  const Controls met = set.project_as_equations(p);
+  CHECK((met.row(0).transpose() - Vector3(1, -0.5, 0)).norm() < 1e-14);
+  CHECK(met.row(1).norm() == 0);
+  CHECK((resolve(stivs, p, Eigen::VectorXd::Ones(2)).row(0).transpose() - Vector3(1, 0, 0)).norm() < 1e-9);
+}

@@ -7,6 +7,12 @@
 
 namespace stiv {
 
+/// In what the response's step is the shortest.
+enum class MetricKind {
+  energy,   ///< J'J, damped: the surface moves least
+  controls  ///< the controls themselves move least, whatever that does to the surface [P3.2, Algorithm 1]
+};
+
 struct MetricOptions {
   /// eps: damping of J'J relative to its mean diagonal; 0.1 smooth, 0.01 tight. In (0, inf).
   double smoothness = 0.1;
@@ -28,5 +34,9 @@ class Metric {
   /// be answered one by one without stiffening the whole.
   virtual bool is_local() const { return false; }
 };
+
+/// The metric of MetricKind::controls, M^-1 = W; `smoothness` does not matter.
+/// @param local do controls move parts of the surface of their own?
+std::unique_ptr<Metric> make_control_metric(const MetricOptions& options, Index control_count, bool local = false);
 
 }  // namespace stiv

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stiv/acceptance/intersections.hpp"
 #include "stiv/acceptance/storage.hpp"
+#include "stiv/deformation/metric.hpp"
 #include "stiv/detection/detector.hpp"
+#include "stiv/response/resolver.hpp"
 #include "stiv/volumes/patch.hpp"
 
 namespace stiv {
+
+/// What the volumes of a response measure.
+enum class VolumeKind {
+  relative,  ///< how far two sides approach each other, to a distance (stiv.hpp)
+  published  ///< how far each side moves by itself, as in the paper (published.hpp); no distance unless one is asked
+             ///< for
+};
 
 /// How an edit is solved. Every default is the one recommended.
 struct EditOptions {
@@ -13,12 +23,19 @@ struct EditOptions {
   double keep = 0.5;        ///< fraction of its distance that a pair keeps which starts nearer than h
   double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
   Eigen::VectorXd weights;  ///< (m) response of each control, 0 pins; empty: all 1
+  /// Pairs of triangles that may intersect, at the start and later: their number that does never grows from one
+  /// accepted state to the next, and no other pair ever intersects. What belongs to such pairs alone is not detected.
+  IndexPairs excluded;
   ConstraintKind constraints = ConstraintKind::per_patch;
+  ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear keeps no constraints from round to round
+  MetricKind metric = MetricKind::energy;
+  VolumeKind volumes = VolumeKind::relative;
+  NarrowPhase narrow_phase = NarrowPhase::conservative;  ///< of the rounds; acceptance is always conservative and exact
   BroadPhase broad_phase = BroadPhase::bvh;
   int max_sub_edits = 6;
   int max_rounds = 60;                ///< a sub-edit
   int accumulated_rounds = 12;        ///< rounds that keep the constraints of the rounds before
-  double pull_limit = 0.04;           ///< a drag's pull toward its goal, in diagonals of what may move
+  double pull_limit = 0.04;           ///< a drag's pull toward its goal, in diagonals of what may move; 0: none
   bool single_precision = true;       ///< controls are stored as float32; false: as they are
   std::vector<StorageFrame> storage;  ///< frames of stored controls; empty with single_precision: world frame for all
   double time_budget = 0;             ///< seconds an edit; 0: none

@@ -9,6 +9,12 @@
 
 namespace stiv {
 
+/// How constraints are met together. [P3.3]
+enum class ConstraintSolver {
+  lcp,    ///< as inequalities, with multipliers that are not negative: contacts push
+  linear  ///< as equations: contacts may also pull
+};
+
 /// A linear constraint on the controls, row . p >= bound, with its image step = M^-1 row; row . step = 1.
 struct ControlConstraint {
   SparseField row;
@@ -36,8 +42,14 @@ class ConstraintSet {
   /// multipliers of the LCP. (mathematics.md, Eq. 6)
   Controls project(const Controls& from, const Execution& execution);
 
+  /// The same with all constraints as equations, of which the least multipliers solve as many as can be solved.
+  /// [P3.3; Harmon et al. 2008]
+  Controls project_as_equations(const Controls& from);
+
  private:
   void complete_gram();
+  Eigen::VectorXd excess_at(const Controls& p) const;
+  Controls moved_by_multipliers(const Controls& from) const;
 
   std::vector<ControlConstraint> constraints_;
   Eigen::MatrixXd gram_;  ///< row_r . step_s, of the first constraints: as far as it was needed

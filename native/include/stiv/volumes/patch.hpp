@@ -20,4 +20,7 @@ enum class ConstraintKind {
 /// "Constraints"]
 std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind);
 
+/// The same with patches as the paper has them, joined by neighbouring vertices alone. [P4.1]
+std::vector<Index> ring_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind);
+
 }  // namespace stiv

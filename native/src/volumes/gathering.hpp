@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/volumes/stiv.hpp"
+
+namespace stiv {
+
+/// Sums what regions add to the volumes and gradients of their patches.
+class StivGathering {
+ public:
+  /// @param labels patch of each region, 0, 1, ...
+  explicit StivGathering(const std::vector<Index>& labels);
+
+  void add_volume(Index patch, double volume) { stivs_[static_cast<std::size_t>(patch)].volume += volume; }
+  void add_gradient(Index patch, Index vertex, const Vector3& value) { entries_.push_back({patch, vertex, value}); }
+
+  /// The STIVs, a patch each; once.
+  std::vector<Stiv> stivs();
+
+ private:
+  struct Entry {
+    Index patch, vertex;
+    Vector3 value;
+  };
+
+  std::vector<Stiv> stivs_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace stiv

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Starts that intersect, with the offending pairs excluded: they get no more, and nothing else ever meets."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stiv
+from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
+from blend_fixtures.scenes.shape import joined
+
+
+def spikes_through_sheet(seed: int) -> tuple[stiv.Surface, np.ndarray]:
+    """A sheet, a ball that stands in it, and a second ball above: all deformable, every vertex a control."""
+    turn = np.random.default_rng(seed).normal(size=3)
+    shapes = [
+        triangulated(grid(9, 9, 4, 4)),
+        icosphere(1).turned(turn).scaled(0.6).moved((0.11, 0.07, 0.2)),
+        icosphere(1).scaled(0.5).moved((1.0, 0.9, 1.0)),
+    ]
+    whole = joined(shapes)
+    owner = np.repeat(np.arange(3), [len(shape.vertices) for shape in shapes])
+    bodies = [stiv.Body("sheet"), stiv.Body("stuck"), stiv.Body("free")]
+    surface = stiv.Surface(whole.triangles(), len(whole.vertices), vertex_body=owner, bodies=bodies)
+    return surface, whole.vertices.astype(np.float32).astype(float)
+
+
+def pairs_of(surface: stiv.Surface, q: np.ndarray) -> set[tuple[int, int]]:
+    return set(map(tuple, stiv.find_intersections(q, surface).tolist()))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_pair_outside_the_excluded_ones_ever_meets_and_they_get_no_more(seed: int) -> None:
+    surface, start = spikes_through_sheet(seed)
+    excluded = pairs_of(surface, start)
+    assert len(excluded) > 10
+    options = stiv.EditOptions(exclude="intersecting")
+    session = stiv.EditSession(surface, stiv.identity(len(start)), start, options)
+    chance = np.random.default_rng(seed)
+    before, moved = excluded, 0
+    for _ in range(8):
+        goal = session.controls
+        body = chance.integers(3)
+        goal[surface.vertex_body == body] += chance.normal(scale=0.3, size=3)
+        result = session.edit(goal + chance.normal(scale=0.01, size=goal.shape))
+        after = pairs_of(surface, result.surface)
+        assert after <= excluded
+        assert len(after) <= len(before)
+        moved += len(result.path)
+        before = after
+    assert moved > 0
+
+
+def test_what_does_not_intersect_moves_freely_and_stays_guarded() -> None:
+    surface, start = spikes_through_sheet(1)
+    session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
+    free = surface.vertex_body == 2
+    away = start + np.where(free[:, None], (0.3, 0.2, 0.4), 0.0)
+    assert session.edit(away).status == "reached"
+    through = session.controls - np.where(free[:, None], (0.0, 0.0, 3.0), 0.0)
+    result = session.edit(through)
+    assert result.status != "reached"
+    owners = surface.vertex_body[surface.triangles[:, 0]]
+    assert not any(2 in (owners[a], owners[b]) for a, b in pairs_of(surface, result.surface))
+
+
+def test_all_of_it_may_move_together() -> None:
+    surface, start = spikes_through_sheet(2)
+    session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
+    assert session.edit(start + [0.5, -0.25, 2.0]).status == "reached"
+
+
+def test_a_tip_that_pierces_a_sheet_goes_back_and_does_not_come_again() -> None:
+    """All triangles around the tip intersect the sheet, so the tip is free to leave; once out, its pairs are excluded
+    still, but their number has fallen to none and may not grow again."""
+    sheet = np.array([[-1, -1, 0], [1, -1, 0], [0, 1.5, 0]], float)
+    spike = np.array([[0, 0, -0.2], [0.1, 0, 1], [-0.1, 0.1, 1], [-0.1, -0.1, 1]], float)
+    triangles = [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 4]]
+    start = np.concatenate([sheet, spike]).astype(np.float32).astype(float)
+    surface = stiv.Surface(
+        triangles, 7, vertex_body=[0] * 3 + [1] * 4, bodies=[stiv.Body("sheet", "fixed"), stiv.Body("spike")]
+    )
+    weights = [0, 0, 0, 1, 1, 1, 1]
+    options = stiv.EditOptions(exclude=[[0, 1], [0, 2], [3, 0]], weights=weights)
+    session = stiv.EditSession(surface, stiv.identity(7), start, options)
+    out = start + np.array([[0, 0, 0.5]]) * np.array(weights)[:, None]
+    assert session.edit(out).status == "reached"
+    assert len(stiv.find_intersections(session.surface, surface)) == 0
+    back = session.edit(start)
+    assert len(stiv.find_intersections(back.surface, surface)) == 0
+
+
+def test_a_start_with_other_intersections_is_refused_and_so_are_pairs_that_there_are_not() -> None:
+    surface, start = spikes_through_sheet(0)
+    some = stiv.find_intersections(start, surface)[1:]
+    with pytest.raises(stiv.StartIntersectsError):
+        stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude=some))
+    for wrong in ([[0, 0]], [[0, len(surface.triangles)]], [[0, 1, 2]], "all"):
+        with pytest.raises(stiv.InputError, match="exclude"):
+            stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude=wrong))
+
+
+def test_one_and_two_threads_give_the_same_bits() -> None:
+    surface, start = spikes_through_sheet(3)
+    goal = start - np.where(surface.vertex_body[:, None] == 2, (0.3, 0.2, 3.0), 0.0)
+    one, two = (
+        stiv.edit(
+            surface,
+            stiv.identity(len(start)),
+            start,
+            goal,
+            stiv.EditOptions(exclude="intersecting", threads=threads),
+        )
+        for threads in (1, 2)
+    )
+    assert one.controls.tobytes() == two.controls.tobytes()

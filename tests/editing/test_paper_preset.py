@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The method as published, as a preset: worse than the defaults, and accepted by the same test."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stiv
+from blend_fixtures.scenes import families
+from blend_fixtures.scenes.families import Edit
+
+EDITS = [families.sheets(0.5, cells=8), families.subdivision(0.6, levels=2), families.knot(0.5, rings=90, sides=6)]
+VARIANTS = [{}, {"solver": "linear"}, {"constraints": "single"}, {"separation": 0.01}]
+
+
+def answer(edit: Edit, options: stiv.EditOptions) -> stiv.EditResult:
+    return stiv.edit(edit.surface, edit.deformation, edit.controls, edit.goal, options)
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=str)
+@pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.name)
+def test_the_preset_is_accepted_by_the_exact_test_and_farther_from_the_goal(
+    edit: Edit, variant: dict[str, object]
+) -> None:
+    published = answer(edit, stiv.EditOptions.paper(**{**edit.options, **variant}))
+    assert len(stiv.find_intersections(published.surface, edit.surface)) == 0
+    ours = answer(edit, stiv.EditOptions(**edit.options))
+    assert ours.energy < published.energy
+
+
+def test_one_vertex_against_a_wall_takes_the_step_of_algorithm_1() -> None:
+    """By hand: V = A (1 - t) (-D), grad V = A (1 - t), so the step lifts the vertex by D: back to its start."""
+    vertices = np.array([[0.2, 0.2, 1.0], [0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    surface = stiv.Surface(
+        [[1, 2, 3]],
+        vertex_count=4,
+        vertex_body=[0, 1, 1, 1],
+        bodies=[stiv.Body("point"), stiv.Body("wall", "fixed")],
+    )
+    goal = vertices + [[0, 0, -2.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]
+    weights = [1, 0, 0, 0]
+    result = stiv.edit(surface, stiv.identity(4), vertices, goal, stiv.EditOptions.paper(weights=weights))
+    assert result.rounds == 1
+    assert result.controls[0] == pytest.approx(vertices[0], abs=1e-6)
+    assert stiv.edit(surface, stiv.identity(4), vertices, goal, stiv.EditOptions(weights=weights)).controls[0, 2] < 1e-3
+
+
+def test_options_replace_those_of_the_preset_and_are_checked() -> None:
+    options = stiv.EditOptions.paper(metric="energy", separation=0.1)
+    assert (options.volumes, options.metric, options.separation) == ("published", "energy", 0.1)
+    with pytest.raises(stiv.InputError, match="solver"):
+        stiv.edit([[0, 1, 2]], stiv.identity(3), np.eye(3), np.eye(3) + 1, stiv.EditOptions(solver="simplex"))
+    assert "Algorithm 1" in stiv.PAPER_DIFFERENCES
