@@ -15,7 +15,7 @@ from .. import availability
 from ..settings import edit_settings
 from . import interface
 
-TICK = 0.1  # seconds between two looks at the worker
+TICK = 0.05  # seconds between two looks at the worker
 LISTED = 100  # pairs of a report for scripts
 TOLD = 3  # pairs of a message
 MODES = {"OBJECT", "EDIT_MESH"}
@@ -83,6 +83,10 @@ class ReshapeOperator:
         """Work in a thread while the window goes on; without a window as a script would."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
+        return self.start(context)
+
+    def start(self, context: bpy.types.Context) -> set[str]:
+        """Read the scene and begin to solve."""
         try:
             self._task = self.begin(context)
         except Exception as error:

@@ -3,6 +3,7 @@
 
 import json
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ import stiv_addon  # noqa: E402
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
-from stiv_addon.operators.reshape import Worker  # noqa: E402
+from stiv_addon.operators.repair import STIV_OT_repair  # noqa: E402
+from stiv_addon.operators.reshape import ReshapeOperator, Worker  # noqa: E402
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -150,3 +152,95 @@ def test_a_worker_solves_beside_blender_and_brings_errors_back() -> None:
     worker.join()
     assert worker.progress == ("rounds", 0.5)
     assert str(worker.error) == "stopped"
+
+
+class InWindow(ReshapeOperator):
+    """The repair operator as a window runs it, with a stand-in for the window."""
+
+    bl_label = "Repair"
+    max_deviation = 0.05
+    weld = False
+    begin = STIV_OT_repair.begin
+
+    def __init__(self) -> None:
+        self.reported: list[tuple[set[str], str]] = []
+
+    def report(self, kind: set[str], text: str) -> None:
+        self.reported.append((kind, text))
+
+
+class Manager:
+    """Of windows; counts timers that are running."""
+
+    def __init__(self) -> None:
+        self.timers, self.windows, self.stiv_last_edit = 0, (), ""
+        self.stiv_check = SimpleNamespace(summary="")
+
+    def event_timer_add(self, seconds: float, window: Any) -> str:
+        self.timers += 1
+        return "timer"
+
+    def event_timer_remove(self, timer: str) -> None:
+        self.timers -= 1
+
+    def modal_handler_add(self, operator: Any) -> None:
+        pass
+
+
+class Context:
+    """Blender's own, but for the window manager."""
+
+    def __init__(self) -> None:
+        self.window_manager, self.window = Manager(), None
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(bpy.context, name)
+
+
+def event(kind: str) -> Any:
+    return SimpleNamespace(type=kind, value="PRESS")
+
+
+def run(operator: Any, context: Any) -> set[str]:
+    """Timer events until the operator ends."""
+    while (outcome := operator.modal(context, event("TIMER"))) == {"RUNNING_MODAL"}:
+        operator._worker.join(0.01)
+    return outcome
+
+
+def test_in_a_window_a_thread_solves_and_timers_wait_for_it() -> None:
+    add_tube()
+    operator, context = InWindow(), Context()
+    assert operator.start(context) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("A")) == {"RUNNING_MODAL"}
+    assert run(operator, context) == {"FINISHED"}
+    assert check_scene(bpy.context).pairs == ()
+    assert context.window_manager.timers == 0
+    assert json.loads(context.window_manager.stiv_last_edit)["status"] == "repaired"
+    assert operator.reported[-1][0] == {"INFO"}
+
+
+def test_esc_puts_everything_back() -> None:
+    tube = add_tube()
+    before = positions(tube)
+    operator, context = InWindow(), Context()
+    operator.start(context)
+    operator.modal(context, event("ESC"))
+    assert run(operator, context) == {"CANCELLED"}
+    assert np.array_equal(positions(tube), before) and not tube.data.attributes.get("stiv_original")
+    assert context.window_manager.timers == 0
+    assert "cancelled" in operator.reported[-1][1]
+
+
+def test_blender_may_end_it_and_an_object_may_be_gone() -> None:
+    tube = add_tube()
+    before = positions(tube)
+    operator, context = InWindow(), Context()
+    operator.start(context)
+    operator.cancel(context)
+    assert np.array_equal(positions(tube), before) and context.window_manager.timers == 0
+    operator.start(context)
+    operator._worker.join()
+    bpy.data.objects.remove(tube)
+    assert run(operator, context) == {"CANCELLED"}
+    assert 'object "Tube" is gone' in operator.reported[-1][1] and context.window_manager.timers == 0
