@@ -82,6 +82,9 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     object_response: EnumProperty(
         name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
     )
+    excluded: StringProperty(
+        name="Excluded Pairs", description="Pairs of faces that may intersect, as JSON", options={"HIDDEN"}
+    )
 
 
 class StivHandleGroup(bpy.types.PropertyGroup):

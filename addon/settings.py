@@ -13,7 +13,7 @@ DRAG_BUDGET = 0.1  # seconds that one solve may hold the interface
 
 def edit_settings(scene: Any, request: Request | None = None, time_budget: float = 0.0) -> Any:
     """`stiv.blender.EditSettings` of a scene; a request has the last word. `time_budget` in seconds, 0 for none."""
-    from stiv.blender import EditSettings  # the add-on registers without the native module
+    from stiv.blender import EditSettings, Exclusions  # the add-on registers without the native module
 
     chosen = scene.stiv
     return EditSettings(
@@ -21,6 +21,7 @@ def edit_settings(scene: Any, request: Request | None = None, time_budget: float
         responders=chosen.responders if request is None else request.responders,
         object_response=chosen.object_response,
         interference=chosen.interference if request is None else request.interference,
+        excluded=Exclusions.from_json(chosen.excluded),
         time_budget=time_budget,
         **object_choices(scene),
     )

@@ -4,6 +4,7 @@
 from .check import STIV_OT_check
 from .contract import STIV_OT_contract
 from .drag import STIV_OT_drag
+from .exclude import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .expand import STIV_OT_expand
 from .handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
@@ -20,6 +21,8 @@ CLASSES = (
     STIV_OT_drag,
     STIV_OT_check,
     *RESHAPING,
+    STIV_OT_exclude_intersections,
+    STIV_OT_clear_exclusions,
     STIV_OT_handle_add,
     STIV_OT_handle_remove,
     STIV_OT_loop_add,

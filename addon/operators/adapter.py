@@ -56,6 +56,8 @@ class TransformOperator(Choices):
         try:
             transform, frame = self.given(), scene_frame.read_frame(context)
             edit = begin_edit(context, self.request(context.scene))
+            for text in edit.summary.warnings:
+                self.report({"WARNING"}, text)
             known = outcome if outcome is not None and outcome.values == self._values() else None
             result, report = self._repeated(edit, known) or self._applied(edit, transform, frame)
             context.window_manager.stiv_last_edit = describe(result, report)
@@ -88,4 +90,7 @@ def begin_edit(context: bpy.types.Context, request: Any, time_budget: float = 0.
     """`stiv.blender.BlenderEdit` of a request."""
     from stiv.blender import BlenderEdit  # the add-on registers without the native module
 
-    return BlenderEdit.begin(context, edit_settings(context.scene, request, time_budget), kind=request.kind)
+    edit = BlenderEdit.begin(context, edit_settings(context.scene, request, time_budget), kind=request.kind)
+    if edit.summary.warnings:
+        context.window_manager.stiv_check.summary = "\n".join(edit.summary.warnings)
+    return edit

@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 
 from ..operators import RESHAPING
-from .drawing import SubPanel
+from ..operators.exclude import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections, excluded_count
+from .drawing import SubPanel, draw_lines
 
 
 class STIV_PT_repair(SubPanel, bpy.types.Panel):
@@ -21,3 +22,9 @@ class STIV_PT_repair(SubPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         for operator in RESHAPING:
             column.operator(operator.bl_idname)
+        row = self.layout.row(align=True)
+        row.operator(STIV_OT_exclude_intersections.bl_idname)
+        told = excluded_count(context.scene.stiv.excluded)
+        if told:
+            row.operator(STIV_OT_clear_exclusions.bl_idname, text="", icon="X")
+            draw_lines(self.layout, told)

@@ -32,6 +32,7 @@ class RecordingEdit:
     """Stands for BlenderEdit: moves the active object as told, unless it should fail."""
 
     begun: Any = None
+    summary = SimpleNamespace(warnings=())
     failing: Exception | None = None
 
     @classmethod
@@ -81,6 +82,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     plain |= {"Motion": Motion, "Influence": lambda *given: given}
+    plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)

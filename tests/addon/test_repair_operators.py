@@ -17,6 +17,7 @@ import stiv_addon  # noqa: E402
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
+from stiv_addon.operators.exclude import excluded_count  # noqa: E402
 from stiv_addon.operators.repair import STIV_OT_repair  # noqa: E402
 from stiv_addon.operators.reshape import ReshapeOperator, Worker  # noqa: E402
 
@@ -244,3 +245,33 @@ def test_blender_may_end_it_and_an_object_may_be_gone() -> None:
     bpy.data.objects.remove(tube)
     assert run(operator, context) == {"CANCELLED"}
     assert 'object "Tube" is gone' in operator.reported[-1][1] and context.window_manager.timers == 0
+
+
+def test_excluded_intersections_let_edits_go_on_until_they_are_cleared() -> None:
+    add("Grid", *GRID, select=False)
+    spike = add("Spike", *SPIKE)
+    with pytest.raises(RuntimeError, match="intersect"):
+        bpy.ops.stiv.move(value=(0, 0, 0.01))
+    assert bpy.ops.stiv.exclude_intersections() == {"FINISHED"}
+    before = check_scene(bpy.context).pairs
+    assert excluded_count(bpy.context.scene.stiv.excluded) == "Excluded pairs of faces: 1"
+    assert bpy.ops.stiv.move(value=(0, 0, 0.01)) == {"FINISHED"}
+    assert spike.location.z == pytest.approx(0.01)
+    assert len(check_scene(bpy.context).pairs) <= len(before)
+    bpy.context.scene.stiv.excluded = "broken"
+    with pytest.raises(RuntimeError, match="clear them"):
+        bpy.ops.stiv.move(value=(0, 0, 0.01))
+    assert bpy.ops.stiv.clear_exclusions() == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="intersect"):
+        bpy.ops.stiv.move(value=(0, 0, 0.01))
+
+
+def test_stale_exclusions_are_told() -> None:
+    grid, _ = add("Grid", *GRID, select=False), add("Spike", *SPIKE)
+    bpy.ops.stiv.exclude_intersections()
+    grid.location.z = 5.0  # apart again, and with other faces
+    grid.modifiers.new("Finer", "SUBSURF").levels = 1
+    bpy.context.view_layer.update()
+    assert bpy.ops.stiv.move(value=(0, 0, 0.01)) == {"FINISHED"}
+    told = bpy.context.window_manager.stiv_check.summary
+    assert told == 'excluded pairs are dropped (1): the faces of "Grid" have changed'

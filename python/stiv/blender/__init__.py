@@ -7,6 +7,7 @@ from stiv.blender.contracting import BlenderContraction, ContractionSettings, co
 from stiv.blender.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit import BlenderEdit, WriteReport
 from stiv.blender.errors import SceneChangedError
+from stiv.blender.exclusions import Exclusions
 from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.following import Followed, follow
 from stiv.blender.loop_objects import add_refined, remove_refined
@@ -28,6 +29,7 @@ __all__ = [
     "Contacts",
     "ContractionSettings",
     "EditSettings",
+    "Exclusions",
     "ExpansionSettings",
     "FacePair",
     "Followed",

@@ -8,6 +8,7 @@ import bpy
 
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.exclusions import Exclusions
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
 
@@ -48,6 +49,18 @@ def check_scene(
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
     return SceneCheck(pairs, len(assembly.surface.triangles), scene.hidden)
+
+
+def exclusions_now(
+    context: bpy.types.Context, settings: EditSettings | None = None
+) -> tuple[Exclusions, tuple[FacePair, ...]]:
+    """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
+    chosen = settings or EditSettings()
+    scene = read_scene(context, chosen.takes_part)
+    assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), chosen.ignored_pairs)
+    pairs = find_pairs(assembly, chosen.threads)
+    excluded = Exclusions.of(pairs, scene.meshes)
+    return excluded, excluded.others(pairs)
 
 
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:

@@ -70,7 +70,8 @@ class BlenderEdit:
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
         self._solving = Solving(assembly, self._parts, self._start, settings)
-        self._verifier = Verifier(self.assembly, settings.threads)
+        self._excluded = settings.excluded
+        self._verifier = Verifier(self.assembly, settings.threads, settings.excluded)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -98,7 +99,11 @@ class BlenderEdit:
             raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
         mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
-        return cls(assembly, parts, settings, summarise(assembly, parts, scene.hidden))
+        excluded, dropped = settings.excluded.current(scene.meshes)
+        summary = summarise(assembly, parts, scene.hidden)
+        if dropped:
+            summary = replace(summary, warnings=(dropped, *summary.warnings))
+        return cls(assembly, parts, replace(settings, excluded=excluded), summary)
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -277,7 +282,7 @@ class BlenderEdit:
 
     def _verifier_now(self) -> Verifier:
         if self._verifier.assembly is not self.assembly:  # more cuts were taken in
-            self._verifier = Verifier(self.assembly, self._threads)
+            self._verifier = Verifier(self.assembly, self._threads, self._excluded)
         return self._verifier
 
     def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:

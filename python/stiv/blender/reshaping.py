@@ -161,7 +161,7 @@ def read_reshaped(
     left_out: names of objects that nothing is tested against. Raises InputError naming object and ways out.
     """
     movers = _movers(context, settings)
-    scene = read_scene(context, lambda name: settings.role(name) != "ignored" and name not in left_out)
+    scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
     parts, _ = make_parts(context, movers, scene.meshes, settings, "move")
     if not parts:
         raise InputError("nothing that is selected has a surface; select meshes that are visible")

@@ -41,10 +41,12 @@ def make_session(
         if part.frame is not None:
             frames.append(stiv.StorageFrame(first, len(part.controls), part.frame))
         first += len(part.controls)
+    q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         separation=settings.separation,
         smoothness=settings.smoothness,
         weights=np.concatenate(list(weights)),
+        exclude=settings.excluded.triangles(assembly, q, settings.threads),
         constraints=settings.constraints,
         single_precision=bool(frames),
         storage=frames,

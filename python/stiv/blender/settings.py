@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from stiv import InputError
+from stiv.blender.exclusions import Exclusions
 
 Kind = Literal["move", "rotate", "scale"]
 
@@ -98,6 +99,7 @@ class EditSettings:
             "obstacle" never does.
         ignored_pairs: pairs of object names that may go through each other; twice the same name for an object
             with itself.
+        excluded: pairs of faces that intersect already and may go on to; all others are guarded.
         smoothness: damping of the response; 0.1 smooth, 0.01 tight.
         constraints: "per_patch" or "single".
         threads: 0 for all.
@@ -114,6 +116,7 @@ class EditSettings:
     loops: Mapping[str, LoopSurface] = field(default_factory=dict)
     roles: Mapping[str, str] = field(default_factory=dict)
     ignored_pairs: tuple[tuple[str, str], ...] = ()
+    excluded: Exclusions = field(default_factory=Exclusions)
     smoothness: float = 0.1
     constraints: str = "per_patch"
     threads: int = 0

@@ -90,7 +90,7 @@ class Solving:
 
         def is_free(place: Place) -> bool:
             q = self.deformation.surface(place.controls)
-            return len(stiv.find_intersections(q, assembly.surface, threads=self._settings.threads)) == 0
+            return self._settings.excluded.allow(assembly, q, self._settings.threads)
 
         place = latest(self.trail.places(), is_free)
         if place is None:
