@@ -46,7 +46,7 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
             self.report(
                 {"WARNING"},
                 f"Excluded pairs of faces: {len(excluded.pairs)}; {len(others)} with loose edges or vertices "
-                f'cannot be excluded, the first in object "{others[0].first.object}": delete those or ignore the object',
+                f'cannot be, the first in object "{others[0].first.object}": delete those or ignore the object',
             )
         else:
             self.report({"INFO"}, f"Excluded pairs of faces: {len(excluded.pairs)}")
