@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`stiv repair` on mesh files: exit codes, report, what is written and what is not."""
 
-import json
-
 import numpy as np
 import pytest
 
 import stiv
 from blend_fixtures.scenes.primitives import icosphere
 from blend_fixtures.scenes.tangled import hairpin
+from json_schemas import read_valid
 from stiv.command_line import program
 from stiv.mesh_files import read_mesh, write_mesh
 
@@ -54,7 +53,7 @@ def test_a_tube_is_repaired_and_nothing_but_positions_changes(tube_obj, tmp_path
         else:
             assert new == old
     moved = read_mesh(out).vertices - read_mesh(tube_obj).vertices
-    said = json.loads(report.read_text(encoding="utf-8"))
+    said = read_valid(report, "repair")
     assert (said["schema"], said["version"], said["status"], said["free"]) == ("stiv-repair", 1, "repaired", True)
     assert (said["file"], said["output"], said["pairs_left"]) == ("the tube.obj", "out.obj", 0)
     size = np.linalg.norm(np.ptp(read_mesh(tube_obj).vertices, axis=0))
@@ -87,7 +86,7 @@ def test_what_cannot_be_repaired_ends_with_4_and_writes_nothing(tmp_path, capsys
     out.write_text("what was there")
     assert program.run(["repair", str(source), "-o", str(out), "--json", str(report)]) == 4
     assert out.read_text() == "what was there"
-    said = json.loads(report.read_text())
+    said = read_valid(report, "repair")
     assert (said["status"], said["output"]) == ("refused", None)
     assert said["pairs"][0]["first"]["object"] == "one" and said["pairs"][0]["second"]["object"] == "two"
     assert said["pairs_left"] == said["pairs_before"] > 10

@@ -35,7 +35,7 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
     )
     with share_bar("repair") as progress:
         result = stiv.repair(surface, mesh.vertices, options, progress=progress)
-    pairs = [_named_pair(mesh, pair) for pair in result.pairs.tolist()]
+    pairs = _named_pairs(mesh, result.pairs.tolist())
     outcome = RepairOutcome(
         result.status, result.message, result.pairs_before, pairs, result.deviation, result.contracted
     )
@@ -74,12 +74,17 @@ def _check_written(path: Path, surface: stiv.Surface, output: Path) -> None:
         raise InputError(f"{output}: this kind of file cannot hold the result precisely enough; write .npz or .obj")
 
 
-def _named_pair(mesh: Mesh, pair: list[int]) -> tuple[Element, Element]:
-    def element(triangle: int) -> Element:
-        of = int(mesh.triangle_object[triangle])
-        polygon = int(np.searchsorted(np.cumsum(np.maximum(mesh.counts - 2, 0)), triangle, side="right"))
-        first = int(np.flatnonzero(mesh.polygon_object == of)[0])
-        within = int((mesh.polygon_object[first:polygon] == of).sum())
-        return mesh.object_names[of], "face", within
+def _named_pairs(mesh: Mesh, pairs: list[list[int]]) -> Pairs:
+    """Pairs of triangles by object and number of the polygon within it."""
+    owner = mesh.polygon_object
+    order = np.argsort(owner, kind="stable")
+    first = np.searchsorted(owner[order], np.arange(len(mesh.object_names)))
+    number = np.empty(len(owner), np.int64)
+    number[order] = np.arange(len(owner)) - first[owner[order]]
+    polygon = np.repeat(np.arange(len(owner)), np.maximum(mesh.counts - 2, 0))
 
-    return element(pair[0]), element(pair[1])
+    def element(triangle: int) -> Element:
+        of = polygon[triangle]
+        return mesh.object_names[owner[of]], "face", int(number[of])
+
+    return [(element(a), element(b)) for a, b in pairs]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `stiv repair` is asked, and what it says: the schema of its report."""
+"""What `stiv repair` is asked, and what it says (python/stiv/schemas/repair.schema.json)."""
 
 from __future__ import annotations
 
