@@ -5,6 +5,7 @@ import bpy
 
 # Shift+Alt with letters that Blender's default keymap leaves free in these modes; G and S with Shift+Alt are taken.
 KEYS = {"stiv.move": "M", "stiv.rotate": "R", "stiv.scale": "E", "stiv.check": "C"}
+PIE_OPERATOR, PIE_MENU, PIE_KEY = "wm.call_menu_pie", "STIV_MT_pie", "Q"
 # Keymaps of modes: those of the whole 3D view come later, and what a mode takes never reaches them.
 KEYMAPS = ("Object Mode", "Mesh", "Lattice")
 
@@ -18,8 +19,17 @@ def register() -> None:
         return
     for name in KEYMAPS:
         keymap = configuration.keymaps.new(name=name, space_type="EMPTY")
-        for operator, key in KEYS.items():
-            _added.append((keymap, keymap.keymap_items.new(operator, key, "PRESS", shift=True, alt=True)))
+        for operator, key in (*KEYS.items(), (PIE_OPERATOR, PIE_KEY)):
+            item = keymap.keymap_items.new(operator, key, "PRESS", shift=True, alt=True)
+            if operator == PIE_OPERATOR:
+                item.properties.name = PIE_MENU
+            _added.append((keymap, item))
+
+
+def is_ours(item: bpy.types.KeyMapItem) -> bool:
+    """Is it a key of the extension, also after the user changed it?"""
+    pie = item.idname == PIE_OPERATOR and item.properties is not None and item.properties.name == PIE_MENU
+    return pie or item.idname in KEYS
 
 
 def unregister() -> None:

@@ -3,11 +3,18 @@
 
 import bpy
 
-from . import keymap, live_loops, menus, operators, panels, properties
+from . import keymap, live_loops, manual, menus, operators, panels, pie_menu, preferences, properties, translations
 from .guard import watching
 from .overlay import showing
 
-CLASSES = (*properties.CLASSES, *showing.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (
+    *properties.CLASSES,
+    *showing.CLASSES,
+    *operators.CLASSES,
+    *panels.CLASSES,
+    *pie_menu.CLASSES,
+    *preferences.CLASSES,
+)
 
 
 def register() -> None:
@@ -15,8 +22,10 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.register()
+    translations.register()
     menus.register()
     keymap.register()
+    manual.register()
     live_loops.register()
     watching.register()
     showing.register()
@@ -27,8 +36,10 @@ def unregister() -> None:
     showing.unregister()
     watching.unregister()
     live_loops.unregister()
+    manual.unregister()
     keymap.unregister()
     menus.unregister()
+    translations.unregister()
     properties.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

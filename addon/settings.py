@@ -5,8 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
+
 from .modal.request import Request
 from .object_choices import object_choices
+from .preferences import threads
 
 DRAG_BUDGET = 0.1  # seconds that one solve may hold the interface
 
@@ -23,5 +26,6 @@ def edit_settings(scene: Any, request: Request | None = None, time_budget: float
         interference=chosen.interference if request is None else request.interference,
         excluded=Exclusions.from_json(chosen.excluded),
         time_budget=time_budget,
+        threads=threads(bpy.context),
         **object_choices(scene),
     )

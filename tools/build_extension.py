@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build dist/stiv-<version>.zip, the add-on as a Blender extension with the wheels given.
+"""Build stiv-<version>.zip, the add-on as a Blender extension with the wheels given.
 
-Usage: build_extension.py WHEEL...   one wheel a version of Python; Blender unpacks the one that fits.
+Usage: build_extension.py FOLDER WHEEL...   one wheel a version of Python; Blender unpacks the one that fits.
 """
 
 import sys
 import tomllib
 import zipfile
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import build_guide
 
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
@@ -40,6 +43,8 @@ def contents(wheels: list[Path]) -> dict[str, bytes]:
         files[source.relative_to(ADDON).as_posix()] = source.read_bytes()
     for text in (ROOT / "licenses").iterdir():
         files[f"licenses/{text.name}"] = text.read_bytes()
+    for name, data in build_guide.files().items():
+        files[f"guide/{name}"] = data
     for wheel in wheels:
         files[f"wheels/{wheel.name}"] = wheel.read_bytes()
     return files
@@ -58,6 +63,6 @@ def build(wheels: list[Path], folder: Path) -> Path:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        raise SystemExit("build_extension.py: name at least one wheel")
-    print(build([Path(argument) for argument in sys.argv[1:]], ROOT / "dist"))
+    if len(sys.argv) < 3:
+        raise SystemExit("build_extension.py: name a folder and at least one wheel")
+    print(build([Path(argument) for argument in sys.argv[2:]], Path(sys.argv[1])))

@@ -11,6 +11,7 @@ import bpy
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
+from ..preferences import overlay_at_start
 from . import drawing
 from .content import Clearance, Content
 
@@ -168,6 +169,7 @@ HANDLERS = {"depsgraph_update_post": _on_update, "load_pre": _on_load}
 def register() -> None:
     """Attach the switches, and listen for changes."""
     bpy.types.WindowManager.stiv_overlay = PointerProperty(type=StivOverlaySettings)
+    bpy.context.window_manager.stiv_overlay.show = overlay_at_start(bpy.context)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
 

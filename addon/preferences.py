@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Preferences of the extension, for all files: keys, threads, what is on at the start."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import rna_keymap_ui
+from bpy.props import BoolProperty, IntProperty
+
+from . import keymap
+
+
+class StivPreferences(bpy.types.AddonPreferences):
+    """What holds for every scene."""
+
+    bl_idname = __package__
+
+    threads: IntProperty(
+        name="Threads", description="Threads that solve; 0 takes all of the machine", default=0, min=0, max=1024
+    )
+    overlay: BoolProperty(
+        name="Overlay at the Start",
+        description="Draw contacts, intersecting faces, clearance and speed when Blender starts",
+        default=True,
+    )
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Settings, then the keys as Blender's own editor has them."""
+        self.layout.use_property_split = True
+        self.layout.prop(self, "threads")
+        self.layout.prop(self, "overlay")
+        draw_keys(context, self.layout.column())
+
+
+def preferences(context: Any) -> Any:
+    """The preferences; None where the add-on is registered without being enabled, as in scripts."""
+    addon = context.preferences.addons.get(__package__)
+    return None if addon is None else addon.preferences
+
+
+def threads(context: Any) -> int:
+    """How many threads solve, 0 for all."""
+    chosen = preferences(context)
+    return 0 if chosen is None else int(chosen.threads)
+
+
+def overlay_at_start(context: Any) -> bool:
+    """Is the overlay on when Blender starts?"""
+    chosen = preferences(context)
+    return True if chosen is None else bool(chosen.overlay)
+
+
+def draw_keys(context: Any, layout: Any) -> None:
+    """Every key of the extension, to be changed, switched off or put back."""
+    configuration = context.window_manager.keyconfigs.user
+    if configuration is None:  # Blender without a window
+        return
+    for name in keymap.KEYMAPS:
+        keys = configuration.keymaps.get(name)
+        ours = [item for item in keys.keymap_items if keymap.is_ours(item)] if keys is not None else []
+        if ours:
+            layout.label(text=name)
+        for item in ours:
+            layout.context_pointer_set("keymap", keys)
+            rna_keymap_ui.draw_kmi(["ADDON", "USER", "DEFAULT"], configuration, keys, item, layout, 0)
+
+
+CLASSES = (StivPreferences,)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Preferences, pie menu and keys: there, in use, and gone again."""
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import stiv_addon  # noqa: E402
+from stiv_addon import keymap, pie_menu, preferences, settings  # noqa: E402
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+class Layout:
+    """Stands for Blender's layout: remembers what was put into it."""
+
+    def __init__(self) -> None:
+        self.put: list[str] = []
+
+    def menu_pie(self) -> "Layout":
+        return self
+
+    def operator(self, name: str, text: str = "") -> None:
+        assert hasattr(bpy.types, name.replace("stiv.", "STIV_OT_"))
+        self.put.append(name)
+
+    def prop(self, owner: Any, name: str) -> None:
+        assert name in owner.bl_rna.properties
+        self.put.append(name)
+
+
+def our_keys() -> list[Any]:
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    return [item for keys in configuration.keymaps for item in keys.keymap_items if keymap.is_ours(item)]
+
+
+def test_the_pie_has_its_eight_places_filled() -> None:
+    layout = Layout()
+    pie_menu.STIV_MT_pie.draw(SimpleNamespace(layout=layout), bpy.context)
+    assert len(layout.put) == len(set(layout.put)) == 8
+    assert layout.put[:4] == ["stiv.move", "stiv.rotate", "stiv.scale", "stiv.check"]
+
+
+def test_every_key_is_known_as_ours_in_every_mode_and_none_stays() -> None:
+    assert len(our_keys()) == len(keymap.KEYMAPS) * (len(keymap.KEYS) + 1)
+    stiv_addon.unregister()
+    try:
+        assert our_keys() == []
+    finally:
+        stiv_addon.register()
+
+
+def test_without_being_enabled_all_threads_and_the_overlay_are_used() -> None:
+    assert preferences.threads(bpy.context) == 0
+    assert preferences.overlay_at_start(bpy.context)
+
+
+def test_threads_of_the_preferences_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("stiv._native")
+    chosen = SimpleNamespace(threads=3, overlay=False)
+    monkeypatch.setattr(preferences, "preferences", lambda context: chosen)
+    assert settings.edit_settings(bpy.context.scene).threads == 3
+    stiv_addon.unregister()
+    stiv_addon.register()
+    assert not bpy.context.window_manager.stiv_overlay.show

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sources and catalogues hold the same texts, and Blender finds them."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from tools import interface_messages
+
+bpy = pytest.importorskip("bpy")
+
+import stiv_addon  # noqa: E402
+from stiv_addon import translations  # noqa: E402
+from stiv_addon.registration import CLASSES  # noqa: E402
+
+SAME_IN_GERMAN = {"Global", "Rest", "Threads", "Vertices"}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+@pytest.fixture
+def language() -> Iterator[Any]:
+    view = bpy.context.preferences.view
+    before = view.language
+    yield view
+    view.language = before
+
+
+@pytest.mark.parametrize("name", sorted(translations.CATALOGUES))
+def test_a_catalogue_translates_every_message_of_the_sources_and_no_other(name: str) -> None:
+    known, catalogue = interface_messages.messages(), translations.CATALOGUES[name]
+    assert known - catalogue.keys() == set(), "to be translated; see tools/interface_messages.py"
+    assert catalogue.keys() - known == set(), "not in the sources any more"
+
+
+@pytest.mark.parametrize("name", sorted(translations.CATALOGUES))
+def test_a_translation_is_another_text_that_ends_like_the_original(name: str) -> None:
+    for english, text in translations.CATALOGUES[name].items():
+        assert text.strip() == text and text
+        assert text != english or (name == "de_DE" and english in SAME_IN_GERMAN), english
+        assert (english[-1] == ".") == (text[-1] in ".。"), english
+        assert re.findall(r"\d+\.?\d*", english) == re.findall(r"\d+\.?\d*", text) or "ten" in english, english
+
+
+def test_what_blender_registered_is_what_the_sources_say() -> None:
+    known = interface_messages.messages()
+    for cls in CLASSES:
+        assert getattr(cls, "bl_label", None) in known | {None}
+        if issubclass(cls, bpy.types.Operator):
+            tooltip = getattr(bpy.ops.stiv, cls.bl_idname.partition(".")[2]).get_rna_type().description
+            assert tooltip in known, cls
+        own = set(cls.bl_rna.properties.keys()) - set(cls.bl_rna.base.properties.keys())
+        for prop in (cls.bl_rna.properties[name] for name in own if not name.startswith("bl_")):
+            assert prop.name in known | {"", prop.identifier}, (cls, prop.identifier)
+            assert not prop.description or prop.description in known, (cls, prop.identifier)
+
+
+@pytest.mark.parametrize(("code", "expected"), [("de_DE", "Verformung"), ("ja_JP", "変形方法")])
+def test_blender_shows_the_language_that_is_chosen(language: Any, code: str, expected: str) -> None:
+    try:
+        language.language = code
+    except TypeError:
+        pytest.skip(f"this Blender module has no {code}")
+    language.use_translate_interface = True
+    if bpy.app.translations.pgettext_iface("Object") == "Object":
+        pytest.skip("this Blender module was built without translations")
+    assert bpy.app.translations.pgettext_iface("Deformation") == expected
+    assert bpy.app.translations.pgettext_iface("Move without Interference", "Operator") != "Move without Interference"
