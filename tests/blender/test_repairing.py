@@ -21,6 +21,7 @@ from stiv.blender import (
     repair_scene,
 )
 from stiv.blender.originals import NAME, read_original
+from stiv.blender.verification import Verification, Verifier
 
 
 def add_tube(name="Tube", radius=0.28, **properties):
@@ -253,3 +254,53 @@ def test_errors_name_the_object_and_change_nothing() -> None:
         repair_scene(bpy.context, RepairSettings(weld=True))
     bpy.ops.object.mode_set(mode="OBJECT")
     assert snapshot() == before
+
+
+def test_what_blender_does_not_show_free_is_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blender's own word is final: here it says no, with the repaired shape written."""
+    tube = add_tube()
+    select(tube)
+    before, seen = snapshot(), []
+
+    def refuse(self, context, accepted) -> Verification:
+        seen.append(np.abs(evaluated(tube) - accepted).max())
+        return Verification(False, (), "said so")
+
+    monkeypatch.setattr(Verifier, "verify", refuse)
+    report = repair_scene(bpy.context)
+    assert max(seen) < 1e-6
+    assert (report.status, report.changed) == ("refused", False)
+    assert "not free: said so" in report.message and len(report.pairs) == report.pairs_before
+    assert snapshot() == before
+    contract_scene(bpy.context, ContractionSettings(steps=12, until_free=True))
+    contracted = snapshot()
+    assert expand_scene(bpy.context).changed is False
+    assert snapshot() == contracted
+
+
+def test_an_exception_on_the_way_puts_everything_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    tube = add_tube()
+    select(tube)
+    before = snapshot()
+
+    def fail(self, context, accepted) -> Verification:
+        raise MemoryError
+
+    monkeypatch.setattr(Verifier, "verify", fail)
+    for settings in (RepairSettings(), RepairSettings(weld=True)):
+        with pytest.raises(MemoryError):
+            repair_scene(bpy.context, settings)
+        assert snapshot() == before
+
+
+def test_meshes_that_others_use_or_keys_hide_are_refused_by_name() -> None:
+    tube = add_tube()
+    other = add("Other", tube.data, (9, 0, 0))
+    select(tube)
+    with pytest.raises(stiv.InputError, match='object "Tube": its mesh is shared with object "Other"'):
+        repair_scene(bpy.context)
+    bpy.data.objects.remove(other)
+    for name in ("Basis", "Bent"):
+        tube.shape_key_add(name=name)
+    with pytest.raises(stiv.InputError, match='object "Tube", shape key "Bent"'):
+        repair_scene(bpy.context, RepairSettings(weld=True))

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
+from json_schemas import read_valid
 
 import stiv
 from blend_fixtures.scenes.primitives import icosphere
 from blend_fixtures.scenes.tangled import hairpin
-from json_schemas import read_valid
 from stiv.command_line import program
 from stiv.mesh_files import read_mesh, write_mesh
 
