@@ -114,3 +114,17 @@ def test_a_copy_of_the_cage_does_not_claim_the_object_of_the_first(cage: Any) ->
     assert bpy.ops.stiv.loop_add.poll()
     assert bpy.ops.stiv.move(value=(0.0, 0.0, 0.5)) == {"FINISHED"}
     assert tuple(copy.location) == (5, 0, 0.5)
+
+
+def test_undo_in_edit_mode_takes_the_object_back_too(cage: Any) -> None:
+    bpy.ops.stiv.loop_add()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    before = shown()
+    bpy.ops.ed.undo_push(message="start")
+    bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(0.0, 0.0, -1.0))
+    assert np.abs(shown() - before).max() > 0.1
+    bpy.ops.ed.undo()
+    assert shown() == pytest.approx(before, abs=1e-6)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert shown() == pytest.approx(expected(bpy.data.objects["Cage"]), abs=1e-6)
