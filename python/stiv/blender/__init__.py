@@ -5,7 +5,7 @@ from stiv.blender.changes import Change, Changes, compare
 from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.drawable import Contacts, contacts_of, triangles_of
-from stiv.blender.edit import BlenderEdit, WriteReport
+from stiv.blender.edit import BlenderEdit
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
@@ -17,6 +17,7 @@ from stiv.blender.repairing import BlenderRepair, RepairSettings, repair_scene
 from stiv.blender.reshaping import ReshapeReport
 from stiv.blender.scene_state import ObjectState, SceneState, read_state
 from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
+from stiv.blender.showing import WriteReport
 from stiv.blender.verification import FacePair
 
 __all__ = [

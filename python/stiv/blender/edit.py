@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -23,36 +23,16 @@ from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.results import summed
 from stiv.blender.roles import find_movers
-from stiv.blender.sessions import mobilities, stacked
+from stiv.blender.sessions import mobilities, split, stacked
 from stiv.blender.settings import EditSettings, check_kind
+from stiv.blender.showing import Showing, WriteReport
 from stiv.blender.solving import Solving
 from stiv.blender.summary import Summary, summarise
-from stiv.blender.trail import Place, Trail, latest
 from stiv.blender.transform_path import Path, increments, transform_at
 from stiv.blender.unguarded import as_stored, objects_that_meet, result_at
-from stiv.blender.verification import FacePair, Verification, Verifier
 
 STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
 MOST_STEPS = 200
-MOST_HALVINGS = 8  # of a step that Blender's evaluation does not pass
-MOST_RECUTS = 4  # times that an edit is solved again because Blender cut bent faces otherwise
-
-
-@dataclass(frozen=True)
-class WriteReport:
-    """What became of the accepted state in Blender.
-
-    Attributes:
-        passed: Blender shows it, or a state on the way to it, free of intersections; False: the one shown before.
-        intersections: what met in the state that could not be shown.
-        message: why not all of the edit is shown; empty if it is.
-        result: of all calls since the last writing, if writing had to solve again; else None.
-    """
-
-    passed: bool
-    intersections: tuple[FacePair, ...] = ()
-    message: str = ""
-    result: stiv.EditResult | None = None
 
 
 class BlenderEdit:
@@ -62,7 +42,6 @@ class BlenderEdit:
         """Use `begin`."""
         self.summary = summary
         self._parts = tuple(parts)
-        self._threads = settings.threads
         self._selected_weight = settings.weight(True)
         self._influence: Influence | None = None
         self._start = stacked([part.controls for part in parts])
@@ -70,8 +49,7 @@ class BlenderEdit:
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
         self._solving = Solving(assembly, self._parts, self._start, settings)
-        self._excluded = settings.excluded
-        self._verifier = Verifier(self.assembly, settings.threads, settings.excluded)
+        self._showing = Showing(self._parts, self._solving, settings)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -181,7 +159,7 @@ class BlenderEdit:
         known = self._solving.session.controls if self._solving.has_begun else None
         try:
             self._solving.go_on_from(shown, self._goal)
-            reason = self._show(shown).message
+            reason = self._showing.show(shown).message
         except stiv.StartIntersectsError as error:
             reason = f"{objects_that_meet(error.pairs, self.assembly.surface)} go through each other here"
         if not reason:
@@ -233,32 +211,18 @@ class BlenderEdit:
         return self._solving.solve(None, **execution)
 
     def write(self) -> WriteReport:
-        """Write the accepted controls, read Blender's evaluation back and test it.
+        """Write the accepted controls, read Blender's evaluation back and test it (see `Showing`).
 
-        Faces that bent far are cut otherwise by Blender. Where that makes them meet, both cuts take part from then on,
-        and the way since the last writing is solved again from where both are free. What still fails is taken back to
-        the last state on the way that passes. With interference off nothing is tested. Raises SceneChangedError when
-        an object is gone or was changed.
+        With interference off nothing is tested. Raises SceneChangedError when an object is gone or was changed.
         """
         if self._unguarded is not None:
-            self._write(self._unguarded)
+            self._showing.put(self._unguarded)
             return WriteReport(True)
-        verification = self._show(self.controls)
-        solved_again = False
-        for _ in range(MOST_RECUTS):
-            if verification.passed or not self._solving.solve_again(verification.cuts):
-                break
-            solved_again = True
-            verification = self._show(self.controls)
-        result = summed([leg.result for leg in self._solving.trail.legs]) if solved_again else None
-        if not verification.passed:
-            return self._fall_back(verification, result)
-        self._solving.trail = Trail(self.controls, self._goal)
-        return WriteReport(True, result=result)
+        return self._showing.show_accepted(self._goal)
 
     def is_shown(self) -> bool:
         """Does what Blender shows now, whoever wrote it, pass as the accepted state does? Writes nothing."""
-        return self._verifier_now().verify(bpy.context, self.surface).passed
+        return self._showing.verify(self.surface).passed
 
     def restore(self) -> None:
         """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError.
@@ -276,47 +240,8 @@ class BlenderEdit:
         else:
             self._solving.forget()
 
-    def _show(self, controls: Floats) -> Verification:
-        self._write(controls)
-        return self._verifier_now().verify(bpy.context, self._solving.deformation.surface(controls))
-
-    def _verifier_now(self) -> Verifier:
-        if self._verifier.assembly is not self.assembly:  # more cuts were taken in
-            self._verifier = Verifier(self.assembly, self._threads, self._excluded)
-        return self._verifier
-
-    def _fall_back(self, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
-        places = self._solving.trail.places()
-        place = latest(places[:-1], lambda each: self._show(each.controls).passed)
-        if place is not None and place.leg < 0 and failure.intersections:
-            place = self._part_of_step(place, places[1])
-        controls = places[0].controls if place is None else place.controls
-        self._write(controls)
-        self._solving.go_on_from(controls, self._goal)
-        on_the_way = place is not None and place.leg >= 0
-        message = f"stopped on the way: {failure.message}" if on_the_way else failure.message
-        return WriteReport(on_the_way, failure.intersections, message, result)
-
-    def _part_of_step(self, start: Place, end: Place) -> Place:
-        """A place between two that follow each other which Blender shows free; the first if none is found."""
-        for halvings in range(1, MOST_HALVINGS + 1):
-            self._solving.go_on_from(start.controls, self._goal)
-            self._solving.session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
-            between = self.controls
-            if not np.array_equal(between, start.controls) and self._show(between).passed:
-                return Place(between, end.leg, end.step)
-        return start
-
-    def _write(self, controls: Floats) -> None:
-        for part, rows, start in zip(self._parts, self._split(controls), self._split(self._start), strict=True):
-            if np.array_equal(rows, start):
-                part.writer.restore()
-            else:
-                part.writer.write(rows)
-        bpy.context.view_layer.update()
-
     def _split(self, controls: Floats) -> list[Floats]:
-        return np.split(controls, np.cumsum([len(part.controls) for part in self._parts])[:-1])
+        return split(controls, self._parts)
 
     def _respond(self, influence: Influence | None) -> None:
         """Let the points within an influence respond as those that are selected do."""

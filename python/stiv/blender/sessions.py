@@ -66,5 +66,10 @@ def stacked(controls: Sequence[Floats]) -> Floats:
     return np.concatenate([np.empty((0, 3)), *controls])
 
 
+def split(controls: Floats, parts: Sequence[Part]) -> list[Floats]:
+    """The controls of each part, (m, 3), out of those of all, one after the other."""
+    return np.split(controls, np.cumsum([len(part.controls) for part in parts])[:-1])
+
+
 def _vertices(assembly: Assembly, part: Part) -> Any:
     return np.concatenate([assembly.vertices(index) for index in part.surfaces])
