@@ -16,8 +16,11 @@ namespace {
 constexpr int most_pulls_of_drag = 12;
 
 /// An answer is linearised where the goal's surface met, which may be far from where it ends; solving again from there
-/// lowers E further. While an edit has taken fewer rounds than this, it does so without being asked.
+/// lowers E further. While an edit has taken fewer rounds than this, it does so without being asked: unless the goal is
+/// no farther than a pull goes (a mouse move), where all is near, and there is little to gain before the next one.
 constexpr int rounds_of_cheap_edit = 12;
+
+double farthest_way(const Positions& from, const Positions& to) { return (to - from).rowwise().norm().maxCoeff(); }
 
 }  // namespace
 
@@ -45,8 +48,9 @@ class EditSession::Implementation {
   EditResult edit(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
       dragging_ = false;
+      const bool is_short = farthest_way(accepted_.surface, aim.surface) <= pull_limit();
       solve_in_turns(problem_, accepted_, aim, report, execution);
-      if (!report.blocked) refine(aim, report, execution);
+      if (!report.blocked && !is_short) refine(aim, report, execution);
     });
   }
 
@@ -86,7 +90,7 @@ class EditSession::Implementation {
   /// Enough pulls to go back all the way that the increment came, and one more: a mouse that returns from deep inside
   /// a wall takes the shape off it, and the pull has to put it back.
   int pulls_after(const Aim& aim) const {
-    const double increment = (aim.surface - goal_.surface).rowwise().norm().maxCoeff();
+    const double increment = farthest_way(goal_.surface, aim.surface);
     return static_cast<int>(std::min<double>(most_pulls_of_drag, 1 + std::ceil(increment / pull_limit())));
   }
 
