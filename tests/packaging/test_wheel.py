@@ -50,3 +50,10 @@ def test_source_archive_holds_what_a_build_needs(tmp_path: Path, monkeypatch: py
         "addon/__init__.py",
     }
     assert not any(name.startswith(("build/", "dist/")) or name.endswith(".so") for name in names)
+
+
+def test_wheel_holds_the_scenes_that_bench_measures(installed_files: set[str]) -> None:
+    scenes = ROOT / "blend_fixtures" / "scenes"
+    sources = {f"stiv/scenes/{path.relative_to(scenes).as_posix()}" for path in scenes.rglob("*.py")}
+    assert len(sources) > 20
+    assert sources <= installed_files

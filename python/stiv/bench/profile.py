@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames a second over a session, edit by edit, as in the paper's Figure 12, and the split of the time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from stiv.bench.running import Report, record
+from stiv.bench.scene_library import scene_module
+from stiv.bench.table1 import PARTS, shares
+
+
+def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
+    """One row a scene and number of threads, with the seconds of each edit in order."""
+    sessions = scene_module("sessions.catalogue").table_sessions()
+    rows = []
+    for name in names:
+        for count in threads:
+            _, figures = record(sessions[name], {"threads": count}, lambda note: None)
+            seconds = [figure.processor if count == 1 else figure.clock for figure in figures]
+            report(name)
+            rows.append(
+                {
+                    "scene": name,
+                    "threads": count,
+                    "time": "processor" if count == 1 else "clock",
+                    "stages": [figure.stage for figure in figures],
+                    "seconds": seconds,
+                    "touches": [figure.touches for figure in figures],
+                    "shares": shares(figures),
+                    "intersections": sum(figure.intersections for figure in figures),
+                }
+            )
+    return rows
+
+
+def profile_text(rows: Sequence[dict[str, Any]]) -> str:
+    """A line a row: frames a second, the least, the median and the mean, and the split of the time."""
+    parts = (*PARTS, "other")
+    lines = [
+        f"{'Model':9} {'threads':>7} {'least':>6} {'median':>6} {'mean':>6}  " + " ".join(f"{p:>10}" for p in parts)
+    ]
+    for r in rows:
+        rates = 1 / np.array(r["seconds"])
+        mean = len(rates) / sum(r["seconds"])
+        split = " ".join(f"{100 * r['shares'][part]:9.1f}%" for part in parts)
+        lines.append(
+            f"{r['scene']:9} {r['threads']:7d} {rates.min():6.1f} {np.median(rates):6.1f} {mean:6.1f}  {split}"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The edits of the table's sessions against the strongest simple answer: go until the first contact, found by ipctk.
+
+ipctk [Ferguson et al. 2020] brings a broad phase on linear trees and additive continuous detection; it must be
+installed. Both answer the same edits from the same accepted states. The share of the wanted motion kept is
+1 - |q - q~| / |q0 - q~|.
+"""
+
+from __future__ import annotations
+
+import importlib
+import time
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+import stiv
+from stiv import InputError
+from stiv.bench.running import RecordedStage, Report, record
+from stiv.bench.scene_library import scene_module
+
+
+def race(names: Sequence[str], report: Report) -> list[dict[str, Any]]:
+    """One row a scene, over the edits with contacts; one thread each. Raises InputError where ipctk is missing."""
+    peer = _ipctk()
+    sessions = scene_module("sessions.catalogue").table_sessions()
+    rows = []
+    for name in names:
+        recorded, figures = record(sessions[name], {"threads": 1}, lambda note: None)
+        stopped = [answer for part in recorded for answer in _first_contacts(peer, part)]
+        both = [(mine, theirs) for mine, theirs in zip(figures, stopped, strict=True) if mine.touches]
+        kept = [1 - np.sqrt(2 * mine.energy) / theirs["wanted"] for mine, theirs in both]
+        report(name)
+        rows.append(
+            {
+                "scene": name,
+                "edits_with_contacts": len(both),
+                "kept": float(np.mean(kept)),
+                "kept_by_stopping": float(np.mean([theirs["fraction"] for _, theirs in both])),
+                "processor_ms_per_edit": 1000 * float(np.mean([mine.processor for mine, _ in both])),
+                "processor_ms_per_stop": 1000 * float(np.mean([theirs["processor"] for _, theirs in both])),
+                "intersections": sum(mine.intersections for mine in figures),
+                "intersections_by_stopping": sum(theirs["intersections"] for theirs in stopped),
+            }
+        )
+    return rows
+
+
+def _ipctk() -> ModuleType:
+    try:
+        peer = importlib.import_module("ipctk")
+    except ImportError as error:
+        raise InputError("bench race: ipctk is not installed (pip install ipctk)") from error
+    peer.set_num_threads(1)
+    peer.set_logger_level(peer.off)
+    return peer
+
+
+def _first_contacts(peer: ModuleType, part: RecordedStage) -> list[dict[str, float]]:
+    """Each edit of a stage stopped just before its first contact: how much of it was done, and what that left."""
+    stage = part.stage
+    triangles = stage.surface.triangles
+    start = stage.deformation.surface(stage.controls)
+    mesh = peer.CollisionMesh(np.asfortranarray(start), peer.edges(triangles), triangles)
+    answers = []
+    for task in part.tasks:
+        before, wanted = (np.asfortranarray(stage.deformation.surface(p)) for p in (task.start, task.goal))
+        processor = time.process_time()
+        candidates = peer.Candidates()
+        candidates.build(mesh, before, wanted, 0, peer.LBVH())
+        fraction = candidates.compute_collision_free_stepsize(mesh, before, wanted, 0, peer.AdditiveCCD())
+        processor = time.process_time() - processor
+        reached = stage.deformation.surface(task.start + fraction * (task.goal - task.start))
+        pairs = len(stiv.find_intersections(reached, stage.surface))
+        distance = float(np.linalg.norm(wanted - before))
+        answers.append(
+            {"fraction": fraction, "processor": processor, "intersections": pairs, "wanted": max(distance, 1e-300)}
+        )
+    return answers
+
+
+def race_text(rows: Sequence[dict[str, Any]]) -> str:
+    """A line a scene, ratios first."""
+    lines = [
+        f"{'Model':9} {'kept, ratio':>11} {'time, ratio':>11} {'kept':>7} {'stopping':>8} {'ms/edit':>8} "
+        f"{'ms/stop':>8} {'left':>5} {'stopping':>8}"
+    ]
+    for r in rows:
+        kept = r["kept"] / max(r["kept_by_stopping"], 1e-9)
+        slower = r["processor_ms_per_edit"] / r["processor_ms_per_stop"]
+        lines.append(
+            f"{r['scene']:9} {kept:11.2f} {slower:11.2f} {r['kept']:7.3f} {r['kept_by_stopping']:8.3f} "
+            f"{r['processor_ms_per_edit']:8.1f} {r['processor_ms_per_stop']:8.1f} {r['intersections']:5d} "
+            f"{r['intersections_by_stopping']:8d}"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run the edits of a session, and the same edits again by other options.
+
+Time is the processor's, of all threads together, and the clock's beside it: where other work shares the machine, only
+the first says much.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import stiv
+
+Array = NDArray[np.float64]
+Report = Callable[[str], None]
+Preset = Callable[..., stiv.EditOptions]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One edit: from which accepted controls (m, 3) to which goal (m, 3)."""
+
+    start: Array
+    goal: Array
+
+
+@dataclass(frozen=True)
+class RecordedStage:
+    """A stage of a session with the edits as they came when it was recorded."""
+
+    stage: Any  #: a Stage of the scene library
+    tasks: tuple[Task, ...]
+
+
+@dataclass(frozen=True)
+class EditFigures:
+    """What one edit came to and took; seconds."""
+
+    stage: str
+    status: str
+    collisions: float  #: interference events a detection that found any
+    regions: int  #: disjoint patches of the last of them
+    iterations: int  #: responses
+    processor: float
+    clock: float
+    energy: float
+    intersections: int  #: pairs of triangles in the accepted state, by the exact test
+    timings: dict[str, float]
+
+    @property
+    def touches(self) -> bool:
+        """Something interfered."""
+        return self.iterations > 0 or self.collisions > 0
+
+
+def record(session: Any, options: dict[str, Any], report: Report) -> tuple[list[RecordedStage], list[EditFigures]]:
+    """Run all stages of a session; the goal of an edit depends on where the one before ended."""
+    recorded, figures = [], []
+    stages = session.stages()
+    stage = next(stages)
+    while True:
+        solver = solver_of(stage, options)
+        tasks = []
+        for edit in stage.edits:
+            tasks.append(Task(solver.controls, edit(solver.controls)))
+            figures.append(measured_edit(stage, solver, tasks[-1].goal))
+        report(f"{session.name}: {stage.name}")
+        recorded.append(RecordedStage(stage, tuple(tasks)))
+        try:
+            stage = stages.send(solver.controls)
+        except StopIteration:
+            return recorded, figures
+
+
+def repeat(recorded: Sequence[RecordedStage], preset: Preset, options: dict[str, Any]) -> list[EditFigures]:
+    """The recorded edits once more, each from its recorded start, by other options."""
+    figures = []
+    for part in recorded:
+        solver = solver_of(part.stage, options, preset)
+        for task in part.tasks:
+            solver.restore(task.start)
+            figures.append(measured_edit(part.stage, solver, task.goal))
+    return figures
+
+
+def solver_of(stage: Any, options: dict[str, Any], preset: Preset = stiv.EditOptions) -> stiv.EditSession:
+    """A session of the core on a stage, its own options included."""
+    chosen = preset(**{**stage.options, **options})
+    return stiv.EditSession(stage.surface, stage.deformation, stage.controls, chosen)
+
+
+def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigures:
+    """One edit, timed, and what it left tested exactly; the test of what it left is not in the time, its own is."""
+    clock, processor = time.perf_counter(), time.process_time()
+    result = solver.edit(goal)
+    clock, processor = time.perf_counter() - clock, time.process_time() - processor
+    return EditFigures(
+        stage.name,
+        result.status,
+        result.counters["events"] / max(result.rounds, 1),
+        result.patches,
+        result.rounds,
+        processor,
+        clock,
+        result.energy,
+        len(stiv.find_intersections(result.surface, stage.surface)),
+        result.timings,
+    )

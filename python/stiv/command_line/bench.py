@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv bench`: the paper's table, profiles of its sessions, growth, a race against stopping at first contact."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import shlex
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiv import InputError
+from stiv.bench.profile import profile, profile_text
+from stiv.bench.race import race, race_text
+from stiv.bench.running import Report
+from stiv.bench.scaling import scaling, scaling_text
+from stiv.bench.table1 import PUBLISHED, shares_text, table1, table_text
+from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.output_files import require_folder, write_json
+
+if TYPE_CHECKING:
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+SCHEMA, VERSION = "stiv-bench", 1
+
+_DESCRIPTION = """\
+Measures whole editing sessions of the sizes that the paper shows, without Blender, and checks each accepted state by
+the exact test. Processor time is given for one thread, the clock's for several."""
+_EXAMPLES = """\
+examples:
+  stiv bench table1                          the paper's Table 1, its method and ours beside its figures
+  stiv bench table1 --scenes knot tree --threads 1 --json table1.json
+  stiv bench profile --scenes plant dressing frames a second, edit by edit
+  stiv bench race                            against stopping at the first contact (needs ipctk)
+  stiv bench scaling --largest 300000        growth with the number of triangles
+
+exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
+
+
+def add_to(subcommands: Subparsers) -> None:
+    """Adds the subcommand to the parser."""
+    parser = subcommands.add_parser(
+        "bench",
+        help="measure editing sessions as the paper does",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("what", choices=tuple(_BENCHES), help="what to measure")
+    parser.add_argument("--scenes", nargs="+", default=list(PUBLISHED), metavar="NAME", help="default: all five")
+    parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], metavar="N", help="default: 1 2")
+    parser.add_argument(
+        "--largest",
+        type=int,
+        default=1_300_000,
+        metavar="N",
+        help="scaling: triangles of the largest size (default: all)",
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
+    parser.set_defaults(run=_run)
+
+
+def _run(arguments: argparse.Namespace) -> ExitCode:
+    require_folder(arguments.json)
+    unknown = [name for name in arguments.scenes if name not in PUBLISHED]
+    if unknown or min(arguments.threads) < 1:
+        raise InputError(
+            f"bench: there is no scene {', '.join(unknown)}" if unknown else "bench: threads are from 1 on"
+        )
+    rows, text = _BENCHES[arguments.what](arguments, _say)
+    print(text)
+    if arguments.json is not None:
+        write_json(arguments.json, result(rows))
+    return ExitCode.NOT_FREE if any(row["intersections"] for row in rows) else ExitCode.DONE
+
+
+def _say(note: str) -> None:
+    print(f"measured {note}", file=sys.stderr, flush=True)
+
+
+def result(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The rows with the command and the machine that they come from, ready for JSON."""
+    command = shlex.join(["stiv", *sys.argv[1:]])
+    machine = {"system": platform.system(), "architecture": platform.machine(), "processors": _processors()}
+    return {"schema": SCHEMA, "version": VERSION, "command": command, "machine": machine, "rows": rows}
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+_Result = tuple[list[dict[str, Any]], str]
+
+
+def _table(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = table1(arguments.scenes, arguments.threads, report)
+    return rows, table_text(rows) + "\n\n" + shares_text(rows)
+
+
+def _profile(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = profile(arguments.scenes, arguments.threads, report)
+    return rows, profile_text(rows)
+
+
+def _race(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = race(arguments.scenes, report)
+    return rows, race_text(rows)
+
+
+def _scaling(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = scaling(arguments.threads, arguments.largest, report)
+    return rows, scaling_text(rows)
+
+
+_BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
+    "table1": _table,
+    "profile": _profile,
+    "race": _race,
+    "scaling": _scaling,
+}
