@@ -97,9 +97,16 @@ class ReshapeOperator:
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show how far it is; Esc cancels; write when the worker is done."""
+        """Show how far it is; Esc cancels; write when the worker is done.
+
+        Nothing is written while the worker solves, so Esc need not wait for it: it ends by itself, at its next look.
+        """
         if event.type == "ESC" and event.value == "PRESS":
             self._worker.token.cancel()
+            self._leave(context)
+            self._put_back()
+            self.report({"INFO"}, "cancelled, nothing is changed")
+            return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         if self._worker.is_alive():

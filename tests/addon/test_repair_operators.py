@@ -226,8 +226,8 @@ def test_esc_puts_everything_back() -> None:
     before = positions(tube)
     operator, context = InWindow(), Context()
     operator.start(context)
-    operator.modal(context, event("ESC"))
-    assert run(operator, context) == {"CANCELLED"}
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    operator._worker.join()
     assert np.array_equal(positions(tube), before) and not tube.data.attributes.get("stiv_original")
     assert context.window_manager.timers == 0
     assert "cancelled" in operator.reported[-1][1]
