@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run the named parts of the tests, all of them even when one fails, and print one summary at the end.
 
-Usage: run_tests.py PART...   with the parts native, sanitizers, python, blender and lint.
+Usage: run_tests.py PART...   with the parts native, sanitizers, python, blender, lint and window.
 """
 
 import os
@@ -29,11 +29,15 @@ PRINTING = threading.Lock()
 
 @dataclass(frozen=True)
 class Job:
-    """One run of tests. Those that use every processor themselves, or measure what a user feels, run alone."""
+    """One run of tests. Those that use every processor themselves, or measure what a user feels, run alone.
+
+    `last`: alone, and after all others.
+    """
 
     title: str
     run: Callable[[], Counts]
     alone: bool = False
+    last: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,13 @@ def lint(title: str) -> Counts:
     return counts
 
 
+def window(title: str) -> Counts:
+    """The add-on in a real window; skipped with the reason where no folder for it can be set up."""
+    report = REPORTS / "window.xml"
+    report.unlink(missing_ok=True)
+    return junit_counts.from_pytest(report, run(title, [sys.executable, "tests/window/run.py", "--report", report]))
+
+
 def jobs(name: str) -> Iterator[Job]:
     """The runs that belong to a part."""
     if name == "native":
@@ -101,6 +112,8 @@ def jobs(name: str) -> Iterator[Job]:
             yield Job(title, partial(pytest, title, venv, "-m", "blender"))
     elif name == "lint":
         yield Job(name, lambda: lint(name))
+    elif name == "window":
+        yield Job(name, lambda: window(name), last=True)
     else:
         raise SystemExit(f"run_tests.py: unknown part {name!r}")
 
@@ -113,10 +126,11 @@ def timed(job: Job) -> Row:
 
 
 def run_all(todo: list[Job]) -> list[Row]:
-    """Run the jobs: one by one those that need the machine, then the others, as many at a time as it has processors."""
+    """Run the jobs: those that need the machine one by one, then the others side by side, then the last."""
     rows = [timed(job) for job in todo if job.alone]
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        return rows + list(pool.map(timed, [job for job in todo if not job.alone]))
+        rows += pool.map(timed, [job for job in todo if not job.alone and not job.last])
+    return rows + [timed(job) for job in todo if job.last]
 
 
 def print_row(row: Row) -> None:

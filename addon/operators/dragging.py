@@ -83,7 +83,7 @@ class Dragging:
             lambda transform, state: make_motion(transform, self._frame, make_influence(state.proportional)),
             state,
         )
-        self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
+        self._timer = interface.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
 
     def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> Effect:
@@ -149,6 +149,6 @@ class Dragging:
         return {"FINISHED"}
 
     def _leave(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
+        interface.stop_timer(context, self._timer)
         showing.end_edit()
         interface.clear(context)

@@ -28,6 +28,16 @@ def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Even
     )
 
 
+def start_timer(context: bpy.types.Context, step: float) -> bpy.types.Timer:
+    """Timer events every `step` seconds, until `stop_timer`."""
+    return context.window_manager.event_timer_add(step, window=context.window)
+
+
+def stop_timer(context: bpy.types.Context, timer: bpy.types.Timer) -> None:
+    """No more of them."""
+    context.window_manager.event_timer_remove(timer)
+
+
 def centre(frame: Frame) -> tuple[float, float] | None:
     """Where the pivot is seen; the middle of the region for one behind the viewer."""
     if frame.view is None:

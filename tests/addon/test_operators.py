@@ -33,6 +33,7 @@ class RecordingEdit:
 
     begun: Any = None
     summary = SimpleNamespace(warnings=())
+    dropped = ""
     failing: Exception | None = None
 
     @classmethod

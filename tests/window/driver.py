@@ -37,29 +37,35 @@ class Driver:
 
     def __init__(self, output: Path, names: list[str]):
         """Choose scenarios by name; none means all."""
+        from grammar import GRAMMAR
         from guard_scenarios import GUARD
         from guide_pictures import PICTURES
+        from measuring import MEASURES
         from scenarios import SCENARIOS
+        from sequences import SEQUENCES
         from simulation import Window
 
         self.window = Window(output)
-        known = SCENARIOS | GUARD | PICTURES
-        chosen = {name: known[name] for name in names} or known
+        usual = SCENARIOS | GRAMMAR | GUARD | SEQUENCES | PICTURES
+        chosen = {name: (usual | MEASURES)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
         self.steps = self.play(chosen)
 
-    def play(self, chosen: dict) -> Generator[None, None, None]:
+    def play(self, chosen: dict) -> Generator[float | None, None, None]:
         """Wait for the first drawing (events before it are lost), then all scenarios."""
         yield from self.window.first_draw(DRAW_LIMIT)
         for name, scenario in chosen.items():
             started = time.time()
+            self.save(name)  # in case it takes Blender down
             self.results["scenarios"][name] = yield from self.play_one(scenario)
             print(f"{name}: {time.time() - started:.1f} s", flush=True)
             self.save()
         self.results["complete"] = True
 
-    def play_one(self, scenario: Callable[[object], Generator[None, None, None]]) -> Generator[None, None, str]:
+    def play_one(
+        self, scenario: Callable[[object], Generator[float | None, None, None]]
+    ) -> Generator[float | None, None, str]:
         """The failure of one scenario, empty if it passed; afterwards no drag and no message box is left over."""
         failure = ""
         try:
@@ -69,16 +75,17 @@ class Driver:
             self.window.picture(f"failed_{scenario.__name__}")
         self.window.key("ESC")
         yield from self.window.settle()
-        return failure
+        return failure or self.window.leftovers()
 
-    def save(self) -> None:
+    def save(self, running: str = "") -> None:
         """Write what is known so far, so that a crash tells where it happened."""
-        self.path.write_text(json.dumps(self.results))
+        self.path.write_text(json.dumps(self.results | {"running": running}))
 
     def tick(self) -> float:
         """Called by Blender's timer."""
+        pause: float | None = TICK
         try:
-            next(self.steps)
+            pause = next(self.steps)
         except StopIteration:
             self.save()
             leave(0)
@@ -86,7 +93,7 @@ class Driver:
             traceback.print_exc()
             self.save()
             leave(3)
-        return TICK
+        return TICK if pause is None else pause
 
 
 def leave(code: int) -> None:

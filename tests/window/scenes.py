@@ -22,8 +22,14 @@ def clear() -> None:
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     scene = bpy.context.scene
-    for name in ("separation", "responders", "object_response"):
+    for name in ("separation", "responders", "object_response", "interference"):
         scene.stiv.property_unset(name)
+    tools = scene.tool_settings
+    tools.transform_pivot_point, tools.snap_target, tools.snap_elements = "MEDIAN_POINT", "CLOSEST", {"INCREMENT"}
+    tools.use_snap = tools.use_proportional_edit = tools.use_proportional_connected = False
+    tools.proportional_edit_falloff, tools.proportional_size = "SMOOTH", 1.0
+    scene.transform_orientation_slots[0].type = "GLOBAL"
+    scene.cursor.location = (0.0, 0.0, 0.0)
 
 
 def look_from_above(area: Any) -> None:
@@ -67,6 +73,29 @@ def add_wall() -> Any:
 def add_box() -> Any:
     """A box of edge 1 in the middle."""
     return add_mesh("Box", lambda content: bmesh.ops.create_cube(content, size=2.0 * HALF))
+
+
+def add_pair() -> Any:
+    """Two boxes, one above the other in the view, both to be selected."""
+    upper = add_mesh("Upper", lambda content: bmesh.ops.create_cube(content, size=0.4), (0.0, 1.0, 0.0))
+    add_mesh("Lower", lambda content: bmesh.ops.create_cube(content, size=0.4), (0.0, -1.0, 0.0))
+    return upper
+
+
+def add_target() -> Any:
+    """A box, and to the left of it a block whose upper face is at z = 0.25 and whose nearest corner is (-1, 1)."""
+    add_box()
+    return add_mesh("Block", lambda content: bmesh.ops.create_cube(content, size=0.5), (-1.25, 1.25, 0.0))
+
+
+def add_strip() -> Any:
+    """A strip of eight quads from x = -1.2 to 1.2."""
+
+    def build(content: bmesh.types.BMesh) -> None:
+        scale = mathutils.Matrix.Diagonal((1.2, 0.2, 1.0, 1.0))
+        bmesh.ops.create_grid(content, x_segments=8, y_segments=1, size=1.0, matrix=scale)
+
+    return add_mesh("Strip", build)
 
 
 def add_cage() -> Any:

@@ -12,9 +12,13 @@ from typing import Any
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
-Steps = Generator[None, None, None]
+Steps = Generator[float | None, None, None]  # a number: seconds until the next step, None: as usual
 DIGIT_NAMES = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
-CHARACTER_KEYS = {str(digit): name for digit, name in enumerate(DIGIT_NAMES)} | {".": "PERIOD", "-": "MINUS"}
+CHARACTER_KEYS = (
+    {str(digit): name for digit, name in enumerate(DIGIT_NAMES)}
+    | {".": "PERIOD", "-": "MINUS", "=": "EQUAL", "+": "NUMPAD_PLUS", "*": "NUMPAD_ASTERIX", "\t": "TAB", " ": "SPACE"}
+    | {letter: letter.upper() for letter in "abcdefghijklmnopqrstuvwxyz"}
+)
 SETTLE = 4  # ticks after which Blender has handled an event, solved and drawn
 
 
@@ -26,10 +30,45 @@ class Window:
         self.output = output
         self.mouse = (0, 0)
         self._draws = 0
+        self.drawn_at = 0.0
+        self._watch_interface()
         bpy.types.SpaceView3D.draw_handler_add(self._count, (), "WINDOW", "POST_PIXEL")
 
     def _count(self) -> None:
         self._draws += 1
+        self.drawn_at = time.perf_counter()
+
+    def _watch_interface(self) -> None:
+        """Count what a drag adds to Blender's interface and takes away: Blender itself cannot be asked."""
+        from stiv_addon.operators import interface
+
+        self.timers, self.texts = 0, False
+        start_timer, stop_timer, show, clear = (
+            getattr(interface, name) for name in ("start_timer", "stop_timer", "show", "clear")
+        )
+
+        def started(*given: Any) -> Any:
+            self.timers += 1
+            return start_timer(*given)
+
+        def stopped(*given: Any) -> None:
+            stop_timer(*given)
+            self.timers -= 1
+
+        def shown(*given: Any) -> None:
+            self.texts = True
+            show(*given)
+
+        def cleared(*given: Any) -> None:
+            clear(*given)
+            self.texts = False
+
+        interface.start_timer, interface.stop_timer, interface.show, interface.clear = started, stopped, shown, cleared
+
+    def leftovers(self) -> str:
+        """What a drag left behind, empty if nothing."""
+        left = {"a running operator": self.dragging(), "a timer": self.timers != 0, "a text in the header": self.texts}
+        return ", ".join(name for name, is_left in left.items() if is_left)
 
     @property
     def handle(self) -> Any:
@@ -85,9 +124,9 @@ class Window:
         self.event(kind, "RELEASE", **modifiers)
 
     def type(self, text: str) -> Steps:
-        """Type a number."""
+        """Type characters; a tabulator is the key Tab."""
         for character in text:
-            self.key(CHARACTER_KEYS[character], character)
+            self.key(CHARACTER_KEYS[character], character if character.isprintable() else "")
             yield
 
     def move(self, x: int, y: int, **modifiers: bool) -> None:

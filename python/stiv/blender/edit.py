@@ -36,11 +36,16 @@ MOST_STEPS = 200
 
 
 class BlenderEdit:
-    """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls."""
+    """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls.
 
-    def __init__(self, assembly: Assembly, parts: Sequence[Part], settings: EditSettings, summary: Summary) -> None:
+    `dropped` says which exclusions of intersections no longer count, empty if all do.
+    """
+
+    def __init__(
+        self, assembly: Assembly, parts: Sequence[Part], settings: EditSettings, hidden: int, dropped: str = ""
+    ) -> None:
         """Use `begin`."""
-        self.summary = summary
+        self._hidden, self.dropped = hidden, dropped
         self._parts = tuple(parts)
         self._selected_weight = settings.weight(True)
         self._influence: Influence | None = None
@@ -78,10 +83,13 @@ class BlenderEdit:
         mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
         excluded, dropped = settings.excluded.current(scene.meshes)
-        summary = summarise(assembly, parts, scene.hidden)
-        if dropped:
-            summary = replace(summary, warnings=(dropped, *summary.warnings))
-        return cls(assembly, parts, replace(settings, excluded=excluded), summary)
+        return cls(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped)
+
+    @property
+    def summary(self) -> Summary:
+        """Who takes part; looks at every triangle, which is why a drag does not ask for it."""
+        summary = summarise(self.assembly, self._parts, self._hidden)
+        return replace(summary, warnings=(self.dropped, *summary.warnings)) if self.dropped else summary
 
     @property
     def parts(self) -> tuple[Part, ...]:

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random events during drags: nothing may crash, intersect or stay behind, whatever is pressed when."""
+
+from __future__ import annotations
+
+import os
+import random
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import scenes
+from scenarios import prepared
+from simulation import Steps, Window
+
+COUNT = int(os.environ.get("STIV_WINDOW_SEQUENCES", "200"))
+EVENTS = 14  # of a sequence, at most
+PAUSE = 0.004  # seconds between two of them
+SCENES = (
+    (scenes.add_box, "Box", "OBJECT"),
+    (scenes.add_cage, "Cage", "EDIT"),
+    (scenes.add_ball_in_lattice, "Lattice", "EDIT"),
+)
+KEYS = (
+    *"GRSXYZWO",
+    *("ZERO", "ONE", "TWO", "FIVE", "PERIOD", "MINUS", "SLASH", "EQUAL", "BACK_SPACE", "TAB"),
+    *("PAGE_UP", "PAGE_DOWN", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFT_CTRL", "LEFT_SHIFT", "F", "HOME"),
+)
+ENDS = ("RET", "LEFTMOUSE", "ESC", "RIGHTMOUSE")
+
+
+class Sequence:
+    """One of them; the same number gives the same events."""
+
+    def __init__(self, window: Window, number: int):
+        """Choose by number."""
+        self.window = window
+        self.random = random.Random(number)
+        self.scene = SCENES[number % len(SCENES)]
+        self.disturbed = False
+        self.log: list[str] = []
+
+    def play(self) -> Steps:
+        """Begin, disturb, end, look."""
+        build, active, mode = self.scene
+        yield from prepared_quickly(self.window, build, active, mode)
+        before = self.state()
+        self.window.key(self.random.choice("MRE"), shift=True, alt=True)
+        yield PAUSE
+        for _ in range(self.random.randint(3, EVENTS)):
+            self.act()
+            yield PAUSE
+            if not self.window.dragging():
+                break
+            self.expect_free("during the drag")
+        ended_by = yield from self.end()
+        self.expect_free("at the end")
+        assert not self.window.leftovers(), self.told(self.window.leftovers())
+        if ended_by in ("ESC", "RIGHTMOUSE") and not self.disturbed:
+            assert self.state() == before, self.told("cancelling did not put everything back")
+
+    def act(self) -> None:
+        """One event, sometimes one from outside of the drag."""
+        chance = self.random.random()
+        if chance < 0.45:
+            self.glance()
+        elif chance < 0.93:
+            self.press(self.random.choice(KEYS))
+        else:
+            self.disturb()
+
+    def glance(self) -> None:
+        """Move the mouse, anywhere in the view."""
+        region = self.window.region
+        x = region.x + self.random.randrange(region.width)
+        y = region.y + self.random.randrange(region.height)
+        self.log.append(f"mouse {x} {y}")
+        self.window.move(x, y, shift=self.random.random() < 0.1, ctrl=self.random.random() < 0.1)
+
+    def press(self, key: str) -> None:
+        """A key, with Shift at times."""
+        shift = self.random.random() < 0.2
+        self.log.append(f"{'Shift+' if shift else ''}{key}")
+        self.window.key(key, shift=shift)
+
+    def disturb(self) -> None:
+        """What a user or a script can do besides."""
+        action = self.random.choice((self.undo_key, self.save, self.delete_wall, self.delete_dragged, self.leave_mode))
+        self.log.append(action.__name__)
+        action()
+
+    def undo_key(self) -> None:
+        """Ctrl+Z, which a drag does not hear."""
+        self.window.key("Z", ctrl=True)
+
+    def save(self) -> None:
+        """A copy of the file."""
+        with self.window.override(), tempfile.TemporaryDirectory() as folder:
+            bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "copy.blend"), copy=True)
+
+    def delete_wall(self) -> None:
+        """The obstacle goes."""
+        self.disturbed = True
+        self.remove("Wall")
+
+    def delete_dragged(self) -> None:
+        """What is dragged goes."""
+        self.disturbed = True
+        if bpy.context.mode == "OBJECT":
+            self.remove(self.scene[1])
+
+    def remove(self, name: str) -> None:
+        """Delete an object, if it is still there."""
+        if name in bpy.data.objects:
+            bpy.data.objects.remove(bpy.data.objects[name])
+
+    def leave_mode(self) -> None:
+        """Tab, by a script: the drag would take the key."""
+        self.disturbed = True
+        with self.window.override():
+            if bpy.context.mode != "OBJECT":
+                bpy.ops.object.mode_set(mode="OBJECT")
+
+    def end(self) -> Steps:
+        """End the drag, if it still goes on; a text that is no number can only be left by cancelling."""
+        last = ""
+        for key in (self.random.choice(ENDS), "ESC", "ESC"):
+            if not self.window.dragging():
+                return last
+            last = key
+            self.log.append(key)
+            self.window.key(key)
+            yield from self.window.settle(2)
+        assert not self.window.dragging(), self.told("the drag does not end")
+        return last
+
+    def expect_free(self, when: str) -> None:
+        """The exact test on what Blender evaluates now."""
+        from stiv.blender import check_scene
+
+        found = check_scene(bpy.context)
+        assert not found.pairs, self.told(f"{len(found.pairs)} intersections {when}")
+
+    def state(self) -> list[object]:
+        """Placements, and the shape of what is deformed."""
+        graph = bpy.context.evaluated_depsgraph_get()
+        found: list[object] = []
+        for thing in sorted(bpy.data.objects, key=lambda each: each.name):
+            found.append((thing.name, [tuple(row) for row in thing.matrix_world]))
+            if thing.type == "MESH":
+                evaluated = thing.evaluated_get(graph)
+                mesh = evaluated.to_mesh()
+                found.append([tuple(vertex.co) for vertex in mesh.vertices])
+                evaluated.to_mesh_clear()
+        return found
+
+    def told(self, what: str) -> str:
+        """A failure with what led to it."""
+        return f"{what}, in {self.scene[1]} after: {', '.join(self.log)}"
+
+
+def prepared_quickly(window: Window, build: Callable[[], object], active: str, mode: str) -> Steps:
+    """As `prepared`, with shorter pauses."""
+    for pause in prepared(window, build, active, mode):
+        yield PAUSE if pause is None else pause
+
+
+def random_sequences(window: Window) -> Steps:
+    """COUNT sequences, each by its number."""
+    for number in range(COUNT):
+        try:
+            yield from Sequence(window, number).play()
+        except AssertionError as failure:
+            raise AssertionError(f"sequence {number}: {failure}") from failure
+
+
+SEQUENCES = {"random_sequences": random_sequences}
