@@ -213,6 +213,29 @@ def test_what_our_own_operators_write_is_not_corrected_again() -> None:
     assert names_of_steps() == steps
 
 
+def test_a_cage_that_shows_a_loop_subdivision_is_corrected_by_what_is_seen() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.data.objects.remove(box())
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1)
+    bpy.context.object.name = "Box"
+    bpy.ops.stiv.loop_add()
+    bpy.context.view_layer.objects.active = box()
+    bpy.context.scene.stiv.live_guard = True
+    bpy.ops.ed.undo_push(message="cage")
+    look()
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    move(1.6)
+    look()
+    assert watching.problem() == ""
+    box().update_from_editmode()
+    bpy.context.view_layer.update()
+    shown = [vertex.co.x for vertex in bpy.data.objects["Box.loop"].data.vertices]
+    assert 1.8 < max(shown) < 2.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def test_looking_again_does_nothing() -> None:
     move(7.0)
     look()
