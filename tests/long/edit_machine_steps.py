@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random steps of editing sessions until there were so many, every one checked.
+
+    python tests/long/edit_machine_steps.py [--steps 20000]
+
+A failure is shrunk by hypothesis to the fewest steps, and printed.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS.parent), str(TESTS / "editing")]
+
+from edit_machine import EditMachine  # noqa: E402
+from hypothesis import HealthCheck, settings  # noqa: E402
+from hypothesis.stateful import run_state_machine_as_test  # noqa: E402
+
+SETTINGS = settings(max_examples=100, stateful_step_count=100, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+def main() -> None:
+    """Runs machine after machine."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--steps", type=int, default=20_000)
+    steps, begin = parser.parse_args().steps, time.process_time()
+    while EditMachine.done < steps:
+        run_state_machine_as_test(EditMachine, settings=SETTINGS)
+    print(f"{EditMachine.done} steps, 0 intersections, {time.process_time() - begin:.0f} s of processor time")
+
+
+if __name__ == "__main__":
+    main()
