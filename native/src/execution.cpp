@@ -51,6 +51,7 @@ void Execution::set_time_budget(double seconds) {
 bool Execution::budget_used_up() const { return deadline_ && std::chrono::steady_clock::now() >= *deadline_; }
 
 void Execution::check() const {
+  if (checks_left_.fetch_sub(1, std::memory_order_relaxed) <= 0) throw Interrupted("cancelled");
   if (cancel_requested()) throw Interrupted("cancelled");
   if (budget_used_up()) throw Interrupted("time budget used up");
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "stiv/types.hpp"
@@ -55,6 +56,9 @@ class Execution {
   void set_time_budget(double seconds);
   bool budget_used_up() const;
 
+  /// Stop at the check after so many, as if cancelled there: with one thread the same place each time.
+  void cancel_after_checks(std::int64_t count) { checks_left_ = count; }
+
   /// @throws Interrupted when cancelled or over the time budget. Called between iterations and between chunks.
   void check() const;
 
@@ -75,6 +79,7 @@ class Execution {
   int threads_;
   std::atomic<bool> cancelled_{false};
   const std::atomic<bool>* external_flag_ = nullptr;
+  mutable std::atomic<std::int64_t> checks_left_{std::numeric_limits<std::int64_t>::max()};
   std::optional<std::chrono::steady_clock::time_point> deadline_;
   std::function<void(const char*, double)> progress_;
 };

@@ -3,12 +3,11 @@
 #include <array>
 #include <atomic>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "detection/candidates.hpp"
 #include "detection/hull_filter.hpp"
-#include "detection/incidence.hpp"
+#include "detection/primitive_tree.hpp"
 #include "detection/relevance.hpp"
 #include "detection/swept_vertices.hpp"
 
@@ -29,55 +28,6 @@ GroupTable table_of_bodies(const Surface& surface) {
     }
   return all ? GroupTable() : GroupTable(count, std::move(meets));
 }
-
-/// Primitives of one kind as rows of `size` vertices, with a tree over them.
-template <Index size>
-class PrimitiveTree {
- public:
-  /// @param rows (count, size), alive as long as this
-  PrimitiveTree(const Surface& surface, const Index* rows, Index count)
-      : surface_(surface), rows_(rows), count_(count) {}
-
-  /// Brings the boxes up to date after `change` of the vertices' boxes.
-  void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
-    const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
-    if (!tree_) build(step.start);
-    if (change == SweptVertices::Change::all) {
-      tree_->refit(box_of, execution);
-    } else if (change == SweptVertices::Change::some) {
-      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
-      tree_->refit_some(incidence_->rows_with(swept.changed()), box_of);
-    }
-  }
-
-  const Bvh& tree() const { return *tree_; }
-
- private:
-  std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
-    return std::span<const Index, static_cast<std::size_t>(size)>(rows_ + static_cast<std::ptrdiff_t>(primitive) * size,
-                                                                  static_cast<std::size_t>(size));
-  }
-
-  /// Sorted by where things are at the start: a first step may take them anywhere.
-  void build(const Positions& start) {
-    std::vector<Eigen::Vector3f> centres(at(count_));
-    std::vector<Index> bodies(at(count_));
-    for (Index primitive = 0; primitive < count_; ++primitive) {
-      Vector3 sum = Vector3::Zero();
-      for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
-      const Eigen::Vector3f centre = sum.cast<float>();
-      centres[at(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
-      bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
-    }
-    tree_.emplace(centres, bodies, CornerRows{rows_, size});
-  }
-
-  const Surface& surface_;
-  const Index* rows_;
-  Index count_;
-  std::optional<Bvh> tree_;
-  std::optional<Incidence> incidence_;
-};
 
 /// Trees over vertices, edges and faces, and the pairs that they gave: built at the first step; at the others, what
 /// did not change is neither refitted nor compared again.

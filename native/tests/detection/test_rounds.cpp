@@ -91,27 +91,30 @@ TEST_CASE("rounds: edits one after the other, each from where the last one ended
 TEST_CASE("rounds: what was cancelled at any point leaves no trace") {
   const MovingScene scene = stirred_sheets(30, 3, 0.01, 8);
   std::mt19937 random(9);
-  std::uniform_real_distribution<double> seconds(0, 0.0015), noise(-0.01, 0.01);
-  Detector detector(scene.surface);
-  Positions start = scene.start;
-  int cancelled = 0;
-  for (int edit = 0; edit < 50; ++edit) {
-    found_by(detector, start, start, 1);
-    Positions end = start;
-    const Index first = edit % 2 == 0 ? 0 : 1800;
-    for (Index vertex = first; vertex < end.rows(); ++vertex) end(vertex, 2) += noise(random);
-    Execution hurried(1 + edit % 2);
-    hurried.set_time_budget(seconds(random));
-    try {
-      detector.find(start, end, proximity, hurried);
-    } catch (const Interrupted&) {
-      ++cancelled;
+  std::uniform_real_distribution<double> noise(-0.01, 0.01);
+  for (const int threads : {1, 2}) {
+    Detector detector(scene.surface);
+    int cancelled = 0;
+    bool done = false;
+    for (int checks = 0; !done; checks += 1 + checks / 8) {
+      Positions start = scene.start, end = start;
+      if (cancelled % 3 > 0) found_by(detector, start, start, 1);  // from its own start, or in the middle of an edit
+      const Index first = cancelled % 2 == 0 ? 0 : 1800;
+      for (Index vertex = first; vertex < end.rows(); ++vertex) end(vertex, 2) += noise(random);
+      Execution hurried(threads);
+      hurried.cancel_after_checks(checks);
+      try {
+        detector.find(start, end, proximity, hurried);
+        done = true;
+      } catch (const Interrupted&) {
+        ++cancelled;
+      }
+      end(cancelled, 2) += 0.01;  // the same step but for one vertex
+      Detector fresh(scene.surface);
+      CHECK(same_bits(found_by(detector, start, end, 1), found_by(fresh, start, end, 1)));
     }
-    end(edit, 2) += 0.01;  // the same step but for one vertex
-    Detector fresh(scene.surface);
-    CHECK(same_bits(found_by(detector, start, end, 1), found_by(fresh, start, end, 1)));
+    CHECK(cancelled > 30);
   }
-  CHECK(cancelled > 0);
 }
 
 TEST_CASE("rounds: pairs are looked at again only where the step is another") {
