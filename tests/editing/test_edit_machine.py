@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A thousand random steps of editing sessions, every one checked; `tests/long/edit_machine_steps.py` does twenty thousand."""
+"""A thousand random steps of editing sessions, each checked; tests/long/edit_machine_steps.py does twenty thousand."""
 
 from edit_machine import EditMachine
 from hypothesis import HealthCheck, settings
