@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 from .. import availability, scene_frame
-from ..settings import edit_settings
+from ..settings import DRAG_BUDGET, edit_settings
 from . import outcomes
 from .choices import Choices
 from .last_edit import describe
@@ -86,11 +86,21 @@ class TransformOperator(Choices):
         return (*self.own_values(), *self.choices())
 
 
-def begin_edit(context: bpy.types.Context, request: Any, time_budget: float = 0.0) -> Any:
+def begin_edit(context: bpy.types.Context, request: Any) -> Any:
     """`stiv.blender.BlenderEdit` of a request."""
     from stiv.blender import BlenderEdit  # the add-on registers without the native module
 
-    edit = BlenderEdit.begin(context, edit_settings(context.scene, request, time_budget), kind=request.kind)
+    return _told(context, BlenderEdit.begin(context, edit_settings(context.scene, request), kind=request.kind))
+
+
+def begin_drag(context: bpy.types.Context, request: Any) -> Any:
+    """The same for a drag: at once in large scenes, and with a limit to the time of each solve."""
+    from stiv.blender import begin_nearby  # the add-on registers without the native module
+
+    return _told(context, begin_nearby(context, edit_settings(context.scene, request, DRAG_BUDGET), kind=request.kind))
+
+
+def _told(context: bpy.types.Context, edit: Any) -> Any:
     if edit.dropped:  # the summary's other warnings look at every triangle, for which a drag has no time
         context.window_manager.stiv_check.summary = edit.dropped
     return edit

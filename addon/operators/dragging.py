@@ -14,10 +14,9 @@ from ..modal.pointer import Pointer
 from ..modal.request import Request
 from ..modal.state import Effect, State
 from ..overlay import showing
-from ..settings import DRAG_BUDGET
 from ..transform.measuring import measure
 from . import interface, outcomes
-from .adapter import begin_edit
+from .adapter import begin_drag
 from .choices import chosen_properties, make_influence
 from .last_edit import describe
 from .messages import complain, outcome_text, tell, write_failure
@@ -72,7 +71,7 @@ class Dragging:
         mouse = interface.plain_event(event, context.region).mouse
         proportional, snaps = scene_frame.read_proportional(context), scene.tool_settings.use_snap
         state = State(Pointer.at(mouse, interface.centre(self._frame)), request, proportional=proportional, snap=snaps)
-        self._launch(context, state, lambda request: begin_edit(context, request, DRAG_BUDGET))
+        self._launch(context, state, lambda request: begin_drag(context, request))
 
     def _launch(self, context: bpy.types.Context, state: State, begin: Callable[[Request], Any]) -> None:
         self._mode = context.mode

@@ -13,6 +13,7 @@ from stiv.blender.following import Followed, follow
 from stiv.blender.loop_objects import add_refined, remove_refined
 from stiv.blender.loop_surfaces import refresh
 from stiv.blender.motion import Influence, Motion
+from stiv.blender.nearby import begin_nearby
 from stiv.blender.repairing import BlenderRepair, RepairSettings, repair_scene
 from stiv.blender.reshaping import ReshapeReport
 from stiv.blender.scene_state import ObjectState, SceneState, read_state
@@ -47,6 +48,7 @@ __all__ = [
     "WeightGroup",
     "WriteReport",
     "add_refined",
+    "begin_nearby",
     "check_scene",
     "compare",
     "contacts_of",

@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import bpy
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 
 import stiv
 from stiv import InputError
-from stiv.blender.arrays import Floats
+from stiv.blender.arrays import Floats, Indices, as_matrix
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.motion import Influence, Motion
@@ -38,7 +39,9 @@ MOST_STEPS = 200
 class BlenderEdit:
     """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls.
 
-    `dropped` says which exclusions of intersections no longer count, empty if all do.
+    Attributes:
+        dropped: which exclusions of intersections no longer count, empty if all do.
+        start_digest: equal for edits that begin with the same controls, surfaces that move and placements.
     """
 
     def __init__(
@@ -55,6 +58,7 @@ class BlenderEdit:
         self._unguarded = None if settings.interference else self._start
         self._solving = Solving(assembly, self._parts, self._start, settings)
         self._showing = Showing(self._parts, self._solving, settings)
+        self.start_digest = ""
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -73,9 +77,13 @@ class BlenderEdit:
         kind: str,
         movers: Sequence[Mover],
         adapt: Callable[[Part], Part] = lambda part: part,
+        left_out: frozenset[str] = frozenset(),
     ) -> BlenderEdit:
-        """The same with movers that were found otherwise; `adapt` may change who responds in a part."""
-        scene = read_scene(context, settings.takes_part)
+        """The same with movers that were found otherwise; `adapt` may change who responds in a part.
+
+        `left_out` names objects that do not take part, and do not hang together with any that does.
+        """
+        scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
         found, groups = make_parts(context, movers, scene.meshes, settings, kind)
         parts = [adapt(part) for part in found]
         if not any(part.rule.moves for part in parts):
@@ -83,7 +91,10 @@ class BlenderEdit:
         mobility = mobilities(len(scene.meshes), parts)
         assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
         excluded, dropped = settings.excluded.current(scene.meshes)
-        return cls(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped)
+        edit = cls(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped)
+        placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
+        edit.start_digest = _digest(edit.controls, assembly.positions[edit._moving_vertices], *placements)
+        return edit
 
     @property
     def summary(self) -> Summary:
@@ -118,9 +129,21 @@ class BlenderEdit:
         return self._solving.assembly
 
     @property
-    def start_digest(self) -> str:
-        """Of the surface and the controls at the beginning: equal where an edit begins at the same state."""
-        return _digest(self.assembly.positions, self._start)
+    def goal(self) -> Floats:
+        """What the controls of all parts are dragged to, (m, 3)."""
+        return self._goal
+
+    def goal_of(self, motion: Motion | ArrayLike) -> Floats:
+        """The goal, (m, 3), that a motion would have. Raises InputError as `drag`."""
+        return self._goal_of(Motion.of(motion))
+
+    def moving_points(self, controls: Floats) -> Floats:
+        """The part of the surface, (n, 3), that follows the controls, (m, 3)."""
+        return self.surface_of(controls)[self._moving_vertices]
+
+    @cached_property
+    def _moving_vertices(self) -> Indices:
+        return np.concatenate([self.assembly.vertices(index) for part in self._parts for index in part.surfaces])
 
     @property
     def moving(self) -> frozenset[str]:

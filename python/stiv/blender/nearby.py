@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An edit for drags in large scenes: far obstacles are taken in when what moves comes near them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import bpy
+from numpy.typing import ArrayLike
+
+import stiv
+from stiv.blender.arrays import Floats
+from stiv.blender.edit import BlenderEdit
+from stiv.blender.motion import Motion
+from stiv.blender.reach import Reach, find_reach
+from stiv.blender.roles import find_movers
+from stiv.blender.settings import EditSettings, check_kind
+from stiv.blender.showing import WriteReport
+
+
+def begin_nearby(context: bpy.types.Context, settings: EditSettings, kind: str) -> NearbyEdit | BlenderEdit:
+    """An edit as of `BlenderEdit.begin`; in a large scene without the obstacles that are far away yet.
+
+    Raises what that one raises.
+    """
+    check_kind(kind)
+    movers = find_movers(context, settings)
+    reach = find_reach(context, movers, settings)
+    if reach is None:
+        return BlenderEdit.begin_with(context, settings, kind, movers)
+    return NearbyEdit(context, settings, kind, reach)
+
+
+class NearbyEdit:
+    """A BlenderEdit among the obstacles within a reach; everything that is not told here is that of the edit within.
+
+    What it accepts stays within the reach, so that it meets nothing of what is left out. As soon as a goal or a
+    solution leaves the reach, an edit among all obstacles goes on from the state shown last.
+    """
+
+    def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, reach: Reach) -> None:
+        """Use `begin_nearby`."""
+        self._settings, self._kind = settings, kind
+        self._reach: Reach | None = reach
+        movers = find_movers(context, settings)
+        self._edit = BlenderEdit.begin_with(context, settings, kind, movers, left_out=reach.left_out)
+        self._shown = self._edit.controls
+
+    def __getattr__(self, name: str) -> Any:
+        """Whatever else an edit has."""
+        return getattr(self._edit, name)
+
+    @property
+    def has_all(self) -> bool:
+        """Are all obstacles taken in?"""
+        return self._reach is None
+
+    def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
+        """As of BlenderEdit."""
+        if self._edit.interference and not self._within([self._edit.goal_of(motion)]):
+            self._take_in_all()
+        result = self._edit.drag(motion, **execution)
+        if self._stays(result):
+            return result
+        self._take_in_all()
+        return self._edit.drag(motion, **execution)
+
+    def settle(self, **execution: Any) -> stiv.EditResult:
+        """As of BlenderEdit."""
+        goal = self._edit.goal
+        result = self._edit.settle(**execution)
+        if self._stays(result):
+            return result
+        self._take_in_all()
+        return self._edit.drag_to(goal, **execution)
+
+    def set_interference(self, on: bool) -> str:
+        """As of BlenderEdit. While it is off surfaces may go anywhere."""
+        self._take_in_all()
+        return self._edit.set_interference(on)
+
+    def write(self) -> WriteReport:
+        """As of BlenderEdit."""
+        report = self._edit.write()
+        self._shown = self._edit.controls
+        if report.result is not None:  # solved again, by a way that was not looked at
+            self._take_in_all()
+        return report
+
+    def restore(self) -> None:
+        """As of BlenderEdit."""
+        self._edit.restore()
+        self._shown = self._edit.controls
+
+    def _stays(self, result: stiv.EditResult) -> bool:
+        return not self._edit.interference or self._within([*result.path, result.controls])
+
+    def _within(self, places: Iterable[Floats]) -> bool:
+        return self._reach is None or all(self._reach.contains(self._edit.moving_points(place)) for place in places)
+
+    def _take_in_all(self) -> None:
+        """Begin again among all obstacles, and go on from the state shown last."""
+        if self._reach is None:
+            return
+        shown = self._shown
+        self._edit.restore()
+        movers = find_movers(bpy.context, self._settings)
+        self._edit, self._reach = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers), None
+        if self._edit.take_up(shown):
+            self._edit.write()
+        self._shown = self._edit.controls

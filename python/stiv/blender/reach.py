@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which obstacles are too far to matter to an edit yet, and the box that what moves must not leave meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from stiv.blender.arrays import Floats, as_matrix, transform_points
+from stiv.blender.dependencies import dependencies
+from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
+from stiv.blender.movers import Mover
+from stiv.blender.settings import EditSettings
+
+LEAST_FACES = 50_000  # of obstacles: below, all of them are taken in
+MARGIN = 0.01  # of the size of the box, which what moves keeps from its sides
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The box from `low` to `high`, (3,), which no object named in `left_out` touches."""
+
+    low: Floats
+    high: Floats
+    left_out: frozenset[str]
+
+    def contains(self, points: Floats) -> bool:
+        """Are all points, (n, 3), within the box, a margin away from its sides?"""
+        margin = MARGIN * float(np.linalg.norm(self.high - self.low))
+        return bool(((points >= self.low + margin) & (points <= self.high - margin)).all())
+
+
+def find_reach(context: bpy.types.Context, movers: Sequence[Mover], settings: EditSettings) -> Reach | None:
+    """The objects that movers cannot meet without moving farther than their own size; None where nothing is gained.
+
+    Left out are only meshes that stand alone: what is tied to others by parents, modifiers, constraints or instances,
+    or named in the settings, is always taken in.
+    """
+    objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
+    candidates = [ob for ob in objects if _stands_alone(ob)]
+    if sum(len(ob.data.polygons) for ob in candidates) < LEAST_FACES:
+        return None
+    named = {*settings.named_objects(), *settings.excluded.shapes}
+    tied = _tied(objects, {mover.reference.name for mover in movers})
+    depsgraph = context.evaluated_depsgraph_get()
+    moving = [_box(ob, depsgraph) for ob in objects if ob.name in tied and ob.type in SURFACE_TYPES]
+    if not moving:
+        return None
+    low, high = np.min([box[0] for box in moving], axis=0), np.max([box[1] for box in moving], axis=0)
+    size = float(np.linalg.norm(high - low))
+    low, high = low - size, high + size
+    far = [ob.name for ob in candidates if ob.name not in tied | named and _apart(_box(ob, depsgraph), (low, high))]
+    return Reach(low, high, frozenset(far)) if far else None
+
+
+def _stands_alone(ob: bpy.types.Object) -> bool:
+    alone = ob.type == "MESH" and ob.mode == "OBJECT" and ob.instance_type == "NONE"
+    return bool(alone and ob.parent is None and not ob.children and not any(dependencies(ob)))
+
+
+def _tied(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:
+    """The names, and all that hang on them or look at them, directly or not."""
+    users = {ob.name: {each.used for each in dependencies(ob)} for ob in objects}
+    for ob in objects:
+        if ob.parent is not None:
+            users[ob.name].add(ob.parent.name)
+    found, before = set(names), -1
+    while len(found) != before:
+        before = len(found)
+        found |= {name for name, used in users.items() if used & found}
+    return found
+
+
+def _box(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Floats]:
+    """The bounds of an evaluated object in the world, (3,) each."""
+    evaluated = ob.evaluated_get(depsgraph)
+    corners = transform_points(
+        as_matrix(evaluated.matrix_world), np.array([list(each) for each in evaluated.bound_box])
+    )
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def _apart(a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> bool:
+    return bool((a[0] > b[1]).any() or (b[0] > a[1]).any())
