@@ -25,6 +25,11 @@
 #define HWY_DISABLE_PCLMUL_AES
 #define HWY_DISABLE_BMI2_FMA
 #define HWY_DISABLE_F16C
+// On arm64 NEON is all that is used and always there. Choosing it when running would add instructions that some
+// processors lack (AES), and GCC does not let a struct of vectors have a constructor then.
+#if defined(__aarch64__) && !defined(TOOLCHAIN_MISS_SYS_AUXV_H)
+#define TOOLCHAIN_MISS_SYS_AUXV_H
+#endif
 // Assertions of Highway would need its library.
 #define HWY_IS_DEBUG_BUILD 0
 
