@@ -13,6 +13,8 @@ from .pointer import Pointer
 from .request import Request
 from .state import Effect, Phase, State, step
 
+LAST_SLICES = 10  # solves, each within its time, for what is left to do when a drag is confirmed
+
 
 class Edit(Protocol):
     """What a drag needs of an edit of the scene; `stiv.blender.BlenderEdit` is one."""
@@ -191,7 +193,7 @@ class Drag:
         self.progress = Progress.VALUE_GIVEN
 
     def _finish_dragged(self) -> None:
-        if self._pending:
+        for _ in range(LAST_SLICES):
             self._solve_pending()
         if self.result is not None:
             settled = self.edit.settle()

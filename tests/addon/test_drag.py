@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_state import EVENTS
 
-from stiv_addon.modal.drag import Drag, Progress
+from stiv_addon.modal.drag import LAST_SLICES, Drag, Progress
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
@@ -86,6 +86,22 @@ def test_a_used_up_budget_is_continued_at_the_next_tick() -> None:
     for _ in range(4):
         drag.tick()
     assert edit.calls == ["drag", "write", "drag", "write"]
+
+
+def test_what_is_left_at_the_confirmation_is_done_in_slices() -> None:
+    edit = FakeEdit(statuses=["budget", "budget", "corrected"])
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle", "write"]
+
+
+def test_what_never_ends_is_confirmed_all_the_same() -> None:
+    edit = FakeEdit(statuses=["budget"] * 1000)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == LAST_SLICES
 
 
 def test_a_refused_value_is_told_and_can_be_corrected() -> None:
