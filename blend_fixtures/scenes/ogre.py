@@ -18,7 +18,7 @@ SHOULDER, HAND = (0.3, 0.0, 1.3), (1.1, -0.06, 1.16)
 HEAD = (0.0, -0.03, 1.72)
 
 
-def ogre(cell: float = 0.142) -> Shape:
+def ogre(cell: float = 0.1416) -> Shape:
     """The ogre: belly, chest, short legs, long arms, wide head with ears and a nose."""
     trunk = merged(
         ellipsoid((0, 0.0, 1.12), (0.4, 0.29, 0.36)), ellipsoid((0, -0.06, 0.83), (0.4, 0.36, 0.36)), smooth=0.2
@@ -39,7 +39,7 @@ def ogre(cell: float = 0.142) -> Shape:
         smooth=0.07,
     )
     whole = merged(trunk, neck, head, mirrored(side), smooth=0.09)
-    return triangulated(surface_net(whole, (-1.5, -0.6, -0.1), (1.5, 0.6, 2.2), cell, 8))
+    return triangulated(surface_net(whole, (-10.5 * cell, -0.6, -0.1), (10.5 * cell, 0.6, 2.2), cell, 8))
 
 
 def shirt(cell: float = 0.136) -> Shape:

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figure 4: nine organ-like soft objects, Loop subdivision surfaces, packed tightly into a bowl."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..organs import bowl, organs
+from .session import Array, Edit, Session, Stage, single
+from .subdivision_parts import Parts, part
+
+#: Where each organ is at the start, and where it is wanted: they overlap there.
+PLACES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    "Gut": ((0.0, 0.0, 1.2), (0.0, 0.0, -0.5)),
+    "Left kidney": ((1.1, 0.0, 1.3), (0.6, 0.1, -0.35)),
+    "Right kidney": ((-1.1, 0.0, 1.3), (-0.6, 0.1, -0.35)),
+    "Liver": ((-0.75, 0.0, 2.5), (-0.3, -0.1, 0.0)),
+    "Stomach": ((0.8, 0.0, 2.5), (0.35, -0.1, 0.0)),
+    "Spleen": ((1.7, 0.0, 2.3), (0.7, 0.1, 0.1)),
+    "Left lung": ((0.9, 0.0, 3.7), (0.42, 0.1, 0.45)),
+    "Right lung": ((-0.9, 0.0, 3.7), (-0.42, 0.1, 0.45)),
+    "Heart": ((0.0, 0.0, 3.6), (0.0, -0.1, 0.4)),
+}
+MOVES = 48
+
+
+def parts() -> Parts:
+    """The organs above the bowl, one beside the other."""
+    cages = {name: shape.moved(PLACES[name][0]) for name, shape in organs().items()}
+    return Parts({**{name: part(cage, 1) for name, cage in cages.items()}, "Bowl": part(bowl(), 0)})
+
+
+def toward(scene: Parts, names: list[str]) -> Edit:
+    """Each organ moved by one part of its way."""
+    ways = [np.subtract(PLACES[name][1], PLACES[name][0]) / MOVES for name in names]
+    step = np.concatenate([np.tile(way, (len(scene.cages[name]), 1)) for name, way in zip(names, ways, strict=True)])
+
+    def goal(controls: Array) -> Array:
+        result: Array = controls + step
+        return result
+
+    return goal
+
+
+def stage() -> Stage:
+    """All organs lowered together, each toward a place of its own that others want too."""
+    scene = parts()
+    names = [name for name in scene.parts if name != "Bowl"]
+    return scene.by_cages("packing", names, (toward(scene, names),) * MOVES)
+
+
+def session() -> Session:
+    """The whole packing."""
+    return Session("packing", 4, "Nine soft organs packed into a bowl", single(stage))
