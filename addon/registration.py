@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that the extension adds to Blender, in order, and takes away again in reverse."""
 
+import sys
+
 import bpy
 
 from . import keymap, live_loops, manual, menus, operators, panels, pie_menu, preferences, properties, translations
 from .guard import watching
+from .operators import outcomes
 from .overlay import showing
 
 CLASSES = (
@@ -43,3 +46,12 @@ def unregister() -> None:
     properties.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    forget()
+
+
+def forget() -> None:
+    """Give back what is kept from one drag to the next."""
+    outcomes.clear()
+    remembering = sys.modules.get("stiv.blender.remembering")  # there only if the native module was
+    if remembering is not None:
+        remembering.forget_all()

@@ -16,6 +16,7 @@ from simulation import Steps, Window
 
 COUNT = int(os.environ.get("STIV_WINDOW_SEQUENCES", "200"))
 EVENTS = 14  # of a sequence, at most
+PATIENCE = 500  # pauses until a drag has begun
 PAUSE = 0.004  # seconds between two of them
 SCENES = (
     (scenes.add_box, "Box", "OBJECT"),
@@ -47,7 +48,11 @@ class Sequence:
         yield from prepared_quickly(self.window, build, active, mode)
         before = self.state()
         self.window.key(self.random.choice("MRE"), shift=True, alt=True)
-        yield PAUSE
+        for _ in range(PATIENCE):
+            yield PAUSE
+            if self.window.dragging():
+                break
+        assert self.window.dragging(), "the drag did not begin"
         for _ in range(self.random.randint(3, EVENTS)):
             self.act()
             yield PAUSE

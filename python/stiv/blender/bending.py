@@ -8,12 +8,13 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.arrays import Floats, as_matrix, transform_points
+from stiv.blender.arrays import Floats, Singles, as_matrix, transform_points
 from stiv.blender.cage import read_cage
 from stiv.blender.lattice_points import is_undeformed, read_points, read_rest_points
 from stiv.blender.mesh_reading import evaluated_mesh, read_group_weights
 from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
 from stiv.blender.references import ObjectReference
+from stiv.blender.remembering import remembered
 from stiv.blender.subdividing import subdivide
 from stiv.blender.vertex_groups import group_weights
 
@@ -84,14 +85,35 @@ def _present_controls(stage: Stage, rest: Floats) -> Floats:
 def _lattice(ob: bpy.types.Object, stage: Bending, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
     lattice = stage.lattice.find()
     data = lattice.data
-    return stiv.lattice(
+    return remembered(
+        _bent,
         rest,
         (data.points_u, data.points_v, data.points_w),
-        frame=as_matrix(lattice.matrix_world),
-        interpolation=[_interpolation(data, axis) for axis in "uvw"],
-        influence=stage.strength * _group_weights(ob, stage, len(rest), context),
-        rest=read_rest_points(data),
-        point_weights=_point_weights(lattice),
+        as_matrix(lattice.matrix_world),
+        [_interpolation(data, axis) for axis in "uvw"],
+        stage.strength * _group_weights(ob, stage, len(rest), context),
+        read_rest_points(data),
+        _point_weights(lattice),
+    )
+
+
+def _bent(
+    vertices: Floats,
+    resolution: tuple[int, int, int],
+    frame: Floats,
+    interpolation: list[str],
+    influence: Floats,
+    rest: Singles,
+    point_weights: Any,
+) -> stiv.Deformation:
+    return stiv.lattice(
+        vertices,
+        resolution,
+        frame=frame,
+        interpolation=interpolation,
+        influence=influence,
+        rest=rest,
+        point_weights=point_weights,
     )
 
 
