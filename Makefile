@@ -74,11 +74,12 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv ## Run the long forms: killed batches, random edits, cancelled edits, memory
+test-long: build/venv/stiv build/venv-blender ## Run the long forms: killed batches, random edits and every path they take, cancelled edits, memory
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py
+	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py
 
 docs: ## Make the API reference of the core from its headers: build/docs/html
 	tools/install_debian_packages.sh tools/debian_packages_docs.txt
