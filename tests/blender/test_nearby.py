@@ -87,6 +87,20 @@ def test_a_drag_toward_it_ends_as_if_it_had_been_there(row: Any, steps: int, set
     assert_allclose(found[0], found[1], atol=0.02)
 
 
+def test_only_what_comes_near_is_taken_in(row: Any) -> None:
+    box("Ground", 0, y=60, size=20)
+    select(row)
+    assert left_out() == {"Wall", "Ground"}
+    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    for step in range(1, 50):
+        edit.drag(along_x(0.2 * step))
+        edit.write()
+    assert "Wall" in names(edit) and "Ground" not in names(edit)
+    assert row.location.x > 9.3 and check_scene(bpy.context).pairs == ()
+    edit.restore()
+    assert row.location.x == 0
+
+
 def whole(settings: EditSettings) -> Callable[[], BlenderEdit]:
     return lambda: BlenderEdit.begin(bpy.context, settings, "move")
 

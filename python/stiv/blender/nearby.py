@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import bpy
+import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
@@ -17,6 +18,8 @@ from stiv.blender.reach import Reach, find_reach
 from stiv.blender.roles import find_movers
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.blender.showing import WriteReport
+
+MOST_WIDENINGS = 4  # then all obstacles are taken in, so that it ends
 
 
 def begin_nearby(context: bpy.types.Context, settings: EditSettings, kind: str) -> NearbyEdit | BlenderEdit:
@@ -36,7 +39,7 @@ class NearbyEdit:
     """A BlenderEdit among the obstacles within a reach; everything that is not told here is that of the edit within.
 
     What it accepts stays within the reach, so that it meets nothing of what is left out. As soon as a goal or a
-    solution leaves the reach, an edit among all obstacles goes on from the state shown last.
+    solution leaves the reach, an edit with a wider one goes on from the state shown last.
     """
 
     def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, reach: Reach) -> None:
@@ -46,6 +49,7 @@ class NearbyEdit:
         movers = find_movers(context, settings)
         self._edit = BlenderEdit.begin_with(context, settings, kind, movers, left_out=reach.left_out)
         self._shown = self._edit.controls
+        self._widened = 0
 
     def __getattr__(self, name: str) -> Any:
         """Whatever else an edit has."""
@@ -58,26 +62,27 @@ class NearbyEdit:
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
         """As of BlenderEdit."""
-        if self._edit.interference and not self._within([self._edit.goal_of(motion)]):
-            self._take_in_all()
+        goal = self._edit.goal_of(motion)
+        if self._edit.interference and not self._within([goal]):
+            self._widen([goal])
         result = self._edit.drag(motion, **execution)
-        if self._stays(result):
-            return result
-        self._take_in_all()
-        return self._edit.drag(motion, **execution)
+        while not self._stays(result):
+            self._widen([goal, *result.path, result.controls])
+            result = self._edit.drag(motion, **execution)
+        return result
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """As of BlenderEdit."""
         goal = self._edit.goal
         result = self._edit.settle(**execution)
-        if self._stays(result):
-            return result
-        self._take_in_all()
-        return self._edit.drag_to(goal, **execution)
+        while not self._stays(result):
+            self._widen([goal, *result.path, result.controls])
+            result = self._edit.drag_to(goal, **execution)
+        return result
 
     def set_interference(self, on: bool) -> str:
         """As of BlenderEdit. While it is off surfaces may go anywhere."""
-        self._take_in_all()
+        self._go_on_within(None)
         return self._edit.set_interference(on)
 
     def write(self) -> WriteReport:
@@ -85,7 +90,7 @@ class NearbyEdit:
         report = self._edit.write()
         self._shown = self._edit.controls
         if report.result is not None:  # solved again, by a way that was not looked at
-            self._take_in_all()
+            self._go_on_within(None)
         return report
 
     def restore(self) -> None:
@@ -99,14 +104,27 @@ class NearbyEdit:
     def _within(self, places: Iterable[Floats]) -> bool:
         return self._reach is None or all(self._reach.contains(self._edit.moving_points(place)) for place in places)
 
-    def _take_in_all(self) -> None:
-        """Begin again among all obstacles, and go on from the state shown last."""
+    def _widen(self, places: Iterable[Floats]) -> None:
+        """Go on within a reach around the last one and these places; after a few times, among all obstacles."""
+        if self._reach is None:
+            return
+        corners = np.stack([self._reach.low, self._reach.high])
+        beyond = np.concatenate([corners, *(self._edit.moving_points(place) for place in places)])
+        self._widened += 1
+        movers = find_movers(bpy.context, self._settings)
+        few = self._widened <= MOST_WIDENINGS
+        self._go_on_within(find_reach(bpy.context, movers, self._settings, beyond) if few else None)
+
+    def _go_on_within(self, reach: Reach | None) -> None:
+        """Begin again among the obstacles of a reach, None for all, and go on from the state shown last."""
         if self._reach is None:
             return
         shown = self._shown
         self._edit.restore()
         movers = find_movers(bpy.context, self._settings)
-        self._edit, self._reach = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers), None
+        left_out = frozenset() if reach is None else reach.left_out
+        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers, left_out=left_out)
+        self._reach = reach
         if self._edit.take_up(shown):
             self._edit.write()
         self._shown = self._edit.controls

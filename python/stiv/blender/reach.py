@@ -33,9 +33,15 @@ class Reach:
         return bool(((points >= self.low + margin) & (points <= self.high - margin)).all())
 
 
-def find_reach(context: bpy.types.Context, movers: Sequence[Mover], settings: EditSettings) -> Reach | None:
+def find_reach(
+    context: bpy.types.Context,
+    movers: Sequence[Mover],
+    settings: EditSettings,
+    beyond: Floats = np.empty((0, 3)),  # noqa: B008 (never written)
+) -> Reach | None:
     """The objects that movers cannot meet without moving farther than their own size; None where nothing is gained.
 
+    With points, (n, 3), where they are to go: than the size of all of that.
     Left out are only meshes that stand alone: what is tied to others by parents, modifiers, constraints or instances,
     or named in the settings, is always taken in.
     """
@@ -49,7 +55,8 @@ def find_reach(context: bpy.types.Context, movers: Sequence[Mover], settings: Ed
     moving = [_box(ob, depsgraph) for ob in objects if ob.name in tied and ob.type in SURFACE_TYPES]
     if not moving:
         return None
-    low, high = np.min([box[0] for box in moving], axis=0), np.max([box[1] for box in moving], axis=0)
+    low = np.min([*(box[0] for box in moving), *beyond], axis=0)
+    high = np.max([*(box[1] for box in moving), *beyond], axis=0)
     size = float(np.linalg.norm(high - low))
     low, high = low - size, high + size
     far = [ob.name for ob in candidates if ob.name not in tied | named and _apart(_box(ob, depsgraph), (low, high))]
