@@ -50,7 +50,7 @@ lint: build/venv/lint ## Check format, style and types
 	build/venv/bin/python tools/run_tests.py lint
 
 extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as an extension
-	build/venv/bin/python tools/build_extension.py build/wheel/*.whl
+	build/venv/bin/python tools/build_extension.py dist build/wheel/*.whl
 
 bench: build/venv/bench ## Run every benchmark with its default settings, beside the peers from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
