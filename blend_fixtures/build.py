@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes every fixture as a .blend file with its edit script beside it.
+"""Writes every fixture as a .blend file with its edit script beside it; those of the paper's figures into figures/.
 
     python blend_fixtures/build.py [NAME ...] [--output FOLDER]
 
@@ -26,6 +26,7 @@ sys.path.insert(0, str(FOLDER.parent))
 from blend_fixtures.blender_objects import build_scene  # noqa: E402
 from blend_fixtures.scenes.catalogue import all_fixtures  # noqa: E402
 from blend_fixtures.scenes.fixture import Fixture  # noqa: E402
+from blend_fixtures.scenes.sessions.figure_fixtures import figure_fixtures  # noqa: E402
 
 
 def edit_script(fixture: Fixture) -> str:
@@ -54,13 +55,15 @@ def main() -> None:
     parser.add_argument("names", nargs="*", help="fixtures to write (default: all)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder to write to")
     arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    fixtures = {fixture.name: fixture for fixture in all_fixtures()}
+    figures = arguments.output / "figures"
+    figures.mkdir(parents=True, exist_ok=True)
+    fixtures = {fixture.name: (fixture, arguments.output) for fixture in all_fixtures()}
+    fixtures |= {fixture.name: (fixture, figures) for fixture in figure_fixtures()}
     unknown = [name for name in arguments.names if name not in fixtures]
     if unknown:
         parser.error(f"no fixture named {', '.join(unknown)}; there are {', '.join(fixtures)}")
     for name in arguments.names or fixtures:
-        write(fixtures[name], arguments.output)
+        write(*fixtures[name])
 
 
 if __name__ == "__main__":

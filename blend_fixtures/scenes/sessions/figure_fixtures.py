@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The paper's figures as fixtures, large ones, that are written as .blend files apart from the small ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..colors import GLAZE, MOVING, ORGANS, STILL
+from ..fixture import Fixture, MeshObject, Subdivision, VertexGroup, View
+from ..motion import move, on_points
+from ..primitives import box, icosphere
+from . import knot, packing
+from .hare_in_pot import hare_in_pot
+from .tree_in_corner import tree_in_corner
+
+
+def knot_by_handles() -> Fixture:
+    """The knot whose top arch is dragged, its bottom pinned by weights, under Laplacian editing."""
+    tube = knot.shape()
+    height = tube.vertices[:, 1]
+    arch = np.flatnonzero(height > np.quantile(height, 0.9)).tolist()
+    free = np.flatnonzero(height >= np.quantile(height, 0.12)).tolist()
+    half = knot.MOVES // 2
+    up, aside = (0.0, knot.LIFT / half, 0.0), (knot.ASIDE / half, 0.0, knot.ASIDE / half)
+    groups = (VertexGroup("Arch", dict.fromkeys(arch, 1.0)), VertexGroup("Weights", dict.fromkeys(free, 1.0)))
+    return Fixture(
+        name="knot_by_handles",
+        summary="A knot under Laplacian editing: its bottom is pinned, its top arch is dragged up and aside",
+        meshes=(MeshObject("Knot", tube, MOVING, groups=groups),),
+        steps=(move(on_points("Knot", arch), up, repeat=half), move(on_points("Knot", arch), aside, repeat=half)),
+        view=View((0.5, -1.0, 15.0), (0.1, 0.3, 0.0)),
+        settings={"objects": {"Knot": {"deformation": "laplacian", "handles": ["Arch"], "weight_group": "Weights"}}},
+    )
+
+
+def ball_into_cushion() -> Fixture:
+    """A subdivided ball pushed into a subdivided cushion."""
+    return Fixture(
+        name="ball_into_cushion",
+        summary="A ball pushed into a cushion; both are subdivision surfaces",
+        meshes=(
+            MeshObject("Ball", icosphere(1, 0.6).moved((0.03, 0.02, 1.05)), MOVING, subdivision=Subdivision(2)),
+            MeshObject("Cushion", box(5, (2.4, 2.4, 0.8)), STILL, subdivision=Subdivision(2)),
+        ),
+        steps=(move(on_points("Ball"), (0.0, 0.0, -0.075), repeat=12),),
+        view=View((2.6, -4.4, 2.2), (0.0, 0.0, 0.2)),
+    )
+
+
+def organs_in_bowl() -> Fixture:
+    """The nine organs, one lowered after the other."""
+    scene = packing.parts()
+    colors = {material.name: material for material in ORGANS}
+    names = [name for name in scene.parts if name != "Bowl"]
+    meshes = [MeshObject(n, scene.parts[n].cage, colors[n], subdivision=Subdivision(1)) for n in names]
+    bowl = MeshObject("Bowl", scene.parts["Bowl"].cage, GLAZE)
+    moves = 12
+    ways = {n: np.subtract(packing.PLACES[n][1], packing.PLACES[n][0]) / moves for n in names}
+    return Fixture(
+        name="organs_in_bowl",
+        summary="Nine soft organs, subdivision surfaces, packed into a bowl",
+        meshes=(*meshes, bowl),
+        steps=tuple(move(on_points(name), ways[name].tolist(), repeat=moves) for name in packing.PLACES),
+        view=View((3.2, -6.6, 3.6), (0.0, 0.0, 1.0), lens=48.0),
+    )
+
+
+def figure_fixtures() -> tuple[Fixture, ...]:
+    """Every large fixture, in the order of the paper's figures."""
+    return organs_in_bowl(), ball_into_cushion(), hare_in_pot(), tree_in_corner(), knot_by_handles()
