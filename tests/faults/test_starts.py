@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Starts that touch, starts nearer than the separation, and scales at the ends of what single precision holds."""
+
+import numpy as np
+import pytest
+
+import stiv
+from blend_fixtures.scenes.primitives import grid, icosphere
+
+SHEET = grid(4, 4, 2.0, 2.0)
+FACES = SHEET.triangles()
+ABOVE = FACES + len(SHEET.vertices)
+
+
+def sheets(gap: float, scale: float = 1.0, offset: float = 0.0) -> np.ndarray:
+    whole = np.vstack([SHEET.vertices, SHEET.vertices + (0, 0, gap)]) * scale + offset
+    return whole.astype(np.float32).astype(float)
+
+
+def session(vertices, triangles, **options) -> stiv.EditSession:
+    return stiv.EditSession(triangles, stiv.identity(len(vertices)), vertices, stiv.EditOptions(**options))
+
+
+@pytest.mark.parametrize("case", ["coincident sheets", "duplicate faces", "touching corner"])
+def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
+    vertices, triangles = sheets(0.0), np.vstack([FACES, ABOVE])
+    if case == "duplicate faces":
+        vertices, triangles = SHEET.vertices, np.vstack([FACES, FACES[:1]])
+    if case == "touching corner":
+        vertices = sheets(1.0)
+        vertices[-1] = vertices[FACES[0]].mean(axis=0)
+    with pytest.raises(stiv.StartIntersectsError) as raised:
+        session(vertices, triangles)
+    assert len(raised.value.pairs) > 0
+    found = {tuple(pair) for pair in stiv.find_intersections(vertices, triangles).tolist()}
+    assert {tuple(pair) for pair in np.asarray(raised.value.pairs).tolist()} <= found
+
+
+def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart():
+    vertices, triangles = sheets(0.01), np.vstack([FACES, ABOVE])
+    editing = session(vertices, triangles, separation=0.5)
+    goal = vertices.copy()
+    goal[len(SHEET.vertices) :, 0] += 0.3  # sideways
+    result = editing.edit(goal)
+    assert len(stiv.find_intersections(result.surface, triangles)) == 0
+    assert np.abs(result.surface[:, 2] - vertices[:, 2]).max() < 0.1  # a fifth of the separation
+    assert (result.surface[len(SHEET.vertices) :, 0] - vertices[len(SHEET.vertices) :, 0]).min() > 0.05  # it slides
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
+def test_small_and_large_scenes_are_solved_alike(scale):
+    triangles = np.vstack([FACES, ABOVE])
+    vertices = sheets(0.5, scale)
+    goal = vertices.copy()
+    goal[len(SHEET.vertices) :, 2] -= 1.0 * scale
+    result = session(vertices, triangles).edit(goal)
+    assert result.rounds > 0
+    assert len(stiv.find_intersections(result.surface, triangles)) == 0
+    assert (result.surface[len(SHEET.vertices) :, 2] - result.surface[: len(SHEET.vertices), 2] > 0).all()
+
+
+def test_a_tiny_object_far_away_is_refused_with_the_least_separation():
+    vertices, triangles = sheets(0.5, 1e-7, 1e7), np.vstack([FACES, ABOVE])
+    with pytest.raises(stiv.InputError):  # in single precision all of it is one point
+        session(vertices, triangles, separation=1e-9)
+
+
+def test_tiny_and_huge_objects_take_part_in_one_scene():
+    plate, ball = SHEET.scaled(1e7), icosphere(1, 1.0).moved((0, 0, 30))
+    vertices = np.vstack([plate.vertices, ball.vertices])
+    triangles = np.vstack([FACES, ball.triangles() + len(plate.vertices)])
+    owner = (np.arange(len(vertices)) >= len(plate.vertices)).astype(np.int32)
+    bodies = [stiv.Body("Plate", "fixed"), stiv.Body("Ball")]
+    surface, moved = stiv.Surface(triangles, len(vertices), None, owner, bodies), np.flatnonzero(owner)
+    ball_alone = stiv.concatenate([(stiv.identity(len(moved)), moved.astype(np.int32))], vertices)
+    editing = stiv.EditSession(surface, ball_alone, ball.vertices)
+    result = editing.edit(ball.vertices - (0, 0, 60))
+    assert len(stiv.find_intersections(result.surface, triangles)) == 0
+    assert result.rounds > 0 and (result.surface[moved, 2] > 0).all()
+
+
+def test_non_manifold_soup_with_loose_parts_is_edited():
+    """Three sheets that share an edge, an edge without faces and a lone vertex above a plate."""
+    plate = SHEET.vertices
+    fan = np.array([[-0.5, 0, 1], [0.5, 0, 1], [-0.5, 1, 1.2], [0.5, -1, 1.2], [0, 0, 2]])
+    loose = np.array([[0.7, 0.7, 1], [0.9, 0.6, 1.3], [-0.7, -0.7, 0.9]])
+    vertices = np.vstack([plate, fan, loose])
+    first = len(plate)
+    triangles = np.vstack([FACES, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]]) + first])
+    surface = stiv.Surface(triangles, len(vertices), np.array([[first + 5, first + 6]]))
+    goal = vertices.copy()
+    goal[first:, 2] -= 1.6
+    result = session(vertices, surface).edit(goal)
+    edges, points = stiv.find_loose_intersections(result.surface, surface)
+    assert len(stiv.find_intersections(result.surface, surface)) == len(edges) == len(points) == 0
+    assert result.rounds > 0 and (result.surface[first:, 2] < vertices[first:, 2]).all()
