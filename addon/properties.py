@@ -55,6 +55,12 @@ def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Contex
     watching.switched(context)
 
 
+def _exclusions_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from .guard import watching
+
+    watching.exclusions_changed(context)
+
+
 class StivSceneSettings(bpy.types.PropertyGroup):
     """How edits of a scene respond to interference."""
 
@@ -83,7 +89,10 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
     )
     excluded: StringProperty(
-        name="Excluded Pairs", description="Pairs of faces that may intersect, as JSON", options={"HIDDEN"}
+        name="Excluded Pairs",
+        description="Pairs of faces that may intersect, as JSON",
+        options={"HIDDEN"},
+        update=_exclusions_changed,
     )
 
 

@@ -39,11 +39,12 @@ def differs(accepted: Any, present: Any) -> bool:
 
 
 def test(context: Any) -> Outcome:
-    """Is the scene free as it is?"""
+    """Is the scene free as it is, but for what may intersect?"""
     from stiv.blender import check_scene
 
+    settings = _settings(context)
     try:
-        pairs = check_scene(context, _settings(context)).pairs
+        pairs = settings.excluded.others(check_scene(context, settings).pairs)
     except ValueError as error:
         return Outcome(False, text=str(error))
     if not pairs:

@@ -53,6 +53,12 @@ def switched(context: Any) -> None:
         _arm()
 
 
+def exclusions_changed(context: Any) -> None:
+    """Other pairs of faces may intersect from now on: look again."""
+    if is_on(context):
+        _noted()
+
+
 def restart() -> None:
     """Forget everything; the next look begins anew."""
     global _watch

@@ -8,7 +8,7 @@ import bpy
 from ..guard import watching
 from .drawing import SubPanel, draw_lines
 
-WAYS_OUT = ("stiv.check", "stiv.repair", "stiv.exclude")
+WAYS_OUT = ("stiv.check", "stiv.repair", "stiv.exclude_intersections")
 
 
 class STIV_PT_guard(SubPanel, bpy.types.Panel):

@@ -192,6 +192,24 @@ def test_a_scene_that_intersects_is_named_and_watched_again_once_it_is_free() ->
     assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
 
 
+def test_what_may_intersect_is_excluded_and_everything_else_is_guarded() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 2.5))  # stands in the top of the wall
+    bpy.context.scene.stiv.live_guard = True
+    look()
+    assert "intersect" in watching.problem()
+    bpy.ops.stiv.exclude_intersections()
+    look()
+    assert watching.problem() == ""
+    bpy.ops.object.select_all(action="DESELECT")
+    box().select_set(True)
+    bpy.context.view_layer.objects.active = box()
+    move(7.0)
+    look()
+    assert watching.problem() == ""
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
+
+
 def test_a_changed_structure_is_accepted_if_free_and_told_if_not() -> None:
     bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, location=(0, 8, 0))
     look()
