@@ -11,6 +11,7 @@ from stiv.command_line import program
 from stiv.edit_scripts import parse_edit_script
 from stiv.mesh_editing import replay_on_mesh
 from stiv.mesh_files import Mesh, read_mesh
+from stiv.mesh_files.mesh import checked_mesh
 
 SHEET = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
@@ -18,7 +19,7 @@ FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
 
 def two_sheets(gap: float = 1.0) -> Mesh:
     vertices = np.vstack([SHEET, 0.5 * SHEET + (0, 0, gap)])
-    return Mesh(vertices, np.vstack([FACES, FACES + 4]), ("Below", "Above ü"), np.array([0, 0, 1, 1], np.int32))
+    return checked_mesh(vertices, np.vstack([FACES, FACES + 4]), ("Below", "Above ü"), np.array([0, 0, 1, 1], np.int32))
 
 
 def edited(*steps, mesh=None, **settings):
@@ -89,7 +90,7 @@ def test_a_vertex_of_two_objects_is_refused():
     triangles = mesh.triangles.copy()
     triangles[3, 0] = 0
     with pytest.raises(stiv.InputError, match="vertex 0: belongs to triangles of two objects"):
-        edited(move(1), mesh=Mesh(mesh.vertices, triangles, mesh.object_names, mesh.triangle_object))
+        edited(move(1), mesh=checked_mesh(mesh.vertices, triangles, mesh.object_names, mesh.triangle_object))
 
 
 def test_the_command_writes_an_npz(tmp_path, capsys):
@@ -101,5 +102,5 @@ def test_the_command_writes_an_npz(tmp_path, capsys):
     assert program.run(["replay", str(scene), str(edits), "-o", str(out)]) == 0, capsys.readouterr().err
     mesh = read_mesh(out)
     assert mesh.object_names == ("Below", "Above ü") and (mesh.vertices[4:, 2] > 0).all()
-    assert program.run(["replay", str(scene), str(edits), "-o", str(tmp_path / "out.obj")]) == 2
-    assert "is written as .npz" in capsys.readouterr().err
+    assert program.run(["replay", str(scene), str(edits), "-o", str(tmp_path / "out.blend")]) == 2
+    assert "unknown kind of file to write" in capsys.readouterr().err

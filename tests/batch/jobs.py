@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from blend_fixtures.scenes.primitives import icosphere
-from stiv.mesh_files.mesh import Mesh
-from stiv.mesh_files.npz_writing import write_npz
+from stiv.mesh_files import Mesh, write_mesh
+from stiv.mesh_files.mesh import checked_mesh
 
 NAME = "scene {:03} ü"
 
@@ -19,7 +19,7 @@ def write_job(folder: Path, count: int, repeat: int = 3, **more: Any) -> Path:
     for name in ("in", "out"):
         (folder / name).mkdir(exist_ok=True)
     for number in range(count):
-        write_npz(folder / f"in/{number}.npz", ball_and_wall(number))
+        write_mesh(folder / f"in/{number}.npz", ball_and_wall(number))
         (folder / f"in/{number}.json").write_text(json.dumps(edits(number, repeat)))
     entries = [
         {
@@ -47,7 +47,7 @@ def ball_and_wall(number: int) -> Mesh:
     vertices = np.vstack([np.column_stack([x.ravel(), y.ravel(), heights.ravel()]), ball.vertices])
     triangles = np.vstack([faces, ball.triangles() + 144]).astype(np.int32)
     owner = np.repeat(np.array([0, 1], np.int32), [len(faces), len(triangles) - len(faces)])
-    return Mesh(vertices, triangles, ("Wall", "Ball ü"), owner)
+    return checked_mesh(vertices, triangles, ("Wall", "Ball ü"), owner)
 
 
 def edits(number: int, repeat: int) -> dict[str, Any]:

@@ -13,8 +13,10 @@ import pytest
 from jobs import NAME, record, results, write_job
 
 import stiv
+from blend_fixtures.scenes.primitives import icosphere
 from stiv.command_line import program
-from stiv.mesh_files import read_mesh
+from stiv.mesh_files import read_mesh, write_mesh
+from stiv.mesh_files.mesh import checked_mesh
 
 
 def run(job, *options):
@@ -87,6 +89,24 @@ def test_parts_together_make_the_whole(tmp_path):
     assert list(results(tmp_path)) == ["result 0.npz", "result 2.npz"]
     assert run(job, "--part", "2/2") == 0
     assert len(results(tmp_path)) == 3
+
+
+def test_meshes_are_checked_and_repaired(tmp_path, capsys):
+    ball = icosphere(2, 1.0)
+    corners = ball.vertices.copy()
+    corners[corners[:, 2] > 0.9] -= (0, 0, 2.2)  # the cap is pushed out through the bottom
+    write_mesh(tmp_path / "dented.npz", checked_mesh(corners, ball.triangles(), ("Ball",)))
+    entries = [
+        {"name": "look", "do": "check", "scene": "dented.npz", "report": "look.json"},
+        {"name": "mend", "do": "repair", "scene": "dented.npz", "output": "mended.npz", "report": "mend.json"},
+    ]
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps({"schema": "stiv-batch", "version": 1, "entries": entries}))
+    assert run(job) == 4
+    out = capsys.readouterr().out
+    assert "look: not free" in out and "2 of 2 scenes done" in out
+    mended = (tmp_path / "mended.npz").exists()
+    assert json.loads((tmp_path / "mend.json").read_text())["free"] and mended and "mend: done" in out
 
 
 def test_one_process_at_a_time_runs_a_job(tmp_path, capsys):

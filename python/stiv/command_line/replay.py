@@ -16,8 +16,7 @@ from stiv.command_line.progress import progress_bar
 from stiv.command_line.quiet import quiet_blender
 from stiv.edit_scripts import EditScript, read_edit_script
 from stiv.mesh_editing import replay_on_mesh
-from stiv.mesh_files import read_mesh
-from stiv.mesh_files.npz_writing import write_npz
+from stiv.mesh_files import read_mesh, require_writer, write_mesh
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -26,13 +25,13 @@ SCHEMA, VERSION = "stiv-replay", 1
 
 _DESCRIPTION = """\
 Opens a .blend (scripts in it are not run), runs the edits of a script one after another through the operators of the
-add-on, and saves the result. Mesh files need no Blender and are written as .npz. The format of scripts is described in
+add-on, and saves the result. Mesh files need no Blender. The format of scripts is described in
 docs/edit_scripts.md."""
 _EXAMPLES = """\
 examples:
   stiv replay scene.blend edits.json -o edited.blend
   stiv replay scene.blend edits.json -o edited.blend --report report.json --render picture.png
-  stiv replay two_sheets.obj edits.json -o edited.npz
+  stiv replay two_sheets.obj edits.json -o edited.obj
 
 exit codes: 0 done, 2 bad input (nothing is written), 1 wrong usage, 3 internal error, 5 cancelled"""
 
@@ -49,7 +48,12 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("scene", type=Path, metavar="SCENE.blend|MESH", help="the scene to start from")
     parser.add_argument("edits", type=Path, metavar="EDITS.json", help="the edit script")
     parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="OUT.blend|OUT.npz", help="where the result goes"
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="OUT",
+        help="where the result goes: a .blend, or a mesh file",
     )
     parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
     parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
@@ -87,8 +91,7 @@ def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dic
 def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
     if arguments.render is not None:
         raise InputError("--render: a mesh file has no camera to render with")
-    if arguments.output.suffix.lower() != ".npz":
-        raise InputError(f"{arguments.output}: what was a mesh file is written as .npz")
+    require_writer(arguments.output)
     mesh = read_mesh(arguments.scene)
     with progress_bar("edits", len(script)) as advance:
         try:
@@ -96,7 +99,7 @@ def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict
         except InputError as error:
             raise InputError(f"{arguments.scene}: {error}") from error
     with written_atomically(arguments.output) as temporary:
-        write_npz(temporary, edited)
+        write_mesh(temporary, edited)
     return edits
 
 
