@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/eigen.h>
+#include <pybind11/stl.h>
 
+#include "least_distance.hpp"
 #include "module.hpp"
 #include "stiv/acceptance/step_check.hpp"
 #include "stiv/acceptance/stored_mesh.hpp"
@@ -75,12 +77,25 @@ std::shared_ptr<Deformation> stored_mesh(const std::shared_ptr<Deformation>& mes
 
 }  // namespace
 
+py::object tuple_of(const std::optional<NearestTriangles>& nearest) {
+  if (!nearest) return py::none();
+  Positions points(2, 3);
+  for (Index k = 0; k < 2; ++k) points.row(k) = nearest->points[static_cast<std::size_t>(k)].transpose();
+  return py::make_tuple(nearest->distance, nearest->triangles, points);
+}
+
 void bind_acceptance(py::module_& module) {
   using Release = py::call_guard<py::gil_scoped_release>;
   module.def("find_intersections", &find_intersections, Release());
   module.def("find_loose_intersections", &find_loose_intersections, Release());
   module.def("is_step_free", &step_is_free, Release());
   module.def("stored_mesh", &stored_mesh);
+  module.def("least_distance", [](const SurfacePointer& surface, const Positions& q, bool within) {
+    return tuple_of([&] {
+      const py::gil_scoped_release unlocked;
+      return LeastDistance(surface).find(q, within);
+    }());
+  });
   py::class_<KeptIntersectionTest>(module, "IntersectionTest")
       .def(py::init<const SurfacePointer&, int>())
       .def("find", &KeptIntersectionTest::find, Release());

@@ -7,6 +7,7 @@
 
 #include "calls.hpp"
 #include "events.hpp"
+#include "least_distance.hpp"
 #include "module.hpp"
 
 namespace stiv::bindings {
@@ -105,6 +106,14 @@ class Session {
   }
   double separation() const { return session_.separation(); }
 
+  py::object least_distance(bool within) {
+    const InUse in_use(in_use_);
+    return tuple_of([&] {
+      const py::gil_scoped_release unlocked;
+      return session_.least_distance(within);
+    }());
+  }
+
  private:
   static EditSession make(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                           Controls controls, const EditOptions& options) {
@@ -137,6 +146,10 @@ void bind_options(py::module_& module) {
       .def(py::init([](Index first, Index count, const Eigen::Matrix4d& frame) {
         return StorageFrame{first, count, frame};
       }));
+  py::class_<BodyPairSeparation>(module, "BodyPairSeparation")
+      .def(py::init([](Index first, Index second, double separation) {
+        return BodyPairSeparation{first, second, separation};
+      }));
   py::enum_<ConstraintKind>(module, "ConstraintKind")
       .value("per_patch", ConstraintKind::per_patch)
       .value("single", ConstraintKind::single);
@@ -152,6 +165,7 @@ void bind_options(py::module_& module) {
   py::class_<EditOptions>(module, "EditOptions")
       .def(py::init<>())
       .def_readwrite("separation", &EditOptions::separation)
+      .def_readwrite("pair_separations", &EditOptions::pair_separations)
       .def_readwrite("keep", &EditOptions::keep)
       .def_readwrite("smoothness", &EditOptions::smoothness)
       .def_readwrite("weights", &EditOptions::weights)
@@ -188,6 +202,7 @@ void bind_editing(py::module_& module) {
       .def("drag", &Session::drag, py::arg("goal"), cancel, progress)
       .def("settle", &Session::settle, cancel, progress)
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
+      .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)
       .def_property_readonly("separation", &Session::separation);

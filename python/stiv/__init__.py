@@ -16,6 +16,7 @@ from stiv.deformation import (
     scaling_rest_controls,
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
+from stiv.distances import LeastDistance, least_distance
 from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
@@ -42,6 +43,7 @@ __all__ = [
     "Events",
     "InputError",
     "IntersectionTest",
+    "LeastDistance",
     "RepairOptions",
     "RepairResult",
     "StartIntersectsError",
@@ -67,6 +69,7 @@ __all__ = [
     "lattice",
     "lattice_rest_points",
     "lattice_weights",
+    "least_distance",
     "linear",
     "linear_weights",
     "loop",

@@ -122,7 +122,8 @@ class Detector:
     def find(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> Events:
         """Return all events of the step from `start` to `end`, (N, 3) each.
 
-        A pair that starts at distance d0 interferes when it comes within min(separation, keep d0).
+        A pair that starts at distance d0 interferes when it comes within the separation; within keep d0
+        where it starts nearer than that.
 
         Time and memory are bounded: of a motion so far that it brings too many pairs near each other (above two million
         and 16 a primitive; trees only), the events are those up to `Events.until`, a half, a quarter, ... of the step,

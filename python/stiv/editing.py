@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
 from stiv._native import CancelToken, Deformation, InputError
-from stiv.arrays import Floats, Indices, as_indices
+from stiv.arrays import Floats, as_indices
 from stiv.detection import BROAD_PHASES, NARROW_PHASES, Events
+from stiv.distances import LeastDistance, least_distance_of
 from stiv.intersections import find_intersections
 from stiv.published_method import PAPER_OPTIONS
 from stiv.surface import Surface, as_surface
@@ -66,7 +67,9 @@ class EditOptions:
     """How an edit is solved. Every default is the one recommended."""
 
     separation: float = 0.0  #: distance that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
-    keep: float = 0.5  #: in (0, 1): fraction of its distance that a pair keeps which starts nearer than that
+    #: distance that two bodies keep, or a body from itself, instead of that: {("vase", "plant"): 0.01}; also by number
+    pair_separations: Mapping[tuple[str | int, str | int], float] = field(default_factory=dict)
+    keep: float = 0.5  #: in (0, 1): fraction of its distance that a pair keeps in a step which starts nearer than that
     smoothness: float = 0.1  #: damping of the response: 0.1 smooth, 0.01 tight
     weights: ArrayLike | None = None  #: (m,) response of each control, 0 pins it; None: all 1
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
@@ -125,6 +128,8 @@ def _native_value(name: str, value: Any) -> Any:
         return np.zeros(0) if value is None else _as_doubles(value, "weights")
     if name == "storage":
         return [_native.StorageFrame(s.first, s.count, _as_doubles(s.frame, "frame")) for s in value]
+    if name == "pair_separations":
+        return [_native.BodyPairSeparation(int(a), int(b), float(h)) for (a, b), h in value.items()]
     if name == "exclude":
         return [] if value is None else as_indices(value, "exclude", (None, 2)).tolist()
     if name not in CHOICES:
@@ -155,11 +160,31 @@ def _as_doubles(value: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name}: expected an array of real numbers") from error
 
 
-def _named_pairs(name: str, surface: Surface, deformation: Deformation, controls: Floats) -> Indices:
-    """Return the pairs of triangles that a word stands for."""
-    if name != "intersecting":
-        raise InputError(f"exclude: there is no {name!r}, only 'intersecting', or pairs of triangles")
-    return find_intersections(deformation.surface(controls), surface)
+def _excluded(pairs: ArrayLike | str | None, surface: Surface, start: Callable[[], Floats]) -> ArrayLike | None:
+    """Return the pairs of triangles that a word stands for, or those given."""
+    if not isinstance(pairs, str):
+        return pairs
+    if pairs != "intersecting":
+        raise InputError(f"exclude: there is no {pairs!r}, only 'intersecting', or pairs of triangles")
+    return find_intersections(start(), surface)
+
+
+def _body_number(body: str | int, surface: Surface) -> int:
+    """Return the number of a body given by name or number."""
+    if not isinstance(body, str):
+        return body
+    numbers = [number for number, known in enumerate(surface.bodies) if known.name == body]
+    if len(numbers) != 1:
+        raise InputError(f"pair_separations: {len(numbers)} bodies have the name {body!r}; use their numbers")
+    return numbers[0]
+
+
+def _with_numbers(options: EditOptions, surface: Surface, start: Callable[[], Floats]) -> EditOptions:
+    """Return the options with numbers for the names in them; `start` gives the surface's positions at the start."""
+    separations: dict[tuple[str | int, str | int], float] = {
+        (_body_number(a, surface), _body_number(b, surface)): h for (a, b), h in options.pair_separations.items()
+    }
+    return replace(options, pair_separations=separations, exclude=_excluded(options.exclude, surface, start))
 
 
 def result_of(values: dict[str, Any], surface: Surface) -> EditResult:
@@ -201,9 +226,7 @@ class EditSession:
     ) -> None:
         self._topology = as_surface(surface, deformation.vertex_count)
         start = _as_doubles(controls, "controls")
-        chosen = options or EditOptions()
-        if isinstance(chosen.exclude, str):
-            chosen = replace(chosen, exclude=_named_pairs(chosen.exclude, self._topology, deformation, start))
+        chosen = _with_numbers(options or EditOptions(), self._topology, lambda: deformation.surface(start))
         self._session = _native.EditSession(self._topology.native, deformation, start, native_options(chosen))
 
     @property
@@ -220,6 +243,13 @@ class EditSession:
     def separation(self) -> float:
         """Distance that surfaces keep, world units."""
         return self._session.separation
+
+    def least_distance(self, *, within: bool = False) -> LeastDistance | None:
+        """Return how near bodies are to each other in the accepted state; ``within``: or a body to itself.
+
+        See :func:`stiv.least_distance`.
+        """
+        return least_distance_of(self._session.least_distance(within), self._topology)
 
     def edit(
         self, goal: ArrayLike, *, cancel: CancelToken | None = None, progress: Progress | None = None

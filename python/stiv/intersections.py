@@ -64,8 +64,8 @@ def is_step_free(
 
     triangles   (F, 3) vertex indices, or a Surface
     start, end  (N, 3) positions
-    separation  distance to keep, at least 0, in the units of the positions; pairs that start nearer than twice that
-                keep half their distance instead
+    separation  distance to keep, at least 0, in the units of the positions; pairs that start nearer than that keep
+                half their distance instead
     threads     0: one for each processor
 
     Start and end are tested exactly (find_intersections, loose edges and vertices included), the path conservatively:

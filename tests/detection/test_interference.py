@@ -90,7 +90,7 @@ def test_events_describe_the_contact() -> None:
     x = (1 - t) * start[events.vertices] + t * end[events.vertices]
     separation = np.einsum("kv,kvi->ki", events.weights, x)
     approach = np.einsum("kv,kvi,ki->k", events.weights, (end - start)[events.vertices], events.normal)
-    threshold = np.minimum(0.01, 0.5 * events.start_distance)
+    threshold = np.where(events.start_distance < 0.01, 0.5 * events.start_distance, 0.01)
     assert np.allclose(events.weights.sum(1), 0, atol=1e-15)
     assert np.allclose(np.linalg.norm(separation, axis=1), threshold, rtol=1.1e-3, atol=1e-12)
     assert np.allclose(np.linalg.norm(events.normal, axis=1), 1)

@@ -167,17 +167,23 @@ std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, co
   return approach;
 }
 
-double parting_time(const RelativeMotion<double>& motion, double threshold) {
-  const double touching = -motion.rounding, apart = threshold + motion.rounding;
+double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold) {
+  // What starts at the threshold may not come nearer; what starts touching may not go through.
+  const bool at_threshold = start_distance > 8 * motion.rounding;
+  const double least = (at_threshold ? std::min(start_distance, threshold) : 0) - motion.rounding;
+  const double apart = threshold + motion.rounding;
+  const auto slides_along = [&](const Vector3& normal) {
+    return gap_of_plane(motion, normal, 0.0) >= least && gap_of_plane(motion, normal, 1.0) >= least;
+  };
   for (const double time : {0.0, 1.0}) {
     const Vector3 normal = geometric_normal(motion, time);
     if (normal.isZero(0)) continue;
-    for (const Vector3& side : {normal, Vector3(-normal)})
-      if (gap_of_plane(motion, side, 0.0) >= touching && gap_of_plane(motion, side, 1.0) >= touching) return 1;
+    if (slides_along(normal) || slides_along(-normal)) return 1;
   }
+  if (at_threshold && slides_along(direction(motion, witness(motion.kind, motion.start), 0.0))) return 1;
   for (double time = 1; time > 0x1p-24; time /= 2) {
     const Vector3 normal = direction(motion, witness(motion.kind, motion.at(time)), time);
-    if (gap_of_plane(motion, normal, 0.0) >= touching && gap_of_plane(motion, normal, time) >= apart) return time;
+    if (gap_of_plane(motion, normal, 0.0) >= least && gap_of_plane(motion, normal, time) >= apart) return time;
   }
   return 0;
 }

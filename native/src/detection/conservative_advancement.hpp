@@ -22,8 +22,8 @@ template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
                                         const Scalar& time, double latest);
 
-/// A time from which a pair that touches at the start is shown to be apart by more than the threshold, 1 if it slides
-/// along a plane for the whole step, 0 if neither can be shown.
-double parting_time(const RelativeMotion<double>& motion, double threshold);
+/// A time from which a pair that touches, or is at the threshold, at the start is shown to be apart by more than the
+/// threshold, 1 if it slides along a plane for the whole step and comes no nearer, 0 if neither can be shown.
+double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold);
 
 }  // namespace stiv

@@ -63,7 +63,7 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
   const double threshold = proximity.threshold(at_start.distance);
   double time = 0;
   if (at_start.distance <= threshold + 4 * relative.rounding) {
-    time = parting_time(relative, threshold);
+    time = parting_time(relative, at_start.distance, threshold);
     if (time >= 1) return std::nullopt;
     if (time == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   }

@@ -43,21 +43,24 @@ std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candi
   return candidates.first(kept);
 }
 
-std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, double latest) const {
+std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, Proximity proximity,
+                                            double latest) const {
   switch (narrow_phase_) {
     case NarrowPhase::conservative:
-      return first_contact(kind, motion, step_.proximity, latest);
+      return first_contact(kind, motion, proximity, latest);
     case NarrowPhase::polynomial:
-      return first_contact_by_polynomial(kind, motion, step_.proximity, latest);
+      return first_contact_by_polynomial(kind, motion, proximity, latest);
   }
   throw InputError("there is no such narrow phase");
 }
 
 std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate, double latest) const {
   const std::array<Index, 4> v = vertices_of(surface_, kind, candidate);
-  const std::optional<Contact> contact = contact_of(kind, motion_of(step_, v), latest);
+  const Proximity proximity = step_.proximity.between(surface_.body_of(v[0]), surface_.body_of(v[3]));
+  const std::optional<Contact> contact = contact_of(kind, motion_of(step_, v), proximity, latest);
   if (!contact) return std::nullopt;
-  return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance};
+  return Event{
+      kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, proximity.separation};
 }
 
 }  // namespace stiv

@@ -25,7 +25,7 @@ class PairTest {
   std::optional<Event> event(EventKind kind, const Candidate& candidate, double latest) const;
 
  private:
-  std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, double latest) const;
+  std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) const;
 
   const Surface& surface_;
   const Step& step_;

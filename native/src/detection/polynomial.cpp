@@ -88,7 +88,7 @@ std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMot
   const double threshold = proximity.threshold(at_start.distance);
   double parted = 0;
   if (at_start.distance <= threshold + 4 * relative.rounding) {
-    parted = parting_time(relative, threshold);
+    parted = parting_time(relative, at_start.distance, threshold);
     if (parted >= 1) return std::nullopt;
     if (parted == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   }

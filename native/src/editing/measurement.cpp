@@ -50,8 +50,7 @@ Measurement measure_relative(const Problem& problem, const InterferingStep& step
       regions = contact_regions(surface, step.events, step.start, step.end);
     labels = patch_labels(surface, regions, ConstraintKind::per_contact);
   }
-  measured.stivs =
-      interference_volumes(step.events, regions, labels, step.end, step.areas, problem.proximity_of_rounds());
+  measured.stivs = interference_volumes(step.events, regions, labels, step.end, step.areas);
   return measured;
 }
 

@@ -67,11 +67,21 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
   const MovingExtent extent = moving_extent(*surface_, *deformation_, q);
   diagonal_ = extent.diagonal;
   const double least = least_separation(extent, controls, options_.storage, rotation_rows_);
-  const bool touching = options_.volumes == VolumeKind::published && options_.separation == 0;
-  options_.separation = touching ? least : separation_in_force(options_.separation, extent, least);
-  separation_of_rounds_ = touching ? 0 : options_.separation;
+  set_proximity(extent, least);
   if (options_.narrow_phase != NarrowPhase::conservative)
     round_detector_.emplace(surface_, DetectorOptions{options_.broad_phase, options_.narrow_phase});
+}
+
+void Problem::set_proximity(const MovingExtent& extent, double least) {
+  const std::vector<BodyPairSeparation>& pairs = options_.pair_separations;
+  const bool touching = options_.volumes == VolumeKind::published && options_.separation == 0 && pairs.empty();
+  options_.separation = touching ? least : separation_in_force(options_.separation, extent, least);
+  proximity_ = {options_.separation, options_.keep};
+  if (!pairs.empty()) {
+    body_separations_ = body_separations(*surface_, pairs, options_.separation, extent, least);
+    proximity_ = {body_separations_->largest(), options_.keep, &*body_separations_};
+  }
+  proximity_of_rounds_ = touching ? Proximity{0, options_.keep} : proximity_;
 }
 
 void Problem::check_controls(const Controls& controls, const char* what) const {

@@ -11,6 +11,7 @@
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/editing/options.hpp"
+#include "stiv/editing/separation.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/surface.hpp"
@@ -42,17 +43,22 @@ class Problem {
   /// @throws InputError for shapes and values that do not fit
   Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
           const Controls& controls, EditOptions options);
+  Problem(const Problem&) = delete;  // proximities point into it
+  Problem& operator=(const Problem&) = delete;
 
   const Surface& surface() const { return *surface_; }
+  const std::shared_ptr<const Surface>& shared_surface() const { return surface_; }
   const Deformation& deformation() const { return *deformation_; }
   const Metric& metric() const { return *metric_; }
   const EditOptions& options() const { return options_; }
   const std::vector<Index>& rotation_rows() const { return rotation_rows_; }
-  Proximity proximity() const { return {options_.separation, options_.keep}; }
+  Proximity proximity() const { return proximity_; }
   /// That of the rounds, which aim for no distance where volumes are as published and none is asked for.
-  Proximity proximity_of_rounds() const { return {separation_of_rounds_, options_.keep}; }
+  Proximity proximity_of_rounds() const { return proximity_of_rounds_; }
   /// Does a round without events prove that the way is free?
-  bool rounds_prove_path() const { return !round_detector_ && separation_of_rounds_ == options_.separation; }
+  bool rounds_prove_path() const {
+    return !round_detector_ && proximity_of_rounds_.separation == proximity_.separation;
+  }
   double diagonal() const { return diagonal_; }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
@@ -76,6 +82,7 @@ class Problem {
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
 
  private:
+  void set_proximity(const MovingExtent& extent, double least);
   /// All but those of excluded pairs.
   std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,
                                          Proximity proximity, bool at_any_cost, Execution& execution) const;
@@ -92,7 +99,8 @@ class Problem {
   ExcludedPairs excluded_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
-  double separation_of_rounds_ = 0;
+  std::optional<BodySeparations> body_separations_;
+  Proximity proximity_, proximity_of_rounds_;
   std::optional<RoundProgress> unfinished_rounds_;
 };
 

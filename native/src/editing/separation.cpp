@@ -44,6 +44,17 @@ std::vector<unsigned char> movable_vertices(const Surface& surface, const Deform
   return movable;
 }
 
+void check_can_be_kept(double separation, const MovingExtent& extent, double least) {
+  if (std::isfinite(separation) && separation >= least) return;
+  std::ostringstream message;
+  message.precision(3);
+  message << "separation " << separation << ": the least that can be kept here is " << least
+          << ", because coordinates reach " << extent.largest_coordinate
+          << " and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the "
+             "origin";
+  throw InputError(message.str());
+}
+
 }  // namespace
 
 MovingExtent moving_extent(const Surface& surface, const Deformation& deformation, const Positions& q) {
@@ -69,14 +80,23 @@ double least_separation(const MovingExtent& extent, const Controls& p, const std
 
 double separation_in_force(double asked, const MovingExtent& extent, double least) {
   if (asked == 0) return std::max(automatic_fraction * extent.diagonal, least);
-  if (std::isfinite(asked) && asked >= least) return asked;
-  std::ostringstream message;
-  message.precision(3);
-  message << "separation " << asked << ": the least that can be kept here is " << least
-          << ", because coordinates reach " << extent.largest_coordinate
-          << " and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the "
-             "origin";
-  throw InputError(message.str());
+  check_can_be_kept(asked, extent, least);
+  return asked;
+}
+
+BodySeparations body_separations(const Surface& surface, const std::vector<BodyPairSeparation>& asked,
+                                 double separation, const MovingExtent& extent, double least) {
+  const auto bodies = static_cast<Index>(surface.bodies().size());
+  BodySeparations separations(surface.bodies().size(), separation);
+  for (const BodyPairSeparation& pair : asked) {
+    for (const Index body : {pair.first, pair.second})
+      if (body < 0 || body >= bodies)
+        throw InputError("pair_separations: there is no body " + std::to_string(body) + ", only 0.." +
+                         std::to_string(bodies - 1));
+    check_can_be_kept(pair.separation, extent, least);
+    separations.set(pair.first, pair.second, pair.separation);
+  }
+  return separations;
 }
 
 }  // namespace stiv

@@ -74,6 +74,11 @@ class EditSession::Implementation {
     });
   }
 
+  std::optional<NearestTriangles> least_distance(bool within) {
+    if (!least_distance_) least_distance_.emplace(problem_.shared_surface());
+    return least_distance_->find(accepted_.surface, within);
+  }
+
   const Problem& problem() const { return problem_; }
   const State& accepted() const { return accepted_; }
 
@@ -146,6 +151,7 @@ class EditSession::Implementation {
   State accepted_;
   State goal_;  ///< of the last call, as given
   bool dragging_ = false;
+  std::optional<LeastDistance> least_distance_;  ///< made when first asked for
 };
 
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
@@ -167,6 +173,9 @@ void EditSession::restore(const Controls& controls, const Controls& goal) { impl
 
 const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
 const Positions& EditSession::surface() const { return implementation_->accepted().surface; }
+std::optional<NearestTriangles> EditSession::least_distance(bool within) const {
+  return implementation_->least_distance(within);
+}
 double EditSession::separation() const { return implementation_->problem().options().separation; }
 const Surface& EditSession::topology() const { return implementation_->problem().surface(); }
 

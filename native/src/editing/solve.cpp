@@ -25,6 +25,16 @@ void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& accept
   report.blocked = !outcome.clear || acceptance.held;
 }
 
+/// The goal itself, as if rounds had come to it: of an answer that leads nowhere not even a part may be free, or lower
+/// the energy, while some of the straight way is and does.
+RoundOutcome straight_way(const Problem& problem, const Aim& aim, bool at_any_cost, Execution& execution) {
+  RoundOutcome outcome;
+  outcome.candidate.controls = problem.stored(aim.controls);
+  outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
+  outcome.at_any_cost = at_any_cost;
+  return outcome;
+}
+
 }  // namespace
 
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
@@ -39,6 +49,12 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
       return taken_anyway || energy(state.surface, aim.surface) < before;
     };
     Acceptance acceptance = accept_largest(problem, accepted, outcome, agreeable, execution);
+    const bool nothing_to_gain = outcome.clear && aim.must_improve;
+    if (acceptance.fraction == 0 && sub_edit == 0 && !nothing_to_gain) {
+      const RoundOutcome straight = straight_way(problem, aim, outcome.at_any_cost, execution);
+      acceptance = accept_largest(problem, accepted, straight, agreeable, execution);
+      acceptance.held = true;
+    }
     record(report, outcome, acceptance);
     if (acceptance.fraction == 0) return;
     accepted = std::move(acceptance.state);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "stiv/detection/proximity.hpp"
 #include "volumes/gathering.hpp"
 
 namespace stiv {
@@ -15,8 +16,8 @@ namespace {
 constexpr double least_violation = 1e-3;
 
 /// A_i (n . sum_k w_k q1_k - target), Eq. 2.
-double region_volume(const Event& event, const Positions& end, double area, Proximity proximity) {
-  const double target = proximity.target(event.start_distance);
+double region_volume(const Event& event, const Positions& end, double area) {
+  const double target = Proximity::target(event.separation, event.start_distance);
   const double approach = event.normal.dot(weighted_sum(event, end)) - target;
   return area * std::min(approach, -least_violation * target);
 }
@@ -25,12 +26,12 @@ double region_volume(const Event& event, const Positions& end, double area, Prox
 
 std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
                                        const std::vector<Index>& labels, const Positions& end,
-                                       const Eigen::VectorXd& areas, Proximity proximity) {
+                                       const Eigen::VectorXd& areas) {
   StivGathering gathering(labels);
   for (std::size_t k = 0; k < regions.size(); ++k) {
     const Event& event = events[regions[k].event];
     const double area = areas[regions[k].vertex];
-    gathering.add_volume(labels[k], region_volume(event, end, area, proximity));
+    gathering.add_volume(labels[k], region_volume(event, end, area));
     for (int corner = 0; corner < 4; ++corner)  // Eq. 3
       gathering.add_gradient(labels[k], event.vertices[corner], area * event.weights[corner] * event.normal);
   }

@@ -31,7 +31,7 @@ TEST_CASE("polynomial: contacts within both primitives come out 1/100 before the
         if (contact) CHECK(conservative);
         // Where the first contact is not near an edge, end or corner, the polynomial must have it.
         if (!conservative || !within_both(*conservative, 0.05) || conservative->time == 0) continue;
-        const double threshold = std::min(separation, 0.5 * conservative->start_distance);
+        const double d0 = conservative->start_distance, threshold = d0 < separation ? 0.5 * d0 : separation;
         const auto truth = reference::first_time(kind, motion, threshold + 1e-9, 1e-10L);
         if (!std::isfinite(static_cast<double>(truth.time))) continue;
         REQUIRE(contact);

@@ -44,6 +44,7 @@ Event solve_event(const FallingVertex& scene, const Positions& end, double dista
   const Vector3 bary = corners.inverse() * foot;
   event.weights = {1, -bary[0], -bary[1], -bary[2]};
   event.start_distance = event.normal.dot(gap);
+  event.separation = scene.separation;
   return event;
 }
 
@@ -56,7 +57,7 @@ double volume_by_definition(const FallingVertex& scene, const Positions& end, do
 Stiv volume_of(const FallingVertex& scene, const std::vector<Region>& regions, const Eigen::VectorXd& areas) {
   const Events events{solve_event(scene, scene.end, scene.separation)};
   const std::vector<Index> labels(regions.size(), 0);
-  return interference_volumes(events, regions, labels, scene.end, areas, {scene.separation, 0.5}).at(0);
+  return interference_volumes(events, regions, labels, scene.end, areas).at(0);
 }
 
 }  // namespace
@@ -102,10 +103,9 @@ TEST_CASE("stiv: a common motion changes neither volume nor gradient") {
   FallingVertex scene;
   const Eigen::VectorXd areas = Eigen::VectorXd::Ones(4);
   const Events events{solve_event(scene, scene.end, scene.separation)};
-  const Proximity proximity{scene.separation, 0.5};
-  const auto at_rest = interference_volumes(events, {{0, 0}}, {0}, scene.end, areas, proximity);
+  const auto at_rest = interference_volumes(events, {{0, 0}}, {0}, scene.end, areas);
   const Positions carried = scene.end.rowwise() + Eigen::RowVector3d(8, -4, 16);
-  const auto moving = interference_volumes(events, {{0, 0}}, {0}, carried, areas, proximity);
+  const auto moving = interference_volumes(events, {{0, 0}}, {0}, carried, areas);
   CHECK(moving[0].volume == doctest::Approx(at_rest[0].volume).epsilon(1e-12));
   CHECK(moving[0].gradient.value == at_rest[0].gradient.value);
 }
@@ -114,18 +114,20 @@ TEST_CASE("stiv: a pair that met and slid on still counts, with a thousandth of 
   FallingVertex scene;
   Events events{solve_event(scene, scene.end, scene.separation)};
   scene.end.row(0) = scene.start.row(0);  // ends clear of the frozen plane
-  const auto stivs = interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Ones(4), {0.01, 0.5});
+  const auto stivs = interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Ones(4));
   CHECK(stivs[0].volume == doctest::Approx(-1e-3 * 0.02));
 }
 
-TEST_CASE("stiv: the target is capped by the distance at the start") {
+TEST_CASE("stiv: a pair that starts nearer than the separation is not pushed off, any other to a little more than it") {
   const FallingVertex scene;
   Events events{solve_event(scene, scene.end, scene.separation)};
   const auto volume = [&](double start_distance) {
     events[0].start_distance = start_distance;
-    return interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Ones(4), {0.01, 0.5})[0].volume;
+    return interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Ones(4))[0].volume;
   };
   CHECK(volume(1) - volume(0.005) == doctest::Approx(0.005 - 0.02));
+  CHECK(volume(1) - volume(0.018) == doctest::Approx(0.018 - 0.02));
+  CHECK(volume(1) - volume(0.0101) == doctest::Approx(0.015 - 0.02));
 }
 
 TEST_CASE("stiv: vertices without area take part with the mean of the others") {

@@ -17,9 +17,16 @@ enum class VolumeKind {
              ///< for
 };
 
+/// The separation of two bodies, or of a body from itself, where it is not that of the scene.
+struct BodyPairSeparation {
+  Index first = 0, second = 0;
+  double separation = 0;
+};
+
 /// How an edit is solved. Every default is the one recommended.
 struct EditOptions {
-  double separation = 0;    ///< h that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
+  double separation = 0;  ///< h that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
+  std::vector<BodyPairSeparation> pair_separations;  ///< of bodies, instead of h
   double keep = 0.5;        ///< fraction of its distance that a pair keeps which starts nearer than h
   double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
   Eigen::VectorXd weights;  ///< (m) response of each control, 0 pins; empty: all 1

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "stiv/acceptance/least_distance.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
@@ -65,9 +67,10 @@ class EditSession {
   void restore(const Controls& controls, const Controls& goal);
   void restore(const Controls& controls) { restore(controls, controls); }
 
-  const Controls& controls() const;  ///< accepted, (m, 3)
-  const Positions& surface() const;  ///< f(accepted), (N, 3)
-  double separation() const;         ///< h in force
+  const Controls& controls() const;                                           ///< accepted, (m, 3)
+  const Positions& surface() const;                                           ///< f(accepted), (N, 3)
+  double separation() const;                                                  ///< h in force
+  std::optional<NearestTriangles> least_distance(bool within = false) const;  ///< of the accepted surface
   const Surface& topology() const;
 
  private:

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "stiv/detection/event.hpp"
-#include "stiv/detection/proximity.hpp"
 #include "stiv/surface.hpp"
 #include "stiv/volumes/patch.hpp"
 #include "stiv/volumes/region.hpp"
@@ -22,7 +21,7 @@ struct Stiv {
 /// @param areas  A_i, (N), held constant through an edit
 std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
                                        const std::vector<Index>& labels, const Positions& end,
-                                       const Eigen::VectorXd& areas, Proximity proximity);
+                                       const Eigen::VectorXd& areas);
 
 /// The areas A_i at positions q, (N): barycentric areas; vertices without one (loose, or of degenerate faces alone) get
 /// the mean of the others, since they collide all the same.

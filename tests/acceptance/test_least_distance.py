@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The read-out of the least distance, against brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stiv
+from blend_fixtures.scenes.primitives import grid, icosphere, torus, triangulated
+from blend_fixtures.scenes.shape import joined
+from tests.oracles.distances import near_pairs
+
+
+def scene(seed: int) -> tuple[stiv.Surface, np.ndarray]:
+    """A turned ring about a ball, above a sheet: three bodies."""
+    chance = np.random.default_rng(seed)
+    shapes = [
+        icosphere(2).turned(chance.normal(size=3)).scaled(0.6),
+        triangulated(torus(16, 8)).turned(chance.normal(size=3)).scaled(1.2),
+        triangulated(grid(12, 12, 5, 5)).turned(chance.normal(size=3) / 10).moved((0, 0, -1.9)),
+    ]
+    whole = joined(shapes)
+    owner = np.repeat(np.arange(3), [len(shape.vertices) for shape in shapes])
+    bodies = [stiv.Body("ball"), stiv.Body("ring"), stiv.Body("sheet", "fixed")]
+    return stiv.Surface(whole.triangles(), len(whole.vertices), vertex_body=owner, bodies=bodies), whole.vertices
+
+
+def brute_force(surface: stiv.Surface, q: np.ndarray, reach: float, within: bool = False) -> float:
+    body = surface.vertex_body
+    return min(
+        distance
+        for (_, *v), distance in near_pairs(surface, q, reach).items()
+        if body[v[0]] != body[v[3]] or (within and body[v[0]] != 2)
+    )
+
+
+@pytest.mark.parametrize("within", [False, True])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_least_distance_is_that_of_all_pairs(seed: int, within: bool) -> None:
+    surface, q = scene(seed)
+    nearest = stiv.least_distance(q, surface, within=within)
+    assert nearest is not None
+    owners = [surface.bodies[surface.vertex_body[surface.triangles[k, 0]]].name for k in nearest.triangles]
+    assert nearest.bodies == tuple(owners)
+    if len(stiv.find_intersections(q, surface)) > 0 and not within:
+        assert nearest.distance == 0
+        return
+    if nearest.distance == 0:
+        assert list(nearest.triangles) in stiv.find_intersections(q, surface).tolist()
+        return
+    assert nearest.distance == pytest.approx(brute_force(surface, q, 1.01 * nearest.distance, within), rel=1e-9)
+    assert np.linalg.norm(nearest.points[0] - nearest.points[1]) == pytest.approx(nearest.distance, rel=1e-9)
+    for point, triangle in zip(nearest.points, nearest.triangles, strict=True):
+        corners = q[surface.triangles[triangle]]
+        weights = np.linalg.lstsq(np.vstack([corners.T, np.ones(3)]), np.append(point, 1), rcond=None)[0]
+        assert (weights > -1e-9).all()
+        assert weights @ corners == pytest.approx(point, abs=1e-9)
+
+
+def test_a_session_reads_its_accepted_state_and_one_body_has_no_distance() -> None:
+    surface, q = scene(1)
+    session = stiv.EditSession(surface, stiv.identity(len(q)), q)
+    before, again = session.least_distance(), stiv.least_distance(session.surface, surface)
+    assert before is not None
+    assert again is not None
+    assert (before.distance, before.triangles) == (again.distance, again.triangles)
+    session.edit(q + np.where(surface.vertex_body[:, None] == 2, (0, 0, -1.0), 0.0))
+    after = session.least_distance()
+    assert after is not None
+    assert after.distance == pytest.approx(brute_force(surface, session.surface, 1.01 * after.distance), rel=1e-9)
+    assert stiv.least_distance(np.eye(3), [[0, 1, 2]]) is None
+    with pytest.raises(stiv.InputError, match="row 1"):
+        stiv.least_distance([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])

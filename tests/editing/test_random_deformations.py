@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What holds for every edit, of any deformation, mode, weights and separation.
+
+A part of it here; 2,000 edits with STIV_TESTS=long.
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+import stiv
+from tests.editing.random_deformations import BUILDERS, Case, random_cases
+
+COUNT = 2000 if os.environ.get("STIV_TESTS") == "long" else 240
+CHUNK = 48  # edits a test
+
+
+def answered(session: stiv.EditSession, how: str, goal: np.ndarray) -> stiv.EditResult:
+    """Carry out a goal; a drag in five moves, of which the last counts."""
+    if how == "settle":
+        session.edit(goal)
+        return session.settle()
+    if how == "edit":
+        return session.edit(goal)
+    start = session.controls
+    for share in (0.2, 0.4, 0.6, 0.8):
+        session.drag(start + share * (goal - start))
+    return session.drag(goal)
+
+
+def motion_was_possible(case: Case, session: stiv.EditSession, goal: np.ndarray, separation: float) -> bool:
+    """Is a hundredth of the straight way to the goal free, and more than storing takes from it?"""
+    start = session.controls
+    near = (start + 0.01 * (goal - start)).astype(np.float32).astype(float)
+    if np.array_equal(near, start):
+        return False
+    end = case.edit.deformation.surface(near)
+    return stiv.is_step_free(case.edit.surface, session.surface, end, separation)
+
+
+def check(case: Case) -> None:
+    edit = case.edit
+    session = stiv.EditSession(edit.surface, edit.deformation, edit.controls, case.options)
+    widest = max([session.separation, *case.options.pair_separations.values()])
+    for how, goal in case.goals:
+        before = session.controls
+        result = answered(session, how, goal)
+        where = f"{case.name}, {how}"
+        assert edit.deformation.surface(result.controls).tobytes() == result.surface.tobytes(), where
+        stored = result.controls.astype(np.float32).astype(float)
+        assert np.allclose(stored, result.controls, rtol=1e-14, atol=0), where
+        for controls in (stored, result.controls):
+            assert len(stiv.find_intersections(edit.deformation.surface(controls), edit.surface)) == 0, where
+        if case.options.weights is not None:
+            still = (np.asarray(case.options.weights) == 0) & (goal == before).all(axis=1)
+            assert result.controls[still].tobytes() == before[still].tobytes(), where
+        if how == "edit" and not result.path and result.status != "unchanged":
+            assert not motion_was_possible(case, session, goal, widest), f"{where}: refused"
+
+
+CASES = list(random_cases(COUNT, seed=11))
+
+
+@pytest.mark.parametrize("first", range(0, len(CASES), CHUNK // 4))
+def test_no_intersections_pins_stay_and_nothing_possible_is_refused(first: int) -> None:
+    for case in CASES[first : first + CHUNK // 4]:
+        check(case)
+
+
+def test_all_deformations_take_part() -> None:
+    assert {case.edit.name for case in CASES} == {build().name for build in BUILDERS}
