@@ -9,6 +9,10 @@ NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -ty
 PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready
+EXTENSION := build/extension
+ZIP_VENV := build/venv-blender-$(firstword $(BLENDERS))
+EXTENSION_TOOLS := tools/build_extension.py tools/build_guide.py addon/blender_manifest.toml \
+	$(wildcard docs/user_guide.md docs/images/*)
 FUZZ_SECONDS := 30
 BENCHMARKS := $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/*.py)) \
 	$(patsubst benchmarks/%/__main__.py,%,$(wildcard benchmarks/*/__main__.py))
@@ -49,8 +53,14 @@ test-window: $(OPENSUBDIV) ## Drive the add-on in a real window, in a Debian 13 
 lint: build/venv/lint ## Check format, style and types
 	build/venv/bin/python tools/run_tests.py lint
 
-extension: $(WHEEL) ## Build dist/stiv-<version>.zip, which Blender installs as an extension
-	build/venv/bin/python tools/build_extension.py dist build/wheel/*.whl
+extension: $(WHEEL) $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate it, try it; BLENDER=blender: install it there
+	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist >build/extension-all
+	$(ZIP_VENV)/bin/python tools/install_extension.py "$$(cat build/extension-all)"
+	build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_extension_wheels.py
+	cat build/extension-all
+ifdef BLENDER
+	build/venv/bin/python tools/install_extension.py "$$(cat build/extension-all)" --blender "$(BLENDER)"
+endif
 
 bench: build/venv/bench ## Run every benchmark with its default settings, beside the peers from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
@@ -121,6 +131,15 @@ $(WHEEL): $(NATIVE_SOURCES) $(PYTHON_SOURCES) build/venv/ready $(OPENSUBDIV)
 	tools/build_wheel.sh build/venv/bin/python $(OPENSUBDIV)
 	touch $@
 
+build/venv/portable: tools/requirements/portable.txt build/venv/ready
+	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/portable.txt
+	touch $@
+
+# With the wheel that all tests use, for the Python here alone; `make extension` compiles for all, and for old systems.
+$(EXTENSION): $(WHEEL) $(EXTENSION_TOOLS)
+	build/venv/bin/python tools/build_extension.py build/extension-here build/wheel/*.whl >$@.new
+	mv $@.new $@
+
 build/venv/stiv: $(WHEEL)
 	tools/install_wheel.sh build/venv
 	touch $@
@@ -137,6 +156,12 @@ build/stiv_tests_asan: $(NATIVE_SOURCES) $(OPENSUBDIV)
 build/venv-blender-%/ready: $(WHEEL) tools/requirements/test.txt
 	tools/make_venv.sh $(PYTHON) $(@D) bpy==$* -r tools/requirements/test.txt
 	tools/install_wheel.sh $(@D)
+	touch $@
+
+# The oldest finds the package where a user's Blender would: in what it unpacked when the zip was installed.
+$(ZIP_VENV)/ready: $(EXTENSION) tools/requirements/test.txt tools/install_extension.py
+	tools/make_venv.sh $(PYTHON) $(@D) bpy==$(firstword $(BLENDERS)) -r tools/requirements/test.txt
+	$(@D)/bin/python tools/install_extension.py "$$(cat $(EXTENSION))"
 	touch $@
 
 build/venv-blender: build/venv-blender-$(DEMO_BLENDER)/ready

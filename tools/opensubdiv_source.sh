@@ -10,25 +10,11 @@ if [ -f "$destination/opensubdiv/far/stencilTable.h" ]; then
     exit 0
 fi
 
-fail() { echo "opensubdiv_source.sh: $1" >&2; exit 1; }
+. "$(dirname "$0")/private_apt.sh"
 command -v apt-get >/dev/null || fail "apt-get is missing: unpack the source of OpenSubdiv 3.5 or later into $destination yourself"
-keyring=/usr/share/keyrings/debian-archive-keyring.gpg
-[ -f "$keyring" ] || fail "$keyring is missing: install the package debian-archive-keyring"
 suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-sid}")
-
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-chmod 755 "$work"  # apt fetches as a user of its own where it can
-mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
-echo "deb-src [signed-by=$keyring] http://deb.debian.org/debian $suite main" >"$work/sources.list"
-
-apt() {
-    apt-get -o Dir::Etc::sourcelist="$work/sources.list" -o Dir::Etc::sourceparts=/dev/null \
-        -o Dir::State::lists="$work/lists" -o Dir::Cache="$work/cache" -o APT::Sandbox::User="$(id -un)" \
-        -o Acquire::Retries=5 -o Acquire::Languages=none "$@" >"$work/log" 2>&1
-}
 echo "OpenSubdiv's source: downloading Debian's source package ($suite)"
-apt update || { cat "$work/log" >&2; fail "the list of Debian's source packages could not be read"; }
+open_archive deb-src "$suite"
 (cd "$work" && apt source --download-only opensubdiv) ||
     { cat "$work/log" >&2; fail "the source package could not be downloaded"; }
 

@@ -5,7 +5,8 @@ Blender loads its own OpenSubdiv and TBB; a visible symbol of ours could bind to
 """
 
 import importlib.util
-import subprocess
+
+from modules import exported_names, needed_libraries
 
 SYSTEM_LIBRARIES = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
 
@@ -16,18 +17,11 @@ def native_module() -> str:
     return spec.origin
 
 
-def lines_of(*command: str) -> list[str]:
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-
-
 def test_only_the_entry_point_is_exported() -> None:
-    exported = {line.split()[-1] for line in lines_of("nm", "-D", "--defined-only", native_module())}
-    assert exported == {"PyInit__native"}
+    assert exported_names(native_module()) == {"PyInit__native"}
 
 
 def test_only_system_libraries_are_needed() -> None:
-    needed = {
-        line.split("[")[1].rstrip("]") for line in lines_of("readelf", "-d", native_module()) if "(NEEDED)" in line
-    }
+    needed = needed_libraries(native_module())
     assert needed
     assert needed <= SYSTEM_LIBRARIES

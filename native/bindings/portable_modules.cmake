@@ -1,0 +1,23 @@
+# One module for each version of Python in STIV_PYTHON_HEADERS, a list of VERSION=FOLDER, all over one core. Headers are
+# all that a module needs of a Python: its symbols are found in the process that loads it.
+set(PYBIND11_NOPYTHON ON)
+find_package(pybind11 CONFIG REQUIRED)
+
+add_custom_target(stiv_portable_modules)
+foreach(entry IN LISTS STIV_PYTHON_HEADERS)
+  string(REGEX MATCH "^3\\.([0-9]+)=(.+)$" matched "${entry}")
+  if(NOT matched)
+    message(FATAL_ERROR "STIV_PYTHON_HEADERS: \"${entry}\" is not VERSION=FOLDER, such as 3.13=build/python-headers/3.13")
+  endif()
+  set(minor ${CMAKE_MATCH_1})
+  set(folder "${CMAKE_MATCH_2}")
+  add_library(_native_cp3${minor} MODULE ${stiv_bindings})
+  # Debian's pyconfig.h asks for one below the folder, named by the processor.
+  target_include_directories(_native_cp3${minor} SYSTEM PRIVATE "${folder}/python3.${minor}" "${folder}")
+  target_link_libraries(_native_cp3${minor} PRIVATE pybind11::headers)
+  stiv_link_module(_native_cp3${minor})
+  target_compile_options(_native_cp3${minor} PRIVATE -O1)  # they only translate, and are compiled several times
+  set_target_properties(_native_cp3${minor} PROPERTIES
+    PREFIX "" OUTPUT_NAME "_native.cpython-3${minor}-x86_64-linux-gnu" SUFFIX ".so")
+  add_dependencies(stiv_portable_modules _native_cp3${minor})
+endforeach()

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Validate the extension's zip with Blender's own means and install it as a user would.
+
+Usage: VENV/bin/python install_extension.py ZIP            into the Blender module of the environment that runs this
+       python install_extension.py ZIP --blender PROGRAM   into a Blender program, for its user
+
+Into a module: Blender unpacks the zip and the wheel that fits below VENV/extension, and the environment finds the
+packages there: `stiv` from the unpacked wheel, `stiv_addon` being the installed add-on.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+REPOSITORY = "user_default"
+IDENTIFIER = "stiv"
+
+
+def into_program(archive: Path, program: str) -> None:
+    """Let a Blender program validate and install."""
+    extension = [program, "--command", "extension"]
+    subprocess.run([*extension, "validate", archive], check=True)
+    subprocess.run([*extension, "install-file", "-r", REPOSITORY, "--enable", archive], check=True)
+
+
+def into_module(archive: Path, environment: Path) -> None:
+    """Let this environment's Blender module validate and install, in a process of its own."""
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet", "uninstall", "--yes", IDENTIFIER]
+    subprocess.run(pip, check=True, stderr=subprocess.DEVNULL)  # a wheel installed before would be found first
+    resources = environment / "extension"
+    shutil.rmtree(resources, ignore_errors=True)
+    resources.mkdir()
+    process = os.environ | {"BLENDER_USER_RESOURCES": str(resources), "HOME": str(resources)}
+    subprocess.run([sys.executable, __file__, archive, "--here"], env=process, check=True)
+    (resources / "package").mkdir()
+    (resources / "package/stiv_addon").symlink_to(resources / "extensions" / REPOSITORY / IDENTIFIER)
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    wheels = resources / "extensions/.local/lib" / version / "site-packages"
+    folders = Path(sysconfig.get_path("purelib"))
+    (folders / "stiv_extension.pth").write_text(f"{resources / 'package'}\n{wheels}\n")
+
+
+def here(archive: Path) -> None:
+    """Validate, install, enable and look whether the native module can be used. Ends the process."""
+    import bpy
+
+    validator = Path(bpy.utils.system_resource("SCRIPTS"), "addons_core/bl_pkg/cli/blender_ext.py")
+    subprocess.run([sys.executable, validator, "validate", archive], check=True, stdout=subprocess.DEVNULL)
+    bpy.ops.extensions.package_install_files(filepath=str(archive), repo=REPOSITORY, enable_on_install=True)
+    name = f"bl_ext.{REPOSITORY}.{IDENTIFIER}"
+    enabled = name in bpy.context.preferences.addons
+    problem = sys.modules[f"{name}.availability"].problem() if enabled else "it was not enabled"
+    if problem:
+        print(f"{archive}, installed into Blender {bpy.app.version_string}: {problem}", file=sys.stderr)
+    sys.stdout.flush()
+    os._exit(1 if problem else 0)  # 4.2 crashes and 4.5 hangs when Python ends with classes registered
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("archive", type=Path)
+    parser.add_argument("--blender", help="a Blender program to install into, instead of the module")
+    parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
+    chosen = parser.parse_args()
+    if chosen.here:
+        here(chosen.archive.resolve())
+    elif chosen.blender:
+        into_program(chosen.archive.resolve(), chosen.blender)
+    else:
+        into_module(chosen.archive.resolve(), Path(sys.prefix))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Make a wheel for every Python that the extension carries a module for.
+
+Usage: portable_wheels.py WHEEL MODULE...
+
+WHEEL is of this source tree, for any Python; each MODULE takes the place of its module in one of the new wheels. They
+are written into build/portable/wheels, in place of what is there. All but module and tag is the same, without the
+add-on, which the extension has itself.
+"""
+
+import base64
+import hashlib
+import re
+import sys
+import zipfile
+from pathlib import Path
+
+PLATFORM = "manylinux_2_17_x86_64"  # tools/portable_modules.sh compiles for this version of the C library
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def python_tag(module: Path) -> str:
+    """Tag of the Python that a module was compiled for, by its name: "cp313"."""
+    found = re.fullmatch(r"_native\.cpython-(\d+)-x86_64-linux-gnu\.so", module.name)
+    if found is None:
+        raise SystemExit(f"{module}: not the name of a native module")
+    return f"cp{found[1]}"
+
+
+def read_wheel(path: Path) -> dict[str, bytes]:
+    """Files of a wheel by name, without its native module, the add-on and the list of files."""
+    with zipfile.ZipFile(path) as archive:
+        names = [name for name in archive.namelist() if not name.endswith(("/", "/RECORD"))]
+        return {name: archive.read(name) for name in names if not name.startswith(("stiv/_native.", "stiv_addon/"))}
+
+
+def with_module(files: dict[str, bytes], module: Path, tag: str) -> dict[str, bytes]:
+    """The same files with this module and tag, and a list of files that is right for them."""
+    (description,) = [name for name in files if name.endswith(".dist-info/WHEEL")]
+    text = files[description].decode()
+    if len(re.findall(r"^Tag: .*$", text, re.MULTILINE)) != 1:
+        raise SystemExit(f"{description}: needs exactly one tag")
+    retagged = re.sub(r"^Tag: .*$", f"Tag: {tag}", text, flags=re.MULTILINE)
+    result = files | {description: retagged.encode(), f"stiv/{module.name}": module.read_bytes()}
+    record = str(Path(description).with_name("RECORD"))
+    lines = [f"{name},sha256={digest(data)},{len(data)}" for name, data in sorted(result.items())]
+    return result | {record: "\n".join([*lines, f"{record},,", ""]).encode()}
+
+
+def digest(data: bytes) -> str:
+    """Hash of a file as lists of files have it."""
+    return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+
+
+def write_wheel(path: Path, files: dict[str, bytes]) -> None:
+    """The same files give the same bytes."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in sorted(files.items()):
+            entry = zipfile.ZipInfo(name, FIRST_DATE)
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, data)
+
+
+def main(wheel: Path, modules: list[Path], folder: Path) -> None:
+    """Write all wheels."""
+    files = read_wheel(wheel)
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.whl"):
+        old.unlink()
+    name = "-".join(wheel.name.split("-")[:2])
+    for module in modules:
+        python = python_tag(module)
+        tag = f"{python}-{python}-{PLATFORM}"
+        write_wheel(folder / f"{name}-{tag}.whl", with_module(files, module, tag))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        raise SystemExit("portable_wheels.py: name a wheel and at least one module")
+    wheel, *modules = map(Path, sys.argv[1:])
+    main(wheel, modules, Path("build/portable/wheels"))

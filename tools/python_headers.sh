@@ -1,0 +1,23 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# python_headers.sh VERSION SUITE DEST: puts the headers of a version of Python, from a Debian suite's package, into
+# DEST/VERSION. They are all that a module for another Python than the one that builds it needs. Needs no privilege.
+set -eu
+[ $# -eq 3 ] || { echo "usage: python_headers.sh VERSION SUITE DEST" >&2; exit 2; }
+version=$1
+suite=$2
+destination=$3
+[ ! -f "$destination/$version/python$version/Python.h" ] || exit 0
+
+. "$(dirname "$0")/private_apt.sh"
+package=libpython$version-dev
+echo "headers of Python $version: downloading Debian's $package ($suite)"
+open_archive deb "$suite"
+(cd "$work" && apt download "$package") || { cat "$work/log" >&2; fail "Debian $suite gave no $package"; }
+dpkg -x "$work/$package"_*.deb "$work/unpacked"
+[ -f "$work/unpacked/usr/include/python$version/Python.h" ] || fail "$package of Debian $suite holds no headers"
+# Renamed when complete: a run that was interrupted leaves nothing that looks finished.
+mkdir -p "$destination"
+rm -rf "$destination/$version" "$destination/$version.partial"
+cp -R "$work/unpacked/usr/include" "$destination/$version.partial"
+mv "$destination/$version.partial" "$destination/$version"
