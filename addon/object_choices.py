@@ -7,7 +7,7 @@ from typing import Any
 
 
 def object_choices(scene: Any) -> dict[str, Any]:
-    """`roles`, `deformations`, `handles`, `weights` and `loops` of `stiv.blender.EditSettings`."""
+    """`roles`, `deformations`, `handles`, `weights`, `pair_separations` and `loops` of `stiv.blender.EditSettings`."""
     from stiv.blender import Handles, LoopSurface, WeightGroup  # the add-on registers without the native module
 
     chosen = {thing.name: thing.stiv for thing in scene.objects}
@@ -24,6 +24,11 @@ def object_choices(scene: Any) -> dict[str, Any]:
             for name, each in chosen.items()
             if each.weight_group
         },
+        "pair_separations": tuple(
+            (row.first.name, row.second.name, row.separation)
+            for row in scene.stiv.pair_separations
+            if all(each is not None and each.name in chosen for each in (row.first, row.second))
+        ),
         "loops": {
             thing.name: LoopSurface(refined.name, thing.stiv.loop.levels, thing.stiv.loop.boundary)
             for thing in scene.objects

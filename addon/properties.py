@@ -61,6 +61,17 @@ def _exclusions_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Co
     watching.exclusions_changed(context)
 
 
+class StivPairSeparation(bpy.types.PropertyGroup):
+    """Two objects, or one twice, that keep a distance of their own."""
+
+    first: PointerProperty(name="First", type=bpy.types.Object)
+    second: PointerProperty(name="Second", type=bpy.types.Object)
+    separation: FloatProperty(
+        name="Separation", description="Distance that the two keep", subtype="DISTANCE", default=0.01, min=1e-6,
+        soft_max=1.0, precision=4,
+    )  # fmt: skip
+
+
 class StivSceneSettings(bpy.types.PropertyGroup):
     """How edits of a scene respond to interference."""
 
@@ -73,6 +84,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         soft_max=1.0,
         precision=4,
     )
+    pair_separations: CollectionProperty(type=StivPairSeparation, name="Separation of Pairs")
     interference: BoolProperty(
         name="Interference",
         description="Let surfaces give way; otherwise they may go through each other, and nothing is tested",
@@ -145,7 +157,7 @@ class StivCheckResult(bpy.types.PropertyGroup):
     summary: StringProperty(name="Result of the last check", options={"SKIP_SAVE"})
 
 
-CLASSES = (StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)
+CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)
 
 
 def register() -> None:
@@ -153,6 +165,7 @@ def register() -> None:
     bpy.types.Scene.stiv = PointerProperty(type=StivSceneSettings)
     bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
+    bpy.types.WindowManager.stiv_least_distance = StringProperty(name="Least distance", options={"SKIP_SAVE"})
     bpy.types.WindowManager.stiv_last_edit = StringProperty(
         name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"}, update=note_written
     )
@@ -161,6 +174,7 @@ def register() -> None:
 def unregister() -> None:
     """Take them off again; the values stay in the file."""
     del bpy.types.WindowManager.stiv_last_edit
+    del bpy.types.WindowManager.stiv_least_distance
     del bpy.types.WindowManager.stiv_check
     del bpy.types.Object.stiv
     del bpy.types.Scene.stiv

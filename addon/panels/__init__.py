@@ -9,6 +9,7 @@ from .loop import STIV_PT_loop
 from .overlay import STIV_PT_overlay
 from .repair import STIV_PT_repair
 from .roles import STIV_PT_roles
+from .separation import STIV_PT_separation
 
 CLASSES = (
     STIV_PT_edit,
@@ -16,6 +17,7 @@ CLASSES = (
     STIV_PT_roles,
     STIV_PT_deformation,
     STIV_PT_loop,
+    STIV_PT_separation,
     STIV_PT_check,
     STIV_PT_repair,
     STIV_PT_overlay,

@@ -192,7 +192,7 @@ def _movers(context: bpy.types.Context, settings: EditSettings) -> list[Mover]:
     chosen = [ob for ob in visible if (ob.mode == "EDIT" if context.mode == "EDIT_MESH" else ob.select_get())]
     movers = []
     for ob in chosen:
-        if settings.role(ob.name) in ("obstacle", "ignored"):
+        if settings.role(ob.name) in ("obstacle", "ignored") or settings.cage_of(ob.name) != ob.name:
             continue
         if ob.type != "MESH":
             raise InputError(f'object "{ob.name}": only meshes can change shape here; deselect it, or convert it')

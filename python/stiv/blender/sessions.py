@@ -44,6 +44,7 @@ def make_session(
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         separation=settings.separation,
+        pair_separations=_pair_separations(assembly, settings),
         smoothness=settings.smoothness,
         weights=np.concatenate(list(weights)),
         exclude=settings.excluded.triangles(assembly, q, settings.threads),
@@ -69,6 +70,19 @@ def stacked(controls: Sequence[Floats]) -> Floats:
 def split(controls: Floats, parts: Sequence[Part]) -> list[Floats]:
     """The controls of each part, (m, 3), out of those of all, one after the other."""
     return np.split(controls, np.cumsum([len(part.controls) for part in parts])[:-1])
+
+
+def _pair_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
+    """The separations of pairs of objects as those of their bodies."""
+    bodies: dict[str, list[int]] = {}
+    for number, body in enumerate(assembly.surface.bodies):
+        bodies.setdefault(body.name, []).append(number)
+    return {
+        (a, b): distance
+        for first, second, distance in settings.pair_separations
+        for a in bodies.get(settings.shown_by(first), [])
+        for b in bodies.get(settings.shown_by(second), [])
+    }
 
 
 def _vertices(assembly: Assembly, part: Part) -> Any:

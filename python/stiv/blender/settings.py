@@ -80,6 +80,8 @@ class EditSettings:
 
     Attributes:
         separation: distance that surfaces keep, world units; 0 chooses one.
+        pair_separations: distances that pairs of objects keep instead, by their names; twice the same name for an
+            object with itself. Objects that show nothing do not count.
         interference: False: nothing gives way and nothing is tested, surfaces may go through each other;
             `BlenderEdit.set_interference` changes it in mid-edit.
         responders: which controls give way: the "selected" ones that are being moved (default), the "unselected" ones
@@ -107,6 +109,7 @@ class EditSettings:
     """
 
     separation: float = 0.0
+    pair_separations: tuple[tuple[str, str, float], ...] = ()
     interference: bool = True
     responders: str = "selected"
     object_response: str = "rigid"
@@ -126,6 +129,11 @@ class EditSettings:
         """Refuse unknown choices."""
         _require("responders", self.responders, RESPONDERS)
         _require("object_response", self.object_response, OBJECT_RESPONSES)
+        for first, second, distance in self.pair_separations:
+            if not 0 < distance < float("inf"):
+                raise InputError(
+                    f'separation of objects "{first}" and "{second}": {distance!r} is not a positive number'
+                )
         for name, role in self.roles.items():
             _require(f'role of object "{name}"', role, ROLES)
         for name, deformation in self.deformations.items():
@@ -156,6 +164,7 @@ class EditSettings:
         yield from (*self.roles, *self.deformations, *self.handles, *self.weights, *self.loops)
         yield from (loop.object for loop in self.loops.values())
         yield from (name for pair in self.ignored_pairs for name in pair)
+        yield from (name for first, second, _ in self.pair_separations for name in (first, second))
 
     def weight(self, selected: bool) -> float:
         """Response weight of controls that the goal moves (`selected`) or that it does not."""

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.separation_add`, `_remove`, `_measure`: pairs of objects with a distance of their own, and the least of all."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import IntProperty
+
+from .. import availability
+from ..settings import edit_settings
+
+
+class _SeparationOperator:
+    """Base: with the native module."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """With the native module."""
+        return not availability.problem()
+
+
+class STIV_OT_separation_add(_SeparationOperator, bpy.types.Operator):
+    """Let the two selected objects keep a distance of their own; one alone keeps it from itself."""
+
+    bl_idname = "stiv.separation_add"
+    bl_label = "Add Pair of Objects"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add a row."""
+        chosen = list(context.selected_objects)
+        if len(chosen) not in (1, 2):
+            self.report({"ERROR"}, f"select one object or two; {len(chosen)} are selected")
+            return {"CANCELLED"}
+        row = context.scene.stiv.pair_separations.add()
+        row.first, row.second = chosen[0], chosen[-1]
+        return {"FINISHED"}
+
+
+class STIV_OT_separation_remove(_SeparationOperator, bpy.types.Operator):
+    """Let the pair keep the scene's distance again."""
+
+    bl_idname = "stiv.separation_remove"
+    bl_label = "Remove Pair of Objects"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    index: IntProperty(name="Row", min=0)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Remove the row."""
+        rows = context.scene.stiv.pair_separations
+        if self.index >= len(rows):
+            self.report({"ERROR"}, f"there are {len(rows)} pairs; there is no row {self.index}")
+            return {"CANCELLED"}
+        rows.remove(self.index)
+        return {"FINISHED"}
+
+
+class STIV_OT_separation_measure(_SeparationOperator, bpy.types.Operator):
+    """Measure the least distance between visible objects."""
+
+    bl_idname = "stiv.separation_measure"
+    bl_label = "Measure Least Distance"
+    bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write it into the panel."""
+        from stiv import InputError
+        from stiv.blender import least_distance
+
+        try:
+            nearest = least_distance(context, edit_settings(context.scene))
+        except InputError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if nearest is None:
+            text = "There are no two objects to measure"
+        else:
+            text = f"{nearest.distance:.6g} between {nearest.bodies[0]} and {nearest.bodies[1]}"
+        context.window_manager.stiv_least_distance = text
+        self.report({"INFO"}, text)
+        return {"FINISHED"}

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pairs of objects with a separation of their own, kept in the file and by the operators."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import stiv_addon  # noqa: E402
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
+
+
+@pytest.fixture(autouse=True)
+def scene() -> None:
+    """A box, selected, above a floor; another box far off."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    for name, z in (("Floor", -2.0), ("Far", 9.0), ("Box", 0.0)):
+        bpy.ops.mesh.primitive_cube_add(size=2.0, location=(0, 0, z - (name == "Floor")))
+        bpy.context.active_object.name = name
+
+
+def choose(*names: str) -> None:
+    for thing in bpy.context.view_layer.objects:
+        thing.select_set(thing.name in names)
+
+
+def test_a_pair_is_kept_apart_after_saving_renaming_and_loading(tmp_path: Path) -> None:
+    choose("Box", "Floor")
+    assert bpy.ops.stiv.separation_add() == {"FINISHED"}
+    bpy.context.scene.stiv.pair_separations[0].separation = 0.4
+    bpy.data.objects["Floor"].name = "Ground"
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pair.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "pair.blend"))
+    choose("Box")
+    bpy.ops.stiv.move(value=(0.0, 0.0, -3.0))
+    gap = bpy.data.objects["Box"].location.z - 1 + 2
+    assert 0.4 * (1 - 1e-6) <= gap < 0.85
+    assert bpy.ops.stiv.separation_measure() == {"FINISHED"}
+    text = bpy.context.window_manager.stiv_least_distance
+    assert float(text.split()[0]) == pytest.approx(gap, rel=1e-4)
+    assert "Box" in text and "Ground" in text
+    bpy.ops.stiv.separation_remove(index=0)
+    assert len(bpy.context.scene.stiv.pair_separations) == 0
+
+
+def test_what_is_not_one_pair_is_refused() -> None:
+    choose("Box", "Floor", "Far")
+    with pytest.raises(RuntimeError, match="3 are selected"):
+        bpy.ops.stiv.separation_add()
+    with pytest.raises(RuntimeError, match="there is no row 2"):
+        bpy.ops.stiv.separation_remove(index=2)
+
+
+def test_one_object_alone_is_paired_with_itself_and_a_deleted_one_is_left_out() -> None:
+    choose("Far")
+    bpy.ops.stiv.separation_add()
+    row = bpy.context.scene.stiv.pair_separations[0]
+    assert row.first == row.second == bpy.data.objects["Far"]
+    bpy.data.objects.remove(bpy.data.objects["Far"])
+    bpy.context.view_layer.update()
+    choose("Box")
+    bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
+    assert np.allclose(bpy.data.objects["Box"].location, (1, 0, 0))
