@@ -8,6 +8,7 @@ from .exclude import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .expand import STIV_OT_expand
 from .handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
+from .measure import STIV_OT_measure
 from .move import STIV_OT_move
 from .repair import STIV_OT_repair
 from .rotate import STIV_OT_rotate
@@ -21,6 +22,7 @@ CLASSES = (
     *TRANSFORMS,
     STIV_OT_drag,
     STIV_OT_check,
+    STIV_OT_measure,
     *RESHAPING,
     STIV_OT_exclude_intersections,
     STIV_OT_clear_exclusions,

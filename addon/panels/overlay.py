@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..operators.measure import STIV_OT_measure
 from .drawing import SubPanel
 
 
@@ -26,3 +27,4 @@ class STIV_PT_overlay(SubPanel, bpy.types.Panel):
         column.active = chosen.show
         for name in ("contacts", "intersections", "clearance", "speed"):
             column.prop(chosen, name)
+        self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")

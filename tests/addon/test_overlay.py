@@ -37,6 +37,16 @@ def test_a_check_shows_what_intersects_until_the_scene_changes() -> None:
     assert not showing.content()
 
 
+def test_the_nearest_pair_is_shown_until_the_scene_changes() -> None:
+    bpy.context.object.location.x = 3.0
+    assert bpy.ops.stiv.measure() == {"FINISHED"}
+    clearance = showing.content().clearance
+    assert clearance is not None and clearance.distance == pytest.approx(2.0)
+    bpy.context.object.location.x = 4.0
+    bpy.context.view_layer.update()
+    assert showing.content().clearance is None
+
+
 def test_loading_a_file_clears_it() -> None:
     bpy.ops.stiv.check()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)

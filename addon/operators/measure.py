@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.measure`: find the nearest pair of objects, and show it over the view."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import availability
+from ..overlay import showing
+from ..overlay.content import Clearance
+from ..settings import edit_settings
+
+
+class STIV_OT_measure(bpy.types.Operator):
+    """Find the two visible objects that are nearest to each other, and show their distance over the view."""
+
+    bl_idname = "stiv.measure"
+    bl_label = "Measure Clearance"
+    bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """With the native module."""
+        if availability.problem():
+            cls.poll_message_set(availability.problem())
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Measure, show, say."""
+        from stiv.blender.measuring import nearest_pair  # the add-on registers without the native module
+
+        try:
+            found = nearest_pair(context, edit_settings(context.scene))
+        except ValueError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if found is None:
+            self.report({"WARNING"}, "There are no two objects to be measured")
+            return {"CANCELLED"}
+        showing.show_clearance(Clearance(found.points[0], found.points[1], found.distance, found.bodies))
+        self.report({"INFO"}, f"Least distance {found.distance:.6g} between {' and '.join(found.bodies)}")
+        return {"FINISHED"}
