@@ -165,7 +165,6 @@ def register() -> None:
     bpy.types.Scene.stiv = PointerProperty(type=StivSceneSettings)
     bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
-    bpy.types.WindowManager.stiv_least_distance = StringProperty(name="Least distance", options={"SKIP_SAVE"})
     bpy.types.WindowManager.stiv_last_edit = StringProperty(
         name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"}, update=note_written
     )
@@ -174,7 +173,6 @@ def register() -> None:
 def unregister() -> None:
     """Take them off again; the values stay in the file."""
     del bpy.types.WindowManager.stiv_last_edit
-    del bpy.types.WindowManager.stiv_least_distance
     del bpy.types.WindowManager.stiv_check
     del bpy.types.Object.stiv
     del bpy.types.Scene.stiv

@@ -13,7 +13,7 @@ from .move import STIV_OT_move
 from .repair import STIV_OT_repair
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
-from .separation import STIV_OT_separation_add, STIV_OT_separation_measure, STIV_OT_separation_remove
+from .separation import STIV_OT_separation_add, STIV_OT_separation_remove
 from .settle import STIV_OT_settle
 
 TRANSFORMS = (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
@@ -33,5 +33,4 @@ CLASSES = (
     STIV_OT_loop_remove,
     STIV_OT_separation_add,
     STIV_OT_separation_remove,
-    STIV_OT_separation_measure,
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.separation_add`, `_remove`, `_measure`: pairs of objects with a distance of their own, and the least of all."""
+"""`stiv.separation_add`, `stiv.separation_remove`: pairs of objects that keep a distance of their own."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import availability
-from ..settings import edit_settings
 
 
 class _SeparationOperator:
@@ -53,30 +52,4 @@ class STIV_OT_separation_remove(_SeparationOperator, bpy.types.Operator):
             self.report({"ERROR"}, f"there are {len(rows)} pairs; there is no row {self.index}")
             return {"CANCELLED"}
         rows.remove(self.index)
-        return {"FINISHED"}
-
-
-class STIV_OT_separation_measure(_SeparationOperator, bpy.types.Operator):
-    """Measure the least distance between visible objects."""
-
-    bl_idname = "stiv.separation_measure"
-    bl_label = "Measure Least Distance"
-    bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write it into the panel."""
-        from stiv import InputError
-        from stiv.blender import least_distance
-
-        try:
-            nearest = least_distance(context, edit_settings(context.scene))
-        except InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        if nearest is None:
-            text = "There are no two objects to measure"
-        else:
-            text = f"{nearest.distance:.6g} between {nearest.bodies[0]} and {nearest.bodies[1]}"
-        context.window_manager.stiv_least_distance = text
-        self.report({"INFO"}, text)
         return {"FINISHED"}

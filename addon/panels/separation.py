@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances that pairs of objects keep, and the least there is."""
+"""Distances that pairs of objects keep."""
 
 from __future__ import annotations
 
 import bpy
 
-from ..operators.separation import STIV_OT_separation_add, STIV_OT_separation_measure, STIV_OT_separation_remove
-from .drawing import SubPanel, draw_lines
+from ..operators.measure import STIV_OT_measure
+from ..operators.separation import STIV_OT_separation_add, STIV_OT_separation_remove
+from .drawing import SubPanel
 
 
 class STIV_PT_separation(SubPanel, bpy.types.Panel):
-    """Distances that pairs of objects keep, and the least there is."""
+    """Distances that pairs of objects keep."""
 
     bl_idname = "STIV_PT_separation"
     bl_label = "Separation of Pairs"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a set)
 
     def draw(self, context: bpy.types.Context) -> None:
-        """One row a pair; the measurement."""
+        """One row a pair; measuring."""
         for index, pair in enumerate(context.scene.stiv.pair_separations):
             box = self.layout.box()
             row = box.row(align=True)
@@ -26,5 +27,4 @@ class STIV_PT_separation(SubPanel, bpy.types.Panel):
             row.operator(STIV_OT_separation_remove.bl_idname, text="", icon="REMOVE").index = index
             box.prop(pair, "separation")
         self.layout.operator(STIV_OT_separation_add.bl_idname, icon="ADD")
-        self.layout.operator(STIV_OT_separation_measure.bl_idname, icon="DRIVER_DISTANCE")
-        draw_lines(self.layout, context.window_manager.stiv_least_distance)
+        self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")

@@ -44,10 +44,6 @@ def test_a_pair_is_kept_apart_after_saving_renaming_and_loading(tmp_path: Path) 
     bpy.ops.stiv.move(value=(0.0, 0.0, -3.0))
     gap = bpy.data.objects["Box"].location.z - 1 + 2
     assert 0.4 * (1 - 1e-6) <= gap < 0.85
-    assert bpy.ops.stiv.separation_measure() == {"FINISHED"}
-    text = bpy.context.window_manager.stiv_least_distance
-    assert float(text.split()[0]) == pytest.approx(gap, rel=1e-4)
-    assert "Box" in text and "Ground" in text
     bpy.ops.stiv.separation_remove(index=0)
     assert len(bpy.context.scene.stiv.pair_separations) == 0
 

@@ -9,7 +9,7 @@ import pytest
 from building import add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift, turn
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, LoopSurface, add_refined, check_scene, least_distance
+from stiv.blender import BlenderEdit, EditSettings, LoopSurface, add_refined, check_scene
 
 
 def begin(**settings: Any) -> BlenderEdit:
@@ -65,15 +65,6 @@ def test_a_cage_keeps_it_by_what_shows_it() -> None:
     edit.apply(shift(z=-3))
     assert edit.write().passed
     assert 0.25 * (1 - 1e-6) <= evaluated(refined)[:, 2].min() + 2 < 0.55
-
-
-def test_the_least_distance_is_read_from_what_is_shown() -> None:
-    add_cube("Left"), add_cube("Right", (2.7, 0.3, 0)), add_cube("Far", (0, 0, 9))
-    nearest = least_distance(bpy.context)
-    assert nearest is not None and nearest.distance == pytest.approx(0.7, abs=1e-6)
-    assert set(nearest.bodies) == {"Left", "Right"}
-    nearest = least_distance(bpy.context, EditSettings(roles={"Right": "ignored"}))
-    assert nearest is not None and nearest.distance == pytest.approx(7.0)
 
 
 def test_values_and_names_are_checked() -> None:

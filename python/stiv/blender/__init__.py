@@ -2,7 +2,7 @@
 """The one place that reads a Blender scene and writes controls back."""
 
 from stiv.blender.changes import Change, Changes, compare
-from stiv.blender.checking import SceneCheck, check_scene, least_distance, read_surface
+from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit import BlenderEdit
@@ -55,7 +55,6 @@ __all__ = [
     "contract_scene",
     "expand_scene",
     "follow",
-    "least_distance",
     "read_state",
     "read_surface",
     "refresh",

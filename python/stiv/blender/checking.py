@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import bpy
 
-import stiv
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
@@ -62,17 +61,6 @@ def exclusions_now(
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)
     return excluded, excluded.others(pairs)
-
-
-def least_distance(context: bpy.types.Context, settings: EditSettings | None = None) -> stiv.LeastDistance | None:
-    """Find how near visible objects are to each other, 0 where they intersect; None where there are not two.
-
-    settings: as of `check_scene`.
-    """
-    chosen = settings or EditSettings()
-    scene = read_scene(context, chosen.takes_part)
-    assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), chosen.ignored_pairs)
-    return stiv.least_distance(assembly.positions, assembly.surface)
 
 
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
