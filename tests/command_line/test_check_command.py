@@ -96,7 +96,7 @@ def test_help_ends_with_0(arguments, capsys):
     assert "usage: stiv" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["check", "replay"])
+@pytest.mark.parametrize("name", ["check", "replay", "repair", "resolve", "batch"])
 def test_help_has_examples_and_exit_codes(name, capsys):
     program.run([name, "--help"])
     out = capsys.readouterr().out
