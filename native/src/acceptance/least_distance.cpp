@@ -2,8 +2,9 @@
 #include "stiv/acceptance/least_distance.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
-#include <vector>
+#include <tuple>
 
 #include "acceptance/primitives.hpp"
 #include "acceptance/triangle_distance.hpp"
@@ -29,7 +30,14 @@ double squared_gap(const PackedBox& a, const PackedBox& b) {
 /// A node of the tree, or at level -1 a primitive: a place in the blocks.
 struct Part {
   Index level = 0, node = 0;
-  bool operator==(const Part& other) const { return level == other.level && node == other.node; }
+  PackedBox box;
+  Index group = 0;
+};
+
+/// Up to eight parts.
+struct Parts {
+  std::array<Part, Bvh::width> parts;
+  std::size_t count = 0;
 };
 
 /// Branch and bound over pairs of nodes, nearest first.
@@ -39,60 +47,64 @@ class Search {
       : surface_(surface), triangles_(triangles), tree_(triangles.tree()), q_(q), within_(within) {}
 
   std::optional<NearestTriangles> run() {
-    const Part root{static_cast<Index>(tree_.levels().size()) - 1, 0};
+    const auto top = static_cast<Index>(tree_.levels().size()) - 1;
+    const Part root{top, 0, tree_.levels().back().boxes[0], tree_.levels().back().groups[0]};
     visit(root, root);
     return best_;
   }
 
  private:
   struct Pair {
-    double bound;
-    Part a, b;
+    double bound = 0;
+    std::uint8_t a = 0, b = 0;
   };
 
   void visit(const Part& a, const Part& b) {
-    if (a.level < 0 && b.level < 0) return examine(tree_.order()[place(a.node)], tree_.order()[place(b.node)]);
-    std::vector<Pair> pairs = pairs_below(a, b);
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.bound < y.bound; });
-    for (const Pair& pair : pairs) {
-      if (pair.bound >= squared_best_) return;
-      visit(pair.a, pair.b);
+    const bool alike = a.level == b.level && a.node == b.node;
+    const Parts first = a.level >= b.level ? children(a) : itself(a);
+    const Parts second = b.level >= a.level ? children(b) : itself(b);
+    std::array<Pair, Bvh::width * Bvh::width> pairs;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < first.count; ++i)
+      for (std::size_t j = alike ? i : 0; j < second.count; ++j) {
+        const Part &x = first.parts[i], &y = second.parts[j];
+        if ((alike && i == j && x.level < 0) || !may_count(x.group, y.group)) continue;
+        const double bound = squared_gap(x.box, y.box);
+        if (bound < squared_best_) pairs[count++] = {bound, std::uint8_t(i), std::uint8_t(j)};
+      }
+    std::sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(count),
+              [](const Pair& x, const Pair& y) { return std::tie(x.bound, x.a, x.b) < std::tie(y.bound, y.a, y.b); });
+    for (std::size_t k = 0; k < count && pairs[k].bound < squared_best_; ++k) {
+      const Part &x = first.parts[pairs[k].a], &y = second.parts[pairs[k].b];
+      if (x.level < 0 && y.level < 0)
+        examine(tree_.order()[place(x.node)], tree_.order()[place(y.node)], pairs[k].bound == 0);
+      else
+        visit(x, y);
     }
   }
 
-  std::vector<Pair> pairs_below(const Part& a, const Part& b) const {
-    const bool alike = a == b;
-    std::vector<Pair> pairs;
-    for (const Part& x : a.level >= b.level ? children(a) : std::vector<Part>{a})
-      for (const Part& y : b.level >= a.level ? children(b) : std::vector<Part>{b}) {
-        if (alike && (y.node < x.node || (x.level < 0 && x == y))) continue;
-        if (!may_count(group(x), group(y))) continue;
-        const double bound = squared_gap(box(x), box(y));
-        if (bound < squared_best_) pairs.push_back({bound, x, y});
-      }
-    return pairs;
-  }
-
-  std::vector<Part> children(const Part& part) const {
-    const Index count = part.level > 0 ? static_cast<Index>(tree_.levels()[place(part.level - 1)].nodes.size())
-                                       : static_cast<Index>(tree_.order().size());
-    std::vector<Part> parts;
-    for (Index node = part.node * Bvh::width; node < std::min(count, (part.node + 1) * Bvh::width); ++node)
-      if (part.level > 0 || tree_.order()[place(node)] >= 0) parts.push_back({part.level - 1, node});
+  static Parts itself(const Part& part) {
+    Parts parts;
+    parts.parts[parts.count++] = part;
     return parts;
   }
 
-  PackedBox box(const Part& part) const {
-    if (part.level >= 0) return tree_.levels()[place(part.level)].boxes[place(part.node)];
-    const Bvh::Node& block = tree_.levels()[0].nodes[place(part.node / Bvh::width)];
-    PackedBox packed{};
-    for (std::size_t k = 0; k < 7; ++k) packed.values[k] = block.planes[k][part.node % Bvh::width];
-    return packed;
-  }
-
-  Index group(const Part& part) const {
-    if (part.level < 0) return tree_.levels()[0].groups[place(part.node / Bvh::width)];
-    return tree_.levels()[place(part.level)].groups[place(part.node)];
+  Parts children(const Part& part) const {
+    const Bvh::Level& level = tree_.levels()[place(part.level)];
+    const Bvh::Node& node = level.nodes[place(part.node)];
+    const Index below = part.level > 0 ? static_cast<Index>(tree_.levels()[place(part.level - 1)].nodes.size())
+                                       : static_cast<Index>(tree_.order().size());
+    Parts parts;
+    for (Index lane = 0; lane < std::min(Bvh::width, below - part.node * Bvh::width); ++lane) {
+      const Index child = part.node * Bvh::width + lane;
+      if (part.level == 0 && tree_.order()[place(child)] < 0) continue;
+      Part& next = parts.parts[parts.count++];
+      next.level = part.level - 1;
+      next.node = child;
+      for (std::size_t k = 0; k < 7; ++k) next.box.values[k] = node.planes[k][lane];
+      next.group = part.level > 0 ? tree_.levels()[place(part.level - 1)].groups[place(child)] : part.group;
+    }
+    return parts;
   }
 
   bool may_count(Index a, Index b) const {
@@ -100,13 +112,14 @@ class Search {
     return (within_ || a != b) && surface_.bodies_meet(a, b);
   }
 
-  void examine(Index a, Index b) {
+  void examine(Index a, Index b, bool boxes_meet) {
     if (a > b) std::swap(a, b);
     const std::array<Index, 3>&first = triangles_.corners(a), &second = triangles_.corners(b);
     for (const Index corner : first)
       if (std::find(second.begin(), second.end(), corner) != second.end()) return;
+    if (best_ && least_triangle_distance(first, second, q_) >= best_->distance) return;
     NearestTriangles nearest = triangle_distance(first, second, q_);
-    if (triangles_intersect(first, second, q_)) nearest.distance = 0;
+    if (boxes_meet && triangles_intersect(first, second, q_)) nearest.distance = 0;
     if (best_ && nearest.distance >= best_->distance) return;
     nearest.triangles = {a, b};
     best_ = nearest;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acceptance/triangle_distance.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -18,7 +19,32 @@ Corners seen_from(const Vector3& origin, const std::array<Index, 3>& triangle, c
   return corners;
 }
 
+/// By how much the second lies beyond the first along a direction, over its length.
+double gap_along(const Vector3& direction, const Corners& a, const Corners& b) {
+  const double length = direction.norm();
+  if (!(length > 0)) return 0;
+  double high = -std::numeric_limits<double>::infinity(), low = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    high = std::max(high, direction.dot(a[k]));
+    low = std::min(low, direction.dot(b[k]));
+  }
+  return (low - high) / length;
+}
+
 }  // namespace
+
+double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                               const Positions& q) {
+  const Vector3 origin = q.row(first[0]);
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  const Vector3 centres = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
+  double gap = gap_along(centres, a, b);
+  for (const Corners& triangle : {a, b}) {
+    const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    gap = std::max(gap, gap_along(normal.dot(centres) < 0 ? Vector3(-normal) : normal, a, b));
+  }
+  return gap * (1 - 0x1p-40);
+}
 
 NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                    const Positions& q) {

@@ -12,4 +12,9 @@ namespace stiv {
 NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                    const Positions& q);
 
+/// A quick bound from below of their distance, a little loose for rounding: by planes across the line of the centres
+/// and along both triangles.
+double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                               const Positions& q);
+
 }  // namespace stiv
