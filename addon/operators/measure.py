@@ -7,7 +7,6 @@ import bpy
 
 from .. import availability
 from ..overlay import showing
-from ..overlay.content import Clearance
 from ..settings import edit_settings
 
 
@@ -38,6 +37,6 @@ class STIV_OT_measure(bpy.types.Operator):
         if found is None:
             self.report({"WARNING"}, "There are no two objects to be measured")
             return {"CANCELLED"}
-        showing.show_clearance(Clearance(found.points[0], found.points[1], found.distance, found.bodies))
+        showing.show_clearance(found)
         self.report({"INFO"}, f"Least distance {found.distance:.6g} between {' and '.join(found.bodies)}")
         return {"FINISHED"}

@@ -68,6 +68,13 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
         update=_redraw,
     )
+    while_dragging: BoolProperty(
+        name="Clearance while Dragging",
+        description="Measure the nearest pair at each step of a drag, which takes some time of it",
+        default=False,
+        options={"SKIP_SAVE"},
+        update=_redraw,
+    )
     speed: BoolProperty(
         name="Speed",
         description="Milliseconds and frames a second of an edit",
@@ -87,6 +94,8 @@ def show_edit(edit: Any, result: Any) -> None:
     now = time.monotonic()
     found = contacts_of(edit, result)
     _content.contacts = (found.points, found.blocked)
+    if bpy.context.window_manager.stiv_overlay.while_dragging:
+        _content.clearance = clearance_of(edit.least_distance())
     _content.milliseconds = 1000.0 * result.timings["total"]
     _content.frames = 1.0 / (now - _last_step) if 0.0 < now - _last_step < 1.0 else None
     _last_step = now
@@ -95,7 +104,7 @@ def show_edit(edit: Any, result: Any) -> None:
 
 def end_edit() -> None:
     """A drag is over."""
-    _content.contacts = _content.milliseconds = _content.frames = None
+    _content.contacts = _content.milliseconds = _content.frames = _content.clearance = None
     _redraw()
 
 
@@ -108,10 +117,15 @@ def show_pairs(context: Any, pairs: Any) -> None:
     _redraw()
 
 
-def show_clearance(clearance: Clearance | None) -> None:
-    """The nearest pair; goes with the next change of the scene."""
-    _content.clearance = clearance
+def show_clearance(found: Any) -> None:
+    """The nearest pair, a `stiv.LeastDistance` or None; goes with the next change of the scene."""
+    _content.clearance = clearance_of(found)
     _redraw()
+
+
+def clearance_of(found: Any) -> Clearance | None:
+    """What was measured, to be drawn."""
+    return None if found is None else Clearance(found.points[0], found.points[1], found.distance, found.bodies)
 
 
 def clear() -> None:

@@ -25,6 +25,6 @@ class STIV_PT_overlay(SubPanel, bpy.types.Panel):
         chosen = context.window_manager.stiv_overlay
         column = self.layout.column()
         column.active = chosen.show
-        for name in ("contacts", "intersections", "clearance", "speed"):
+        for name in ("contacts", "intersections", "clearance", "while_dragging", "speed"):
             column.prop(chosen, name)
         self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")

@@ -47,6 +47,28 @@ def test_the_nearest_pair_is_shown_until_the_scene_changes() -> None:
     assert showing.content().clearance is None
 
 
+def test_a_drag_shows_contacts_speed_and_on_demand_the_clearance() -> None:
+    from stiv.blender import BlenderEdit, EditSettings
+
+    bpy.context.object.location = (3.0, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.01), "move")
+    matrix = [[1, 0, 0, -2.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    result = edit.drag(matrix)
+    showing.show_edit(edit, result)
+    shown = showing.content()
+    assert shown.contacts is not None and len(shown.contacts[0]) > 0
+    assert shown.milliseconds is not None and shown.clearance is None
+    bpy.context.window_manager.stiv_overlay.while_dragging = True
+    try:
+        showing.show_edit(edit, result)
+        assert shown.clearance is not None and 0.0 < shown.clearance.distance < 0.1
+    finally:
+        bpy.context.window_manager.stiv_overlay.while_dragging = False
+    showing.end_edit()
+    assert not showing.content()
+
+
 def test_loading_a_file_clears_it() -> None:
     bpy.ops.stiv.check()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)

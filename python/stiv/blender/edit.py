@@ -123,6 +123,10 @@ class BlenderEdit:
         """The surface, (N, 3), of controls, (m, 3), accepted or not."""
         return self._solving.deformation.surface(controls)
 
+    def least_distance(self) -> stiv.LeastDistance | None:
+        """How near objects are to each other in the accepted state, far obstacles left out; None without a session."""
+        return self._solving.session.least_distance() if self._solving.has_begun else None
+
     @property
     def assembly(self) -> Assembly:
         """The surface's objects and faces, with the cuts of bent faces that are kept free."""
