@@ -13,6 +13,7 @@ pytest.importorskip("bpy")
 import bpy
 
 from stiv.blender import BlenderEdit, EditSettings, begin_nearby, check_scene, reach
+from stiv.blender.measuring import nearest_pair
 from stiv.blender.roles import find_movers
 
 DEFORM = EditSettings(object_response="deform")
@@ -63,6 +64,22 @@ def test_what_is_far_is_left_out(row: Any) -> None:
     edit = begin_nearby(bpy.context, EditSettings(), "move")
     assert {mesh.owner.name for mesh in edit.assembly.meshes} == {"Box", "Neighbour"}
     assert edit.drag(along_x(0.5)).status == "reached" and not edit.has_all
+
+
+def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
+    """The wall begins 9.5 away from the box."""
+    roles = {"Neighbour": "ignored"}
+    assert left_out(EditSettings(separation=1.0)) >= {"Wall"}
+    assert "Wall" not in left_out(EditSettings(separation=5.0))
+    for separation in (1.0, 4.0, 9.0):
+        settings = EditSettings(separation=separation, roles=roles)
+        edit = begin_nearby(bpy.context, settings, "move")
+        for step in range(1, 21):
+            edit.drag(along_x(0.5 * step))
+            assert edit.write().passed
+            nearest = nearest_pair(bpy.context, settings)
+            assert nearest is not None and nearest.distance >= separation * (1 - 1e-6)
+        edit.restore()
 
 
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM])

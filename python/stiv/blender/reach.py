@@ -21,15 +21,16 @@ MARGIN = 0.01  # of the size of the box, which what moves keeps from its sides
 
 @dataclass(frozen=True)
 class Reach:
-    """The box from `low` to `high`, (3,), which no object named in `left_out` touches."""
+    """The box from `low` to `high`, (3,), which nothing named in `left_out` touches, and the separation to be kept."""
 
     low: Floats
     high: Floats
     left_out: frozenset[str]
+    separation: float = 0.0
 
     def contains(self, points: Floats) -> bool:
-        """Are all points, (n, 3), within the box, a margin away from its sides?"""
-        margin = MARGIN * float(np.linalg.norm(self.high - self.low))
+        """Are all points, (n, 3), within the box, a margin and twice the separation away from its sides?"""
+        margin = MARGIN * float(np.linalg.norm(self.high - self.low)) + 2 * self.separation
         return bool(((points >= self.low + margin) & (points <= self.high - margin)).all())
 
 
@@ -57,10 +58,10 @@ def find_reach(
         return None
     low = np.min([*(box[0] for box in moving), *beyond], axis=0)
     high = np.max([*(box[1] for box in moving), *beyond], axis=0)
-    size = float(np.linalg.norm(high - low))
+    size = float(np.linalg.norm(high - low)) + 2 * settings.separation
     low, high = low - size, high + size
     far = [ob.name for ob in candidates if ob.name not in tied | named and _apart(_box(ob, depsgraph), (low, high))]
-    return Reach(low, high, frozenset(far)) if far else None
+    return Reach(low, high, frozenset(far), settings.separation) if far else None
 
 
 def _stands_alone(ob: bpy.types.Object) -> bool:
