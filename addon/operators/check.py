@@ -45,7 +45,7 @@ class STIV_OT_check(bpy.types.Operator):
         if pairs and context.mode == "OBJECT":
             select(context, {name for pair in pairs for name in pair})
         chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
-        text = summary(pairs, chosen)
+        text = summary(pairs, chosen) + (read_out(context) if not pairs else "")
         context.window_manager.stiv_check.summary = text
         showing.show_pairs(context, found.pairs)
         self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
@@ -63,6 +63,17 @@ def summary(pairs: Counter[tuple[str, str]], chosen: Mapping[str, int]) -> str:
     if len(pairs) > MOST:
         lines.append(f"and {len(pairs) - MOST} more pairs of objects")
     return "\n".join(lines)
+
+
+def read_out(context: bpy.types.Context) -> str:
+    """The least distance between two objects as a line, shown in the view too; "" where there are not two."""
+    from stiv.blender.measuring import nearest_pair  # the add-on registers without the native module
+
+    least = nearest_pair(context, edit_settings(context.scene))
+    showing.show_clearance(least)
+    if least is None:
+        return ""
+    return f"\nLeast distance {least.distance:.6g} between {' and '.join(least.bodies)}"
 
 
 def select(context: bpy.types.Context, names: Any) -> None:

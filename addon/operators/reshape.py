@@ -12,6 +12,7 @@ from typing import Any
 import bpy
 
 from .. import availability
+from ..overlay import showing
 from ..settings import edit_settings
 from . import interface
 
@@ -151,6 +152,7 @@ class ReshapeOperator:
     def _tell(self, context: bpy.types.Context, report: Any) -> set[str]:
         context.window_manager.stiv_last_edit = describe(report)
         context.window_manager.stiv_check.summary = outcome(report)
+        showing.show_pairs(context, report.pairs)
         if report.status in ("refused", "budget") or (report.status == "blocked" and not report.changed):
             self.report({"ERROR"}, outcome(report))
             return {"CANCELLED"}

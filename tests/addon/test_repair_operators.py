@@ -275,3 +275,14 @@ def test_stale_exclusions_are_told() -> None:
     assert bpy.ops.stiv.move(value=(0, 0, 0.01)) == {"FINISHED"}
     told = bpy.context.window_manager.stiv_check.summary
     assert told == 'excluded pairs are dropped (1): the faces of "Grid" have changed'
+
+
+def test_check_reads_out_the_least_distance() -> None:
+    add("Grid", *GRID, select=False)
+    add("Apart", *SPIKE, location=(0, 0, 1.25))
+    assert bpy.ops.stiv.check() == {"FINISHED"}
+    told = bpy.context.window_manager.stiv_check.summary.splitlines()
+    assert told == ["No intersections", "Least distance 0.25 between Grid and Apart"]
+    bpy.data.objects.remove(bpy.data.objects["Apart"])
+    assert bpy.ops.stiv.check() == {"FINISHED"}
+    assert bpy.context.window_manager.stiv_check.summary == "No intersections"

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import bpy
@@ -63,8 +63,11 @@ class BlenderExpansion:
         return cls(reshaped, reshaped.start + chosen.amount * (whole - reshaped.start), chosen)
 
     def solve(self, **execution: Any) -> None:
-        """Go toward the goal; `cancel` and `progress` as of stiv.EditSession. Raises StartIntersectsError."""
-        now, self._results = self._reshaped.start, []
+        """Go toward the goal, never farther from it; `cancel` and `progress` as of stiv.EditSession.
+
+        Raises StartIntersectsError.
+        """
+        now, least, self._results = self._reshaped.start, self._energy(self._reshaped.start), []
         for _ in range(self._settings.rounds):
             result = stiv.expand(
                 self._reshaped.assembly.surface, now, self._goal, self._reshaped.edit_options(),
@@ -73,10 +76,11 @@ class BlenderExpansion:
             if result.status == "cancelled":
                 self._results = [result]
                 return
-            if self._results and result.energy >= self._results[-1].energy:
+            if result.energy >= least:
+                self._results = self._results or [replace(result, status="unchanged", path=[])]
                 return
             self._results.append(result)
-            now = result.controls
+            now, least = result.controls, result.energy
             if result.status in ("reached", "unchanged", "budget"):
                 return
 
@@ -109,6 +113,11 @@ class BlenderExpansion:
     def restore(self) -> None:
         """Put everything back, bit by bit."""
         self._reshaped.restore()
+
+    def _energy(self, controls: Floats) -> float:
+        """Half the sum of squared distances of the surface to that of the goal, as of stiv.EditResult."""
+        surface = self._reshaped.deformation.surface
+        return 0.5 * float(((surface(controls) - surface(self._goal)) ** 2).sum())
 
     def _take_in(self, verification: Verification) -> bool:
         """Keep further cuts of faces free from now on; False if the start is not free with them."""

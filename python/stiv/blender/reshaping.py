@@ -27,7 +27,7 @@ from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal
 from stiv.blender.recutting import Cut, with_cuts
 from stiv.blender.references import ObjectReference
-from stiv.blender.sessions import deformation_of, mobilities, stacked
+from stiv.blender.sessions import deformation_of, mobilities, pair_separations_of, stacked
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, Verification, Verifier
 
@@ -105,6 +105,7 @@ class Reshaped:
         """How an edit of all controls that may move is solved."""
         return stiv.EditOptions(
             separation=self.settings.separation,
+            pair_separations=pair_separations_of(self.assembly, self.settings),
             smoothness=self.settings.smoothness,
             weights=np.where(self.moves, np.concatenate([part.given for part in self.parts]), 0.0),
             constraints=self.settings.constraints,

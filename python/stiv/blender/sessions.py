@@ -44,7 +44,7 @@ def make_session(
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         separation=settings.separation,
-        pair_separations=_pair_separations(assembly, settings),
+        pair_separations=pair_separations_of(assembly, settings),
         smoothness=settings.smoothness,
         weights=np.concatenate(list(weights)),
         exclude=settings.excluded.triangles(assembly, q, settings.threads),
@@ -72,7 +72,7 @@ def split(controls: Floats, parts: Sequence[Part]) -> list[Floats]:
     return np.split(controls, np.cumsum([len(part.controls) for part in parts])[:-1])
 
 
-def _pair_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
+def pair_separations_of(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
     """The separations of pairs of objects as those of their bodies."""
     bodies: dict[str, list[int]] = {}
     for number, body in enumerate(assembly.surface.bodies):
