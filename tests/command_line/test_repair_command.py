@@ -72,6 +72,13 @@ def test_other_kinds_of_files_are_repaired_too(tube_obj, tmp_path, suffix):
     assert np.array_equal(read_mesh(out).vertices, read_mesh(other).vertices)
 
 
+def test_a_time_limit_that_is_used_up_ends_with_4(tube_obj, tmp_path, capsys):
+    out = tmp_path / "out.obj"
+    assert program.run(["repair", str(tube_obj), "-o", str(out), "--time-limit", "1e-9"]) == 4
+    assert "the time limit ended first" in capsys.readouterr().out
+    assert not out.exists()
+
+
 def test_what_is_free_is_copied(tmp_path, capsys):
     source, out = tmp_path / "a.obj", tmp_path / "b.obj"
     source.write_text(balls(3.0))

@@ -58,13 +58,19 @@ def add_to(subcommands: Subparsers) -> None:
         "--max-deviation", type=float, default=0.05, metavar="D",
         help="refuse what ends farther off: root mean square in diagonals of what may move (default 0.05)",
     )  # fmt: skip
+    parser.add_argument(
+        "--time-limit", type=float, default=0.0, metavar="S",
+        help="seconds after which the best repair so far is taken, if there is one (default: no limit)",
+    )  # fmt: skip
     parser.add_argument("--json", "--report", type=Path, metavar="F", help="write what was done to F, as JSON")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
 
 
 def _run(arguments: argparse.Namespace) -> ExitCode:
-    choices = RepairChoices(tuple(arguments.move), arguments.weld, arguments.separation, arguments.max_deviation)
+    choices = RepairChoices(
+        tuple(arguments.move), arguments.weld, arguments.separation, arguments.max_deviation, arguments.time_limit
+    )
     for path in (arguments.output, arguments.json):
         require_folder(path)
     report = repair_file(arguments.file, arguments.output, choices)

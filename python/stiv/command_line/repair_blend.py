@@ -60,7 +60,7 @@ def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
         if not require_blender("stiv.blender.replaying", source).operators_are_there():
             require_blender("stiv_addon", source).register()
         settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
-    return replace(settings, separation=choices.separation) if choices.separation else settings
+    return replace(settings, separation=choices.separation or settings.separation, time_budget=choices.time_limit)
 
 
 def _that_may_change(context: Any, names: set[str], settings: Any) -> set[str]:

@@ -31,14 +31,14 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
         mesh = welded_mesh(mesh)
     surface = _surface_of(mesh, choices.move)
     options = stiv.RepairOptions(
-        edit=stiv.EditOptions(separation=choices.separation), max_deviation=choices.max_deviation
+        edit=stiv.EditOptions(separation=choices.separation, time_budget=choices.time_limit),
+        max_deviation=choices.max_deviation,
     )
     with share_bar("repair") as progress:
         result = stiv.repair(surface, mesh.vertices, options, progress=progress)
     pairs = _named_pairs(mesh, result.pairs.tolist())
-    outcome = RepairOutcome(
-        result.status, result.message, result.pairs_before, pairs, result.deviation, result.contracted
-    )
+    message = "the time limit ended first" if result.status == "budget" else result.message
+    outcome = RepairOutcome(result.status, message, result.pairs_before, pairs, result.deviation, result.contracted)
     if not outcome.free:
         return outcome
     with written_atomically(output) as temporary:

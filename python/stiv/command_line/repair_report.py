@@ -16,12 +16,15 @@ Element = tuple[str, str, int]  # object, kind of element, number within the obj
 
 @dataclass(frozen=True)
 class RepairChoices:
-    """What the user chose: names of objects that may change (none: all that intersect), and as stiv.RepairOptions."""
+    """What the user chose: names of objects that may change (none: all that intersect), seconds that it may take (0: no
+    limit), and as stiv.RepairOptions.
+    """
 
     move: tuple[str, ...] = ()
     weld: bool = False
     separation: float = 0.0
     max_deviation: float = 0.05
+    time_limit: float = 0.0
 
 
 @dataclass(frozen=True)
