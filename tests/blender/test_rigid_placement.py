@@ -23,6 +23,7 @@ from building import (
 )
 from mathutils import Matrix
 
+from stiv import InputError
 from stiv.blender import BlenderEdit, EditSettings
 
 TURN = turn(0.9, "X", (1, 2, 3)) @ turn(0.4, "Z") @ shift(0.3, -0.2, 0.1)
@@ -179,3 +180,16 @@ def test_growing_stops_at_a_wall() -> None:
     edit.apply(stretch(3.0))
     assert edit.write().passed
     assert 1.8 < np.abs(evaluated(cube)[:, 0]).max() < 2
+
+
+@pytest.mark.parametrize("factors", [(0.0, 0.0, 0.0), (1.0, 0.0, 2.0)])
+def test_objects_are_not_pressed_flat(factors: tuple[float, float, float]) -> None:
+    """What keeps its shape is not tested against itself: a scale of 0 once left every face in every other."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.ops.mesh.primitive_cube_add()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "scale")
+    with pytest.raises(InputError, match="flat"):
+        edit.drag(np.diag([*factors, 1.0]))
+    edit.apply(np.diag([-2.0, -2.0, -2.0, 1.0]))  # its way leads through 0
+    assert edit.write().passed
+    assert tuple(round(value, 5) for value in bpy.context.object.scale) == (-2.0, -2.0, -2.0)

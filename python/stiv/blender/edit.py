@@ -234,6 +234,8 @@ class BlenderEdit:
         results = []
         for fraction in self._fractions(way):
             part = replace(target, matrix=way(fraction), rotation=_times(fraction, target.rotation))
+            if fraction < 1 and not np.linalg.det(part.linear):  # flat for a moment, on the way to a mirror image
+                continue
             results.append(self.drag(target if fraction == 1 else part, **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return summed(results)

@@ -66,6 +66,8 @@ class PlacementGoal:
         linear = motion.linear
         if self.axes is not None:
             goal[1] = np.einsum("ki,kl,li->i", self.axes, linear, self.axes)
+            if not goal[1].all():
+                raise InputError("a scale of 0 would press objects flat; deform them instead, or choose another factor")
         elif self.turns:
             goal[1] = nearest_turn(rotation_vector(nearest_rotation(linear)), last[1])
         return goal
