@@ -111,10 +111,12 @@ def pictures() -> dict[str, Picture]:
             of("dressing"), View((2.6, -5.4, 1.9), (0.0, 0.0, 1.22), 62.0, (380, 420)), (0.0, 0.4, 0.7, 1.0), True
         ),
         "packing": Picture(
-            lambda: filmed(packing.session()), View((3.2, -6.6, 3.6), (0.0, 0.0, 1.0), 48.0, (380, 420)), moving=True
+            lambda: filmed(packing.session()),
+            View((3.0, -6.4, 4.4), (0.0, 0.0, 0.7), 46.0, (380, 420)),
+            (0.6, 0.8, 1.0),
         ),
         "untangling": Picture(
-            lambda: untangled(arm_in_body()), View((2.4, -12.0, 3.4), (0.0, 0.0, 1.2), 45.0, (420, 420)), half
+            lambda: untangled(arm_in_body()), View((2.4, -16.0, 3.4), (0.0, 0.0, 1.2), 45.0, (420, 400)), half
         ),
         "weighted_handles": Picture(weightings, View((2.6, -4.4, 2.2), (0.0, 0.0, 0.2), 52.0, (320, 280)), four),
         "face": Picture(pressed_face, View((2.2, -2.6, 2.7), (0.0, 0.0, 0.1), 50.0, (420, 360))),

@@ -12,16 +12,16 @@ from .subdivision_parts import Parts, part
 #: Where each organ is at the start, and where it is wanted: they overlap there.
 PLACES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "Gut": ((0.0, 0.0, 1.2), (0.0, 0.0, -0.5)),
-    "Left kidney": ((1.1, 0.0, 1.3), (0.6, 0.1, -0.35)),
-    "Right kidney": ((-1.1, 0.0, 1.3), (-0.6, 0.1, -0.35)),
-    "Liver": ((-0.75, 0.0, 2.5), (-0.3, -0.1, 0.0)),
-    "Stomach": ((0.8, 0.0, 2.5), (0.35, -0.1, 0.0)),
-    "Spleen": ((1.7, 0.0, 2.3), (0.7, 0.1, 0.1)),
-    "Left lung": ((0.9, 0.0, 3.7), (0.42, 0.1, 0.45)),
-    "Right lung": ((-0.9, 0.0, 3.7), (-0.42, 0.1, 0.45)),
-    "Heart": ((0.0, 0.0, 3.6), (0.0, -0.1, 0.4)),
+    "Left kidney": ((0.5, 0.0, 2.6), (0.5, 0.1, -0.3)),
+    "Right kidney": ((-0.5, 0.0, 2.6), (-0.5, 0.1, -0.3)),
+    "Liver": ((-0.05, -0.15, 3.5), (-0.05, -0.2, -0.05)),
+    "Stomach": ((0.1, 0.1, 4.4), (0.15, 0.15, 0.05)),
+    "Spleen": ((0.5, 0.1, 5.2), (0.5, 0.3, 0.15)),
+    "Left lung": ((0.4, 0.0, 6.1), (0.38, 0.1, 0.45)),
+    "Right lung": ((-0.4, 0.0, 6.1), (-0.38, 0.1, 0.45)),
+    "Heart": ((0.0, -0.1, 7.1), (0.0, -0.1, 0.4)),
 }
-MOVES = 48
+MOVES = 60
 
 
 def parts() -> Parts:
