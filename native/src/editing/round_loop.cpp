@@ -52,8 +52,9 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
                                          round, kept.size(), execution);
     outcome.patches = measured.patches;
     const ScopedTimer timer(execution.timings.response);
-    std::vector<ControlConstraint> rows = control_constraints(
-        measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(), accepted.controls);
+    std::vector<ControlConstraint> rows =
+        control_constraints(measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(),
+                            accepted.controls, &execution);
     if (rows.empty()) return outcome;  // nothing that is free to move can help
     const bool inequalities = options.solver == ConstraintSolver::lcp;
     accumulate = accumulate && inequalities && (round < options.accumulated_rounds || measured.each_contact);

@@ -18,9 +18,11 @@ constexpr double least_squared_length = 1e-24;
 }  // namespace
 
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
-                                                   const Controls& p, const Metric& metric, const Controls& metric_at) {
+                                                   const Controls& p, const Metric& metric, const Controls& metric_at,
+                                                   const Execution* execution) {
   std::vector<ControlConstraint> constraints;
   for (const Stiv& stiv : stivs) {
+    if (execution != nullptr) execution->check();
     ControlConstraint constraint;
     constraint.row = deformation.pull_back(p, stiv.gradient);
     constraint.step = metric.apply_inverse(metric_at, constraint.row);
