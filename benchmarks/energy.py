@@ -40,8 +40,8 @@ class Energies:
 def truncated_energy(edit: Edit, separation: float) -> float:
     """E when the edit simply stops at the first contact."""
     goal = edit.deformation.surface(edit.goal)
-    events = stiv.find_interference(edit.surface, edit.deformation.surface(edit.controls), goal, separation)
-    fraction = float(events.time.min(initial=1.0))
+    start = edit.deformation.surface(edit.controls)
+    fraction = min(stiv.Detector(edit.surface).earliest_time(start, goal, separation), 1.0)
     reached = edit.deformation.surface(edit.controls + fraction * (edit.goal - edit.controls))
     return 0.5 * float(((reached - goal) ** 2).sum())
 
