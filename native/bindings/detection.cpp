@@ -7,7 +7,7 @@
 
 #include "events.hpp"
 #include "module.hpp"
-#include "stiv/detection/manageable_part.hpp"
+#include "stiv/detection/detector.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 #include "stiv/error.hpp"
 
@@ -46,10 +46,10 @@ class GuardedDetector {
   GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, NarrowPhase narrow_phase, int threads)
       : detector_(std::move(surface), {broad_phase, narrow_phase}), threads_(threads) {}
 
-  EventsUntil find(const Positions& start, const Positions& end, double separation, double keep) {
+  Events find(const Positions& start, const Positions& end, double separation, double keep) {
     const Use use(busy_);
     Execution execution(threads_);
-    return find_manageable_part(detector_, start, end, {separation, keep}, execution);
+    return detector_.find(start, end, {separation, keep}, execution);
   }
 
   double earliest_time(const Positions& start, const Positions& end, double separation, double keep) {
@@ -106,11 +106,11 @@ void bind_detection(py::module_& module) {
       .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>())
       .def("find",
            [](GuardedDetector& detector, const Positions& start, const Positions& end, double separation, double keep) {
-             const EventsUntil found = [&] {
+             const Events events = [&] {
                const py::gil_scoped_release release;
                return detector.find(start, end, separation, keep);
              }();
-             return py::make_tuple(arrays_of(found.events), found.until);
+             return arrays_of(events);
            })
       .def("earliest_time", &GuardedDetector::earliest_time, Release());
 }

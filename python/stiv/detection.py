@@ -47,8 +47,6 @@ class Events:
     """(K, 3) unit; normal . (relative displacement) <= 0; zero where none can be told"""
     start_distance: Floats
     """(K,) distance of the two primitives at the start of the step"""
-    until: float = 1.0
-    """How much of the step was looked at: less than 1 if all of it would bring too many pairs near each other."""
 
     def __len__(self) -> int:
         """Return the number of events."""
@@ -124,14 +122,9 @@ class Detector:
 
         A pair that starts at distance d0 interferes when it comes within the separation; within keep d0
         where it starts nearer than that.
-
-        Time and memory are bounded: of a motion so far that it brings too many pairs near each other (above two million
-        and 16 a primitive; trees only), the events are those up to `Events.until`, a half, a quarter, ... of the step,
-        with their times in the whole step; nothing is known of the rest.
         """
         first, last = self._positions(start, end)
-        arrays, until = self._ready(len(first)).find(first, last, *_proximity(separation, keep))
-        return Events(*arrays, until)
+        return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, keep)))
 
     def earliest_time(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> float:
         """Return the time of the earliest event, inf if there is none; cheaper than `find`."""
@@ -163,7 +156,7 @@ def find_interference(
     narrow_phase: str = "conservative",
     threads: int = 0,
 ) -> Events:
-    """Return all events of one step (up to `Events.until`); see Detector, which keeps its trees for the next.
+    """Return all events of one step; see Detector, which keeps its trees for the next.
 
     triangles   (F, 3), or a Surface; vertices of no triangle take part as points
     start, end  (N, 3) positions

@@ -74,14 +74,6 @@ def test_grazing_pairs_are_reported_only_if_they_meet() -> None:
         assert truth is not None and time <= truth + WIDTH
 
 
-def test_a_motion_that_is_too_far_is_cut_in_time() -> None:
-    step = pressed_inside(16, 5)
-    near = stiv.find_interference(step.triangles, step.start, step.end)
-    far = stiv.find_interference(step.triangles, step.start, step.start + 2**12 * (step.end - step.start))
-    assert near.until == 1 and 0 < far.until < 0.1
-    assert len(far) > 0 and far.time.max() <= far.until
-
-
 def test_events_describe_the_contact() -> None:
     corners, start, end = soup(5, 40, 0.5)
     events = stiv.find_interference(corners, start, end, separation=0.01)

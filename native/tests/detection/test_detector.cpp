@@ -5,8 +5,8 @@
 
 #include "detection/event_bits.hpp"
 #include "detection/scenes.hpp"
+#include "stiv/detection/detector.hpp"
 #include "stiv/detection/distance.hpp"
-#include "stiv/detection/manageable_part.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 #include "stiv/error.hpp"
 
@@ -227,27 +227,6 @@ TEST_CASE("detector: a motion that brings too many pairs near each other is told
     CHECK(same_bits(*part, Detector(scene.surface).find(scene.start, end, proximity, execution)));
     CHECK(detector.find_if_manageable(scene.start, end, proximity, execution)->size() > 20);
   }
-}
-
-TEST_CASE("detector: of a motion that is too far, the events of as much as can be looked at") {
-  MovingScene scene = stirred_sheets(45, 1, 0, 10);
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> far(-0.5, 0.5);
-  const Positions motion = Positions::NullaryExpr(scene.start.rows(), 3, [&] { return far(random); });
-  const Proximity proximity{1e-3, 0.5};
-  Execution execution(1);
-  Detector detector(scene.surface);
-  scene.end = scene.start + motion;
-  const EventsUntil found = find_manageable_part(detector, scene.start, scene.end, proximity, execution);
-  CHECK(found.until < 1);
-  CHECK(found.events.size() > 20);
-  Events expected = Detector(scene.surface, {BroadPhase::brute_force})
-                        .find(scene.start, scene.start + found.until * (scene.end - scene.start), proximity, execution);
-  for (Event& event : expected) event.time *= found.until;
-  CHECK(same_bits(found.events, expected));
-  const EventsUntil whole =
-      find_manageable_part(detector, scene.start, scene.start + motion / 256, proximity, execution);
-  CHECK(whole.until == 1);
 }
 
 TEST_CASE("detector: coordinates beyond single precision") {
