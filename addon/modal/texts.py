@@ -24,7 +24,7 @@ def header_text(
     """One line: the value, the lock, the typed text, what became of it. `axes` names both choices of axes."""
     parts = [transform]
     if state.constraint.label:
-        parts.append(f"along {axes[state.constraint.second]} {state.constraint.label}".replace("  ", " "))
+        parts.append(f"along {axes[state.constraint.second].title()} {state.constraint.label}".replace("  ", " "))
     if state.typed.active:
         parts.append(state.typed.text(state.components))
     parts.extend(text for text in (state.proportional.text, *_modes(state)) if text)
