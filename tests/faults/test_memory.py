@@ -25,8 +25,9 @@ diagonal = float(np.linalg.norm(np.ptp(editing.surface, axis=0)))
 result = editing.edit(editing.controls + np.array([{direction}]) * 10 * diagonal)
 surface, _, _ = ball_above_wall()
 import stiv
-print(result.status, len(stiv.find_intersections(result.surface, surface, threads=2)),
-      resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+with open("/proc/self/status") as status:  # ru_maxrss would count what the parent held when it started this process
+    peak = next(int(line.split()[1]) for line in status if line.startswith("VmHWM"))
+print(result.status, len(stiv.find_intersections(result.surface, surface, threads=2)), peak * 1024)
 """
 
 

@@ -36,15 +36,18 @@ def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
     assert {tuple(pair) for pair in np.asarray(raised.value.pairs).tolist()} <= found
 
 
-def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart():
+@pytest.mark.parametrize(("separation", "least_slide"), [(0.5, 0.0), (0.3, 0.05), (0.2, 0.2), (0.1, 0.29)])
+def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(separation, least_slide):
+    """With 0.5 no slide is possible: every vertex starts 0.5001 above the sides of the next squares."""
     vertices, triangles = sheets(0.01), np.vstack([FACES, ABOVE])
-    editing = session(vertices, triangles, separation=0.5)
+    editing = session(vertices, triangles, separation=separation)
     goal = vertices.copy()
     goal[len(SHEET.vertices) :, 0] += 0.3  # sideways
     result = editing.edit(goal)
     assert len(stiv.find_intersections(result.surface, triangles)) == 0
-    assert np.abs(result.surface[:, 2] - vertices[:, 2]).max() < 0.1  # a fifth of the separation
-    assert (result.surface[len(SHEET.vertices) :, 0] - vertices[len(SHEET.vertices) :, 0]).min() > 0.05  # it slides
+    assert np.abs(result.surface[:, 2] - vertices[:, 2]).max() < 0.1
+    assert (result.surface[len(SHEET.vertices) :, 0] - vertices[len(SHEET.vertices) :, 0]).min() >= least_slide
+    assert np.sum((result.surface - goal) ** 2) <= np.sum((vertices - goal) ** 2)
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
