@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What holds for every edit, of any deformation, mode, weights and separation.
 
-A part of it here; 2,000 edits with STIV_TESTS=long.
+A part of it here; 2,000 edits with STIV_LONG=1.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pytest
 import stiv
 from tests.editing.random_deformations import BUILDERS, Case, random_cases
 
-COUNT = 2000 if os.environ.get("STIV_TESTS") == "long" else 240
+COUNT = 2000 if "STIV_LONG" in os.environ else 240
 CHUNK = 48  # edits a test
 
 
