@@ -12,7 +12,8 @@ from stiv import _native
 from stiv._native import Deformation, InputError
 from stiv.arrays import Indices, as_floats, as_number
 from stiv.contraction import ContractionOptions, as_caged, as_marks, native_contraction
-from stiv.editing import CancelToken, EditOptions, Progress, native_options
+from stiv.edit_options import EditOptions, native_options
+from stiv.editing import CancelToken, Progress
 from stiv.surface import Surface
 from stiv.welding import Welded, weld
 
