@@ -25,14 +25,6 @@ void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& accept
   report.blocked = !outcome.clear || acceptance.held;
 }
 
-/// Does the goal move controls that do not respond? What they hit must give way, which may raise the energy.
-bool moves_pinned_controls(const Problem& problem, const Controls& from, const Controls& to) {
-  const Eigen::VectorXd& weights = problem.options().weights;
-  for (Index k = 0; k < weights.size(); ++k)
-    if (weights[k] == 0 && from.row(k) != to.row(k)) return true;
-  return false;
-}
-
 /// The goal itself, as if rounds had come to it: of an answer that leads nowhere not even a part may be free, or lower
 /// the energy, while some of the straight way is and does.
 RoundOutcome straight_way(const Problem& problem, const Aim& aim, bool at_any_cost, Execution& execution) {
@@ -47,13 +39,12 @@ RoundOutcome straight_way(const Problem& problem, const Aim& aim, bool at_any_co
 
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
   const int most = aim.must_improve ? 1 : problem.options().max_sub_edits;  // pulls go on by themselves
-  const bool pushes = moves_pinned_controls(problem, accepted.controls, aim.controls);
   double before = energy(accepted.surface, aim.surface), part = 1;
   for (int sub_edit = 0, cuts = 0; sub_edit < most; ++sub_edit) {
     ++execution.counters.sub_edits;
     RoundOutcome outcome = run_rounds_within_reach(problem, accepted, aim.controls, part, execution);
-    // A first answer that settled is taken even if E grows where a pinned object pushes a larger one out of its way.
-    const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve && pushes;
+    // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
+    const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
     const auto agreeable = [&](const State& state) {
       return taken_anyway || energy(state.surface, aim.surface) < before;
     };

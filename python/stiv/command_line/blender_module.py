@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
@@ -21,3 +23,20 @@ def require_blender(name: str, path: Path) -> ModuleType:
     if importlib.util.find_spec("bpy") is None:
         raise InputError(f"{path}: a .blend needs Blender's Python module, which is not installed; {HOW_TO_GET_IT}")
     return importlib.import_module(name)
+
+
+@contextmanager
+def addon_registered(path: Path) -> Iterator[None]:
+    """Has the add-on's operators and settings in Blender; takes them away again if they were not there before.
+
+    Raises InputError where Blender's module or the add-on is not installed.
+    """
+    if require_blender("stiv.blender.replaying", path).operators_are_there():
+        yield
+        return
+    addon = require_blender("stiv_addon", path)
+    addon.register()
+    try:
+        yield
+    finally:
+        addon.unregister()

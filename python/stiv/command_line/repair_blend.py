@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stiv.command_line.blender_module import require_blender
+from stiv.command_line.blender_module import addon_registered, require_blender
 from stiv.command_line.output_files import written_atomically
 from stiv.command_line.progress import share_bar
 from stiv.command_line.quiet import quiet_blender
@@ -57,9 +57,8 @@ def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
     if importlib.util.find_spec("stiv_addon") is None:
         settings = require_blender("stiv.blender", source).EditSettings()
     else:
-        if not require_blender("stiv.blender.replaying", source).operators_are_there():
-            require_blender("stiv_addon", source).register()
-        settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
+        with addon_registered(source):
+            settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
     return replace(settings, separation=choices.separation or settings.separation, time_budget=choices.time_limit)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
-from stiv.command_line.blender_module import require_blender
+from stiv.command_line.blender_module import addon_registered, require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
@@ -106,9 +106,7 @@ def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict
 def run_script(script: EditScript, scene: Path) -> list[dict[str, Any]]:
     """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON."""
     replaying = require_blender("stiv.blender.replaying", scene)
-    if not replaying.operators_are_there():
-        require_blender("stiv_addon", scene).register()
-    with progress_bar("edits", len(script)) as advance:
+    with addon_registered(scene), progress_bar("edits", len(script)) as advance:
         edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]))
     return edits
 
