@@ -38,7 +38,7 @@ def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
 
 @pytest.mark.parametrize(("separation", "least_slide"), [(0.2, 0.2), (0.15, 0.2), (0.1, 0.29)])
 def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(separation, least_slide):
-    """Sheets 0.01 from each other, with squares of 0.5: the separation is far larger than the one, not than the other."""
+    """Sheets 0.01 from each other, with squares of 0.5: the separation is far larger than the one alone."""
     vertices, triangles = sheets(0.01), np.vstack([FACES, ABOVE])
     editing = session(vertices, triangles, separation=separation)
     goal = vertices.copy()
