@@ -1,13 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tests share: which of them need Blender, and an end that no Blender module can spoil."""
+"""What all tests share: the add-on, which of them need Blender, and an end that no Blender module can spoil."""
 
+import importlib.util
 import os
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
+ADDON = Path(__file__).resolve().parents[1] / "addon"
+
 EXIT_CODE = pytest.StashKey[int]()
+
+if importlib.util.find_spec("stiv_addon") is None:  # not installed with the wheel: under the name that this gives it
+    spec = importlib.util.spec_from_file_location(
+        "stiv_addon", ADDON / "__init__.py", submodule_search_locations=[str(ADDON)]
+    )
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["stiv_addon"] = module
+    spec.loader.exec_module(module)
+
+
+@pytest.fixture(scope="module")
+def registered() -> Iterator[None]:
+    """The add-on registered for the tests of a file."""
+    import stiv_addon  # needs bpy once it registers, which not every test has
+
+    stiv_addon.register()
+    yield
+    stiv_addon.unregister()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -7,29 +7,27 @@ from typing import Any
 
 import bpy
 
-from .. import availability, scene_frame
+from .. import scene_frame
 from ..settings import DRAG_BUDGET, edit_settings
 from . import outcomes
 from .choices import Choices
 from .last_edit import describe
 from .messages import complain, outcome_text, tell, write_failure
 from .motions import make_motion
+from .native_module import NeedsNativeModule
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
 
 
-class TransformOperator(Choices):
+class TransformOperator(NeedsNativeModule, Choices):
     """Base of an operator; a subclass has `kind`, `given`, `arguments` and its properties."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
     kind: str
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """In Object Mode, and in Edit Mode of a mesh or a lattice, with the native module."""
-        if availability.problem():
-            cls.poll_message_set(availability.problem())
-            return False
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """In Object Mode, and in Edit Mode of a mesh or a lattice."""
         return context.mode in MODES
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -9,27 +9,19 @@ from typing import Any
 
 import bpy
 
-from .. import availability
 from ..overlay import showing
 from ..settings import edit_settings
+from .native_module import NeedsNativeModule
 
 MOST = 5  # pairs of objects that the summary lists
 
 
-class STIV_OT_check(bpy.types.Operator):
+class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
     """Find intersections of all visible surfaces by the exact test, and select the faces and objects that meet."""
 
     bl_idname = "stiv.check"
     bl_label = "Check for Intersections"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module."""
-        if availability.problem():
-            cls.poll_message_set(availability.problem())
-            return False
-        return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Check, show, select."""

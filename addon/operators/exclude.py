@@ -8,22 +8,14 @@ from typing import Any
 
 import bpy
 
-from .. import availability
 from ..settings import edit_settings
+from .native_module import NeedsNativeModule
 
 
-class ExclusionOperator:
+class ExclusionOperator(NeedsNativeModule):
     """Base: changes the setting of the scene."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module."""
-        if availability.problem():
-            cls.poll_message_set(availability.problem())
-            return False
-        return True
 
 
 class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):

@@ -6,18 +6,18 @@ from __future__ import annotations
 import bpy
 from bpy.props import IntProperty
 
-from .. import availability
+from .native_module import NeedsNativeModule
 
 
-class _HandleOperator:
+class _HandleOperator(NeedsNativeModule):
     """Base: for the active mesh."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With an active mesh, and the native module."""
-        return not availability.problem() and getattr(context.active_object, "type", "") == "MESH"
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """With an active mesh."""
+        return getattr(context.active_object, "type", "") == "MESH"
 
 
 class STIV_OT_handle_add(_HandleOperator, bpy.types.Operator):

@@ -8,22 +8,22 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import availability
 from ..object_choices import refined_object
 from ..properties import BOUNDARIES
+from .native_module import NeedsNativeModule
 
 
-class _LoopOperator:
+class _LoopOperator(NeedsNativeModule):
     """Base: for the active mesh in Object Mode, which Blender's undo takes back as a whole."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
     needs_refined = True
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With an active mesh that has a subdivision, or has none yet, and the native module."""
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """With an active mesh that has a subdivision, or has none yet."""
         thing = context.active_object
-        if availability.problem() or context.mode != "OBJECT" or getattr(thing, "type", "") != "MESH":
+        if context.mode != "OBJECT" or getattr(thing, "type", "") != "MESH":
             return False
         return (refined_object(thing) is not None) == cls.needs_refined
 

@@ -5,25 +5,17 @@ from __future__ import annotations
 
 import bpy
 
-from .. import availability
 from ..overlay import showing
 from ..settings import edit_settings
+from .native_module import NeedsNativeModule
 
 
-class STIV_OT_measure(bpy.types.Operator):
+class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
     """Find the two visible objects that are nearest to each other, and show their distance over the view."""
 
     bl_idname = "stiv.measure"
     bl_label = "Measure Clearance"
     bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module."""
-        if availability.problem():
-            cls.poll_message_set(availability.problem())
-            return False
-        return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Measure, show, say."""

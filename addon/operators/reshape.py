@@ -11,10 +11,10 @@ from typing import Any
 
 import bpy
 
-from .. import availability
 from ..overlay import showing
 from ..settings import edit_settings
 from . import interface
+from .native_module import NeedsNativeModule
 
 TICK = 0.05  # seconds between two looks at the worker
 LISTED = 100  # pairs of a report for scripts
@@ -47,17 +47,14 @@ class Worker(threading.Thread):
         self.progress = (phase, fraction)
 
 
-class ReshapeOperator:
+class ReshapeOperator(NeedsNativeModule):
     """Base of an operator; a subclass has `begin`, which reads the scene and gives a task of stiv.blender."""
 
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """In Object Mode, and in Edit Mode of a mesh, with the native module."""
-        if availability.problem():
-            cls.poll_message_set(availability.problem())
-            return False
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """In Object Mode, and in Edit Mode of a mesh."""
         return context.mode in MODES
 
     def settings(self, context: bpy.types.Context) -> Any:

@@ -6,19 +6,10 @@ from __future__ import annotations
 import bpy
 from bpy.props import IntProperty
 
-from .. import availability
+from .native_module import NeedsNativeModule
 
 
-class _SeparationOperator:
-    """Base: with the native module."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module."""
-        return not availability.problem()
-
-
-class STIV_OT_separation_add(_SeparationOperator, bpy.types.Operator):
+class STIV_OT_separation_add(NeedsNativeModule, bpy.types.Operator):
     """Let the two selected objects keep a distance of their own; one alone keeps it from itself."""
 
     bl_idname = "stiv.separation_add"
@@ -36,7 +27,7 @@ class STIV_OT_separation_add(_SeparationOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class STIV_OT_separation_remove(_SeparationOperator, bpy.types.Operator):
+class STIV_OT_separation_remove(NeedsNativeModule, bpy.types.Operator):
     """Let the pair keep the scene's distance again."""
 
     bl_idname = "stiv.separation_remove"

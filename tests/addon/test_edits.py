@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whole edits by the operators: values in, and what Blender evaluates afterwards out."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,16 +10,10 @@ bpy = pytest.importorskip("bpy")
 
 import bmesh  # noqa: E402
 
-import stiv_addon  # noqa: E402
+pytestmark = pytest.mark.usefixtures("registered")
+
 
 WALL_FACE = 1.9
-
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
 
 
 @pytest.fixture(autouse=True)

@@ -15,14 +15,9 @@ from stiv.blender import check_scene  # noqa: E402
 from stiv_addon.guard import undo_steps, watching  # noqa: E402
 from stiv_addon.guard.decision import STILL  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("registered")
+
 FURTHEST = 1.5  # of the box's centre: the wall's face is at 2, the box is 1 wide
-
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
 
 
 @pytest.fixture(autouse=True)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Loop subdivision by the operators, kept up with its cage by whatever changes that."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,14 +11,8 @@ bpy = pytest.importorskip("bpy")
 import bmesh  # noqa: E402
 
 import stiv  # noqa: E402
-import stiv_addon  # noqa: E402
 
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 @pytest.fixture(autouse=True)

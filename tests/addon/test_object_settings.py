@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Deformations, handles and weights chosen in the panel, carried out by the operators."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,14 +8,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-import stiv_addon  # noqa: E402
-
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 @pytest.fixture(autouse=True)

@@ -20,6 +20,8 @@ from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES, outcomes  # noqa: E402
 from stiv_addon.panels.drawing import draw_problem  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("registered")
+
 
 class Motion(SimpleNamespace):
     """Stands for that of `stiv.blender`."""
@@ -67,13 +69,6 @@ class RecordingEdit:
 
     def restore(self) -> None:
         bpy.data.objects[self.name].matrix_world = self.before
-
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
 
 
 @pytest.fixture(autouse=True)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the overlay holds, and that nothing of it stays; drawing itself is looked at in a window."""
 
-from collections.abc import Iterator
-
 import pytest
 
 bpy = pytest.importorskip("bpy")
@@ -11,12 +9,7 @@ pytest.importorskip("stiv._native")
 import stiv_addon  # noqa: E402
 from stiv_addon.overlay import showing  # noqa: E402
 
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 @pytest.fixture(autouse=True)

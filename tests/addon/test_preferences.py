@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Preferences, pie menu and keys: there, in use, and gone again."""
 
-from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,12 +11,7 @@ bpy = pytest.importorskip("bpy")
 import stiv_addon  # noqa: E402
 from stiv_addon import keymap, pie_menu, preferences, settings  # noqa: E402
 
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 class Layout:

@@ -2,7 +2,6 @@
 """Check, repair, contract, expand and settle as a script calls them, with the core behind them."""
 
 import json
-from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +12,6 @@ bpy = pytest.importorskip("bpy")
 
 import bmesh  # noqa: E402
 
-import stiv_addon  # noqa: E402
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
@@ -21,12 +19,7 @@ from stiv_addon.operators.exclude import excluded_count  # noqa: E402
 from stiv_addon.operators.repair import STIV_OT_repair  # noqa: E402
 from stiv_addon.operators.reshape import ReshapeOperator, Worker  # noqa: E402
 
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 @pytest.fixture(autouse=True)

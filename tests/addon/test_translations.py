@@ -11,18 +11,12 @@ from tools import interface_messages
 
 bpy = pytest.importorskip("bpy")
 
-import stiv_addon  # noqa: E402
 from stiv_addon import translations  # noqa: E402
 from stiv_addon.registration import CLASSES  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("registered")
+
 SAME_IN_GERMAN = {"Global", "Rest", "Threads", "Vertices"}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
-    stiv_addon.register()
-    yield
-    stiv_addon.unregister()
 
 
 @pytest.fixture

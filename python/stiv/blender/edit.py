@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -14,26 +13,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
-from stiv import InputError
-from stiv.blender.arrays import Floats, Indices, as_matrix
-from stiv.blender.assembly import Assembly, assemble
-from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.arrays import Floats, Indices
+from stiv.blender.assembly import Assembly
+from stiv.blender.beginning import Beginning, moving_vertices, read_beginning
+from stiv.blender.increments import motions_toward
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.movers import Mover
-from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.results import summed
 from stiv.blender.roles import find_movers
-from stiv.blender.sessions import mobilities, split, stacked
+from stiv.blender.sessions import split, stacked
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.blender.showing import Showing, WriteReport
 from stiv.blender.solving import Solving
 from stiv.blender.summary import Summary, summarise
-from stiv.blender.transform_path import Path, increments, transform_at
+from stiv.blender.transform_path import Path
 from stiv.blender.unguarded import as_stored, objects_that_meet, result_at
-
-STEP = 0.02  # longest increment of a typed value, in diagonals of what moves
-MOST_STEPS = 200
 
 
 class BlenderEdit:
@@ -44,21 +39,19 @@ class BlenderEdit:
         start_digest: equal for edits that begin with the same controls, surfaces that move and placements.
     """
 
-    def __init__(
-        self, assembly: Assembly, parts: Sequence[Part], settings: EditSettings, hidden: int, dropped: str = ""
-    ) -> None:
+    def __init__(self, beginning: Beginning) -> None:
         """Use `begin`."""
-        self._hidden, self.dropped = hidden, dropped
-        self._parts = tuple(parts)
+        settings = beginning.settings
+        self.dropped, self.start_digest = beginning.dropped, beginning.digest
+        self._hidden, self._parts = beginning.hidden, beginning.parts
         self._selected_weight = settings.weight(True)
         self._influence: Influence | None = None
-        self._start = stacked([part.controls for part in parts])
+        self._start = stacked([part.controls for part in self._parts])
         self._goal = self._start
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
-        self._solving = Solving(assembly, self._parts, self._start, settings)
+        self._solving = Solving(beginning.assembly, self._parts, self._start, settings)
         self._showing = Showing(self._parts, self._solving, settings)
-        self.start_digest = ""
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -83,18 +76,7 @@ class BlenderEdit:
 
         `left_out` names objects that do not take part, and do not hang together with any that does.
         """
-        scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
-        found, groups = make_parts(context, movers, scene.meshes, settings, kind)
-        parts = [adapt(part) for part in found]
-        if not any(part.rule.moves for part in parts):
-            raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
-        mobility = mobilities(len(scene.meshes), parts)
-        assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
-        excluded, dropped = settings.excluded.current(scene.meshes)
-        edit = cls(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped)
-        placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
-        edit.start_digest = _digest(edit.controls, assembly.positions[edit._moving_vertices], *placements)
-        return edit
+        return cls(read_beginning(context, settings, kind, movers, adapt, left_out))
 
     @property
     def summary(self) -> Summary:
@@ -147,7 +129,11 @@ class BlenderEdit:
 
     @cached_property
     def _moving_vertices(self) -> Indices:
-        return np.concatenate([self.assembly.vertices(index) for part in self._parts for index in part.surfaces])
+        return moving_vertices(self.assembly, self._parts)
+
+    @property
+    def _moving_points_at_rest(self) -> Floats:
+        return self.assembly.positions[self._moving_vertices]
 
     @property
     def moving(self) -> frozenset[str]:
@@ -229,14 +215,9 @@ class BlenderEdit:
 
         path: the way to the matrix, for what it cannot tell (more than half a turn); None: the shortest.
         """
-        target = Motion.of(motion)
-        way: Path = path or (lambda fraction: transform_at(target.matrix, fraction))
         results = []
-        for fraction in self._fractions(way):
-            part = replace(target, matrix=way(fraction), rotation=_times(fraction, target.rotation))
-            if fraction < 1 and not np.linalg.det(part.linear):  # flat for a moment, on the way to a mirror image
-                continue
-            results.append(self.drag(target if fraction == 1 else part, **execution))
+        for increment in motions_toward(Motion.of(motion), path, self._moving_points_at_rest):
+            results.append(self.drag(increment, **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return summed(results)
         return summed([*results, self.settle(**execution)])
@@ -296,21 +277,3 @@ class BlenderEdit:
         return stacked(
             [part.rule.goal(part.controls, old, motion) for part, old in zip(self._parts, last, strict=True)]
         )
-
-    def _fractions(self, path: Path) -> Iterator[float]:
-        moving = [index for part in self._parts for index in part.surfaces]
-        points = np.concatenate([self.assembly.positions[self.assembly.vertices(index)] for index in moving])
-        diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
-        count = increments(path, points, STEP * diagonal, MOST_STEPS)
-        return ((k + 1) / count for k in range(count))
-
-
-def _digest(*arrays: Floats) -> str:
-    found = hashlib.blake2b(digest_size=16)
-    for array in arrays:
-        found.update(np.ascontiguousarray(array).tobytes())
-    return found.hexdigest()
-
-
-def _times(fraction: float, vector: Floats | None) -> Floats | None:
-    return None if vector is None else fraction * vector

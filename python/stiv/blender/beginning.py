@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an edit begins with: who takes part, as the scene is when it is read."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+
+from stiv import InputError
+from stiv.blender.arrays import Floats, Indices, as_matrix
+from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.movers import Mover
+from stiv.blender.participants import make_parts
+from stiv.blender.parts import Part
+from stiv.blender.sessions import mobilities, stacked
+from stiv.blender.settings import EditSettings
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """A scene that was read for an edit. Keeps no reference of Blender's that an undo step could spoil.
+
+    Attributes:
+        assembly: all surfaces.
+        parts: what moves or gives way, in the order of the controls.
+        settings: with the exclusions that still count.
+        hidden: how many objects do not take part because they are hidden.
+        dropped: which exclusions of intersections no longer count, empty if all do.
+        digest: equal for edits that begin with the same controls, surfaces that move and placements.
+    """
+
+    assembly: Assembly
+    parts: tuple[Part, ...]
+    settings: EditSettings
+    hidden: int
+    dropped: str
+    digest: str
+
+
+def read_beginning(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    kind: str,
+    movers: Sequence[Mover],
+    adapt: Callable[[Part], Part],
+    left_out: frozenset[str],
+) -> Beginning:
+    """Read the scene for an edit of this kind with these movers; changes nothing. Raises InputError.
+
+    adapt: may change who responds in a part. left_out: names of objects that do not take part, and do not hang
+    together with any that does.
+    """
+    scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
+    found, groups = make_parts(context, movers, scene.meshes, settings, kind)
+    parts = tuple(adapt(part) for part in found)
+    if not any(part.rule.moves for part in parts):
+        raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
+    mobility = mobilities(len(scene.meshes), parts)
+    assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
+    excluded, dropped = settings.excluded.current(scene.meshes)
+    placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
+    moving = assembly.positions[moving_vertices(assembly, parts)]
+    digest = _digest(stacked([part.controls for part in parts]), moving, *placements)
+    return Beginning(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped, digest)
+
+
+def moving_vertices(assembly: Assembly, parts: Sequence[Part]) -> Indices:
+    """The vertices of the surface that follow controls of the parts."""
+    return np.concatenate([assembly.vertices(index) for part in parts for index in part.surfaces])
+
+
+def _digest(*arrays: Floats) -> str:
+    found = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        found.update(np.ascontiguousarray(array).tobytes())
+    return found.hexdigest()
