@@ -89,7 +89,7 @@ test-long: build/venv/stiv build/venv-blender ## Run the long forms: killed batc
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
-	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py
+	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 
 docs: ## Make the API reference of the core from its headers: build/docs/html
 	tools/install_debian_packages.sh tools/debian_packages_docs.txt

@@ -61,6 +61,10 @@ def _exclusions_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Co
     watching.exclusions_changed(context)
 
 
+def _loop_changed(loop: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    live_loops.refresh_cage(loop.id_data)
+
+
 class StivPairSeparation(bpy.types.PropertyGroup):
     """Two objects, or one twice, that keep a distance of their own."""
 
@@ -118,11 +122,11 @@ class StivLoop(bpy.types.PropertyGroup):
     object: PointerProperty(name="Refined object", type=bpy.types.Object, options={"HIDDEN"})
     levels: IntProperty(
         name="Levels", description="Each cuts a triangle into four", default=2, min=1, max=3,
-        update=lambda loop, context: live_loops.refresh_cage(loop.id_data),
+        update=_loop_changed,
     )  # fmt: skip
     boundary: EnumProperty(
         name="Boundary", description="Corners of the cage's boundary", items=BOUNDARIES, default="all",
-        update=lambda loop, context: live_loops.refresh_cage(loop.id_data),
+        update=_loop_changed,
     )  # fmt: skip
 
 

@@ -75,17 +75,18 @@ def roughness(positions: Array, triangles: NDArray[np.int32]) -> float:
     return float(np.sqrt((differences**2).sum(axis=1).mean()))
 
 
-def compare() -> tuple[dict[str, dict[str, float]], dict[str, Array]]:
-    """Figures and positions of the start, of what is wanted, of ours, and of the filter."""
+def compare(share: float = 1.0) -> tuple[dict[str, dict[str, float]], dict[str, Array]]:
+    """Figures and positions of the start, of what is wanted (a share of the motion), of ours, and of the filter."""
     scene = stage()
     session = stiv.EditSession(scene.surface, scene.deformation, scene.controls)
-    start, wanted = session.surface, scene.deformation.surface(scene.edits[0](scene.controls))
-    ours = session.edit(scene.edits[0](scene.controls)).surface
+    goal = scene.controls + share * (scene.edits[0](scene.controls) - scene.controls)
+    start, wanted = session.surface, scene.deformation.surface(goal)
+    ours = session.edit(goal).surface
     moves = scene.surface.vertex_body == 0
     theirs = filtered(scene.surface, start, wanted, moves, session.separation)
     states = {"start": start, "wanted": wanted, "ours": ours, "filter": theirs}
     face = scene.surface.triangles[(moves[scene.surface.triangles]).all(axis=1)]
-    way = np.linalg.norm(wanted - start)
+    way = max(np.linalg.norm(wanted - start), 1e-300)
     figures = {
         name: {
             "roughness": roughness(state[moves], face),

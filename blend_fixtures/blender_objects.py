@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Turns a fixture's plain data into a Blender scene: objects, modifiers, materials, camera and light."""
+"""Turns a fixture's plain data into a Blender scene: objects, modifiers, materials, camera and light.
+
+Loop subdivision needs the add-on to be registered.
+"""
 
 from __future__ import annotations
 
@@ -66,6 +69,8 @@ def _add_mesh(item: MeshObject) -> None:
         obj.modifiers.new("Lattice", "LATTICE").object = bpy.data.objects[item.lattice]
     if item.subdivision:
         _subdivide(obj, item.subdivision)
+    if item.loop:
+        _show_loop(obj, item.loop)
 
 
 def _mesh(name: str, shape: Shape, smooth: bool) -> bpy.types.Mesh:
@@ -91,6 +96,12 @@ def _subdivide(obj: bpy.types.Object, item: Subdivision) -> None:
         crease = obj.data.attributes.new("crease_vert", "FLOAT", "POINT").data
         for vertex, value in item.vertex_creases:
             crease[vertex].value = value
+
+
+def _show_loop(cage: bpy.types.Object, levels: int) -> None:
+    bpy.context.view_layer.objects.active = cage
+    bpy.ops.stiv.loop_add(levels=levels)
+    cage.stiv.loop.object.color = cage.color
 
 
 def _material(item: Material) -> bpy.types.Material:

@@ -3,12 +3,14 @@
 
     python blend_fixtures/build.py [NAME ...] [--output FOLDER]
 
-Needs Blender as a Python module. Use the oldest supported one (4.2): every later version opens what it writes.
+Needs Blender as a Python module, and the package `stiv` with its add-on. Use the oldest supported Blender (4.2): every
+later version opens what it writes.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import os
 import shutil
@@ -49,12 +51,18 @@ def write(fixture: Fixture, folder: Path) -> None:
     print(f"{fixture.name}: {size / 1024:.0f} KiB")
 
 
+def register_addon() -> None:
+    """Has the add-on's operators and settings, which some fixtures keep."""
+    importlib.import_module("stiv_addon").register()
+
+
 def main() -> None:
     """Builds the fixtures named, or all."""
     parser = argparse.ArgumentParser(description="Write the fixtures' .blend files and edit scripts.")
     parser.add_argument("names", nargs="*", help="fixtures to write (default: all)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder to write to")
     arguments = parser.parse_args()
+    register_addon()
     figures = arguments.output / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     fixtures = {fixture.name: (fixture, arguments.output) for fixture in all_fixtures()}

@@ -23,9 +23,31 @@ def test_defaults_and_repeats():
     assert len(read) == 3 and list(read.edits()) == [step] * 3
 
 
+def test_steps_that_reshape_may_leave_their_values_out():
+    bare = {"operator": "repair", "objects": ["A"]}
+    given = {"operator": "contract", "objects": ["A"], "values": {"steps": 3, "until_free": True}}
+    read = parse_edit_script({"schema": "stiv-edits", "version": 1, "steps": [bare, given]})
+    assert [dict(step.values) for step in read.steps] == [{}, given["values"]]
+
+
+@pytest.mark.parametrize(
+    ("operator", "values", "message"),
+    [
+        ("expand", {"share": 0.5}, 'step 0: expand takes the values amount, not "share"'),
+        ("expand", {"amount": True}, "step 0: amount: a finite number expected, not True"),
+        ("contract", {"steps": 1.5}, "step 0: steps: a whole number expected"),
+        ("repair", {"weld": 1}, "step 0: weld: true or false expected"),
+        ("settle", [], "step 0: values: not an object"),
+    ],
+)
+def test_bad_values_of_steps_that_reshape_are_named(operator, values, message):
+    with pytest.raises(stiv.InputError, match=message):
+        parse_edit_script(script(operator=operator, values=values))
+
+
 def test_every_fixture_has_a_script_that_can_be_read():
-    blends = sorted(FIXTURES.glob("*.blend"))
-    assert len(blends) >= 14
+    blends = sorted(FIXTURES.rglob("*.blend"))
+    assert len(blends) >= 22
     for blend in blends:
         assert len(read_edit_script(blend.with_suffix(".edits.json"))) > 0
 

@@ -25,14 +25,21 @@ def describe(result: Any, report: Any) -> str:
     return json.dumps(
         {
             "status": result.status,
-            "rounds": int(result.rounds),
-            "events": len(result.events.kind),
-            "patches": int(result.patches),
-            "energy": float(result.energy),
+            **numbers(result),
             "blocking": list(result.blocking),
-            "timings": {name: float(value) for name, value in result.timings.items()},
-            "counters": {name: int(value) for name, value in result.counters.items()},
             "shown": bool(report.passed),
             "message": str(report.message),
         }
     )
+
+
+def numbers(result: Any) -> dict[str, Any]:
+    """What a `stiv.EditResult` came to and took, ready for JSON."""
+    return {
+        "rounds": int(result.rounds),
+        "events": len(result.events.kind),
+        "patches": int(result.patches),
+        "energy": float(result.energy),
+        "timings": {name: float(value) for name, value in result.timings.items()},
+        "counters": {name: int(value) for name, value in result.counters.items()},
+    }

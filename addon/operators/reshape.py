@@ -14,6 +14,7 @@ import bpy
 from ..overlay import showing
 from ..settings import edit_settings
 from . import interface
+from .last_edit import numbers
 from .native_module import NeedsNativeModule
 
 TICK = 0.05  # seconds between two looks at the worker
@@ -195,6 +196,7 @@ def outcome(report: Any) -> str:
 
 def describe(report: Any) -> str:
     """JSON of a stiv.blender.ReshapeReport, with the first pairs."""
+    solved = {} if report.result is None else numbers(report.result)
     pairs = [[[each.object, each.kind, each.number] for each in (pair.first, pair.second)] for pair in report.pairs]
     return json.dumps(
         {
@@ -206,6 +208,8 @@ def describe(report: Any) -> str:
             "pairs": pairs[:LISTED],
             "deviation": report.deviation,
             "contracted": report.contracted,
+            "rounds": 0,
+            **solved,
         }
     )
 

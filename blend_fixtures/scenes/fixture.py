@@ -60,7 +60,10 @@ class VertexGroup:
 
 @dataclass(frozen=True)
 class MeshObject:
-    """A mesh, with a Lattice modifier (`lattice` names the object) before its Subdivision Surface modifier, if any."""
+    """A mesh, with a Lattice modifier (`lattice` names the object) before its Subdivision Surface modifier, if any.
+
+    `loop` levels of Loop subdivision are shown by an object beside it, as the add-on makes it; 0 for none.
+    """
 
     name: str
     shape: Shape
@@ -69,6 +72,7 @@ class MeshObject:
     parent: str | None = None
     lattice: str | None = None
     subdivision: Subdivision | None = None
+    loop: int = 0
     smooth: bool = True
     groups: tuple[VertexGroup, ...] = ()
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -23,6 +24,23 @@ def on_points(name: str, points: Points = "all") -> Step:
 def move(selection: Step, value: Sequence[float], repeat: int = 1) -> Step:
     """Translate by `value` (3,), world units, `repeat` times."""
     return {"operator": "move", **selection, "values": {"value": [float(x) for x in value]}, "repeat": repeat}
+
+
+def contract(selection: Step, steps: int) -> Step:
+    """Contract until nothing intersects, at most so many `steps`."""
+    return {"operator": "contract", **selection, "values": {"steps": steps, "until_free": True}}
+
+
+def expand(selection: Step, shares: Sequence[float]) -> list[Step]:
+    """Expand to the shape kept, to these ascending shares of the way, of which the last is 1."""
+    left = [1.0, *(1.0 - share for share in shares)]
+    amounts = [1.0 - after / before for before, after in itertools.pairwise(left)]
+    return [{"operator": "expand", **selection, "values": {"amount": amount}} for amount in amounts]
+
+
+def repair(selection: Step) -> Step:
+    """Remove the intersections."""
+    return {"operator": "repair", **selection}
 
 
 def rotate(selection: Step, angle: float, axis: Sequence[float], repeat: int = 1) -> Step:

@@ -15,7 +15,13 @@ from stiv import InputError
 SCHEMA, VERSION = "stiv-edits", 1
 MAX_EDITS = 1_000_000
 MAX_BYTES = 64 * 2**20
-_VALUES = {"move": {"value": 3}, "scale": {"value": 3}, "rotate": {"angle": 1, "axis": 3}}
+TRANSFORMS = {"move": {"value": 3}, "scale": {"value": 3}, "rotate": {"angle": 1, "axis": 3}}  #: all values needed
+RESHAPES: dict[str, dict[str, type]] = {
+    "contract": {"steps": int, "smoothing": float, "until_free": bool},
+    "expand": {"amount": float},
+    "settle": {"rounds": int, "smoothness": float},
+    "repair": {"max_deviation": float, "weld": bool},
+}  #: each value may be left out
 _STEP_KEYS = {"operator", "mode", "objects", "points", "values", "repeat", "settings"}
 
 
@@ -23,8 +29,9 @@ _STEP_KEYS = {"operator", "mode", "objects", "points", "values", "repeat", "sett
 class EditStep:
     """One operator call on a selection.
 
-    `points` are indices of cage vertices or lattice points in Edit Mode, None for all of them. `values` are the
-    operator's properties in world units and radians. `settings` are the add-on's settings for this step by name.
+    `operator` is one of TRANSFORMS or RESHAPES. `points` are indices of cage vertices or lattice points in Edit Mode,
+    None for all of them. `values` are the operator's properties in world units and radians. `settings` are the add-on's
+    settings for this step by name.
     """
 
     operator: str
@@ -97,8 +104,8 @@ def _step(data: object, where: str) -> EditStep:
     if unknown:
         raise InputError(f'{where}: unknown field "{unknown[0]}"; there are {", ".join(sorted(_STEP_KEYS))}')
     operator = step.get("operator")
-    if operator not in _VALUES:
-        raise InputError(f"{where}: operator {operator!r} is none of {', '.join(_VALUES)}")
+    if operator not in TRANSFORMS and operator not in RESHAPES:
+        raise InputError(f"{where}: operator {operator!r} is none of {', '.join((*TRANSFORMS, *RESHAPES))}")
     mode = step.get("mode", "OBJECT")
     if mode not in ("OBJECT", "EDIT"):
         raise InputError(f'{where}: mode {mode!r} is neither "OBJECT" nor "EDIT"')
@@ -109,7 +116,9 @@ def _step(data: object, where: str) -> EditStep:
         operator,
         mode,
         _objects(step.get("objects"), mode, where),
-        _values(step.get("values"), operator, where),
+        _values(step.get("values"), operator, where)
+        if operator in TRANSFORMS
+        else _choices(step.get("values", {}), operator, where),
         _points(step.get("points", "all"), mode, where),
         repeat,
         _mapping(step.get("settings", {}), f"{where}: settings"),
@@ -136,10 +145,23 @@ def _points(data: object, mode: str, where: str) -> tuple[int, ...] | None:
 
 def _values(data: object, operator: str, where: str) -> dict[str, Any]:
     values = _mapping(data, f"{where}: values")
-    wanted = _VALUES[operator]
+    wanted = TRANSFORMS[operator]
     if set(values) != set(wanted):
         raise InputError(f"{where}: {operator} takes the values {', '.join(wanted)}, not {', '.join(values) or 'none'}")
     return {name: _numbers(values[name], count, f"{where}: {name}") for name, count in wanted.items()}
+
+
+def _choices(data: object, operator: str, where: str) -> dict[str, Any]:
+    values = _mapping(data, f"{where}: values")
+    known = RESHAPES[operator]
+    for name, value in values.items():
+        if name not in known:
+            raise InputError(f'{where}: {operator} takes the values {", ".join(known)}, not "{name}"')
+        fits = {bool: isinstance(value, bool), int: _is_index(value), float: _is_number(value)}[known[name]]
+        if not fits:
+            kind = {bool: "true or false", int: "a whole number", float: "a finite number"}[known[name]]
+            raise InputError(f"{where}: {name}: {kind} expected, not {value!r}")
+    return values
 
 
 def _numbers(data: object, count: int, where: str) -> float | tuple[float, ...]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.edit_scripts import EditScript, EditStep
+from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
 from stiv.mesh_files import Mesh
 
 Floats = NDArray[np.float64]
@@ -58,6 +58,8 @@ def vertex_objects(mesh: Mesh) -> Indices:
 
 def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indices) -> tuple[stiv.EditResult, float]:
     begin = time.perf_counter()
+    if step.operator not in TRANSFORMS:
+        raise InputError(f"mesh files take {', '.join(TRANSFORMS)} alone; `stiv repair` repairs them")
     chosen = _objects(step, mesh)
     members = np.flatnonzero(np.isin(owners, chosen)).astype(np.int32)
     moved = members if step.points is None else members[_points(step, members)]

@@ -20,6 +20,7 @@ from stiv.blender import (
     compare,
     follow,
     read_state,
+    read_surface,
     refresh,
     remove_refined,
 )
@@ -173,6 +174,15 @@ def test_hidden_and_removed_objects() -> None:
     assert sorted(bpy.data.meshes.keys()) == [name for name in before if name != "Cage.loop"]
     with pytest.raises(stiv.InputError, match=r'"Cage\.loop", which the scene does not have'):
         begin(settings)
+
+
+def test_a_cage_that_another_object_shows_is_no_surface_of_the_scene_unless_it_is_named() -> None:
+    cage = octahedron()
+    refined, _ = with_loop(cage)
+    assert [mesh.owner.name for mesh in read_surface(bpy.context).meshes] == [refined.name]
+    assert [mesh.owner.name for mesh in read_surface(bpy.context, ["Cage"]).meshes] == ["Cage"]
+    remove_refined(refined)
+    assert [mesh.owner.name for mesh in read_surface(bpy.context).meshes] == ["Cage"]
 
 
 def test_a_refined_object_gives_way_with_its_cage() -> None:

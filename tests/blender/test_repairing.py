@@ -201,6 +201,28 @@ def test_expansion_all_the_way_forgets_the_shape_kept() -> None:
     assert read_original(ball) is None
 
 
+def test_what_has_no_shape_kept_with_it_gives_way_to_an_expansion_that_it_is_selected_for() -> None:
+    ball, other = add_ball("Ball"), add_ball("Other", 1.0, (1.9, 0, 0))
+    select(ball)
+    contract_scene(bpy.context, ContractionSettings(steps=12, until_free=True))
+    assert pairs_shown() == 0
+    before, contracted = evaluated(other), [vertex.co.copy() for vertex in ball.data.vertices]
+    grown = expand_scene(bpy.context)
+    alone = np.linalg.norm(evaluated(ball), axis=1).min()
+    assert np.array_equal(evaluated(other), before)
+    for vertex, position in zip(ball.data.vertices, contracted, strict=True):
+        vertex.co = position
+    select(ball, other)
+    report = expand_scene(bpy.context)
+    assert grown.status == report.status == "corrected" and report.result.rounds > 0
+    assert pairs_shown() == 0
+    assert not np.array_equal(evaluated(other), before)
+    assert np.linalg.norm(evaluated(ball), axis=1).min() > alone
+    ball.data.attributes.remove(ball.data.attributes[NAME])
+    with pytest.raises(stiv.InputError, match="no shape to go back to is kept"):
+        expand_scene(bpy.context)
+
+
 def test_expansion_toward_another_object_stops_at_what_is_in_the_way() -> None:
     ball, shape = add_ball("Ball"), add_ball("Shape", 2.0, (9, 0, 0))
     add_cube("Wall", (2.5, 0, 0), 1.0)

@@ -11,19 +11,31 @@ import numpy as np
 
 import stiv
 
+from ..colors import CLOTH, FELT, HORN, SKIN
+from ..fixture import Fixture, MeshObject, VertexGroup, View
+from ..motion import contract, expand, move, on_objects, on_points, scale
 from ..ogre import glasses, hat, ogre, shirt
+from ..shape import Shape
 from .session import Array, Edit, Session, Stages, moved, repeated, scaled
 from .subdivision_parts import Parts, part
 
 LEVELS = {"Ogre": 2, "Shirt": 2, "Glasses": 1, "Hat": 2}
 EXPANSIONS, SHRINKS, APPROACHES, PRESSES = 24, 20, 16, 16
 CONTRACTIONS = 12
+BODY_GIVES_WAY = 0.05  # of what the shirt does, while it expands
+SHRINK = 0.985
+WORN = {"Glasses": np.array([0, 0.55, 0]), "Hat": np.array([0, 0, -0.36])}  # and the way there
+PRESSED = 0.45  # of that way
+
+
+def cages() -> dict[str, Shape]:
+    """The cages as they are modeled."""
+    return {"Ogre": ogre(), "Shirt": shirt(), "Glasses": glasses(), "Hat": hat()}
 
 
 def parts() -> Parts:
-    """The cages as they are modeled: 13,318 vertices and 26,060 triangles in the paper; the same within 1 %."""
-    cages = {"Ogre": ogre(), "Shirt": shirt(), "Glasses": glasses(), "Hat": hat()}
-    return Parts({name: part(cage, LEVELS[name]) for name, cage in cages.items()})
+    """Their surfaces: 13,318 vertices and 26,060 triangles in the paper; the same within 1 %."""
+    return Parts({name: part(cage, LEVELS[name]) for name, cage in cages().items()})
 
 
 def contract_body(scene: Parts) -> None:
@@ -61,18 +73,18 @@ def stages() -> Stages:
 
     both = ("Ogre", "Shirt")
     edits = expansions(scene.cages["Ogre"], full, scene.block(both, "Ogre"))
-    controls = yield scene.by_cages("expand", both, edits, {"Ogre": 0.05, "Shirt": 1.0})
+    controls = yield scene.by_cages("expand", both, edits, {"Ogre": BODY_GIVES_WAY, "Shirt": 1.0})
     scene.take_cages(both, controls)
 
-    shrink = scaled(0.985)
+    shrink = scaled(SHRINK)
     controls = yield scene.by_cages("shrink", ("Shirt",), repeated(shrink, SHRINKS))
     scene.take_cages(("Shirt",), controls)
 
-    for worn, toward in (("Glasses", np.array([0, 0.55, 0])), ("Hat", np.array([0, 0, -0.36]))):
+    for worn, toward in WORN.items():
         approach = moved(toward / APPROACHES, np.array([0]))
         controls = yield scene.rigidly(f"{worn.lower()}, rigid", worn, repeated(approach, APPROACHES))
         scene.take_rigid(worn, controls)
-        press = moved(0.45 * toward / PRESSES)
+        press = moved(PRESSED * toward / PRESSES)
         controls = yield scene.by_cages(f"{worn.lower()}, pressed", (worn,), repeated(press, PRESSES))
         scene.take_cages((worn,), controls)
 
@@ -80,3 +92,30 @@ def stages() -> Stages:
 def session() -> Session:
     """The whole dressing."""
     return Session("dressing", 1, "An ogre is dressed with a shirt, glasses and a hat made for others", stages)
+
+
+def dressing() -> Fixture:
+    """The same session in Blender, from the shirt that cuts the body on."""
+    shapes, colors = cages(), {"Ogre": SKIN, "Shirt": CLOTH, "Glasses": HORN, "Hat": FELT}
+    stiff = VertexGroup("Gives way", dict.fromkeys(range(len(shapes["Ogre"].vertices)), BODY_GIVES_WAY))
+    groups = {"Ogre": (stiff,)}
+    meshes = (
+        MeshObject(name, shape, colors[name], loop=LEVELS[name], groups=groups.get(name, ()))
+        for name, shape in shapes.items()
+    )
+    both, shrunk = on_objects(["Ogre", "Shirt"]), (SHRINK, SHRINK, SHRINK)
+    steps = [contract(on_objects(["Ogre"]), CONTRACTIONS)]
+    steps += expand(both, [(k + 1) / EXPANSIONS for k in range(EXPANSIONS)])
+    steps.append(scale(on_points("Shirt"), shrunk, repeat=SHRINKS))
+    for worn, toward in WORN.items():
+        steps.append(move(on_objects([worn]), (toward / APPROACHES).tolist(), repeat=APPROACHES))
+        steps.append(move(on_points(worn), (PRESSED * toward / PRESSES).tolist(), repeat=PRESSES))
+    return Fixture(
+        name="dressing",
+        summary="An ogre is dressed: contracted out of a shirt that cuts it, expanded; the shirt shrunk onto it, "
+        "glasses and a hat put on and pressed on",
+        meshes=tuple(meshes),
+        steps=tuple(steps),
+        view=View((2.6, -5.4, 1.9), (0.0, 0.0, 1.22), 62.0),
+        settings={"objects": {"Ogre": {"weight_group": "Gives way"}}},
+    )

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..colors import FUR, STILL
+from ..fixture import Fixture, MeshObject, View
+from ..motion import move, on_points
 from ..primitives import grid, triangulated
 from ..shape import Shape
 from ..walls import wavy_wall
@@ -32,12 +35,16 @@ def face(cells: int = 14) -> Shape:
     return Shape(np.column_stack([x, -y, -depth]), flat.faces)
 
 
-def parts() -> Parts:
+def cages() -> tuple[Shape, Shape]:
     """The face above the waves."""
     cage = face()
-    waves = triangulated(wavy_wall(56, 3.4, 0.12))
-    raised = cage.moved((0.05, 0.0, 0.2 - cage.vertices[:, 2].min()))
-    return Parts({"Face": part(raised, 2), "Waves": part(waves, 0)})
+    return cage.moved((0.05, 0.0, 0.2 - cage.vertices[:, 2].min())), triangulated(wavy_wall(56, 3.4, 0.12))
+
+
+def parts() -> Parts:
+    """The face subdivided."""
+    above, waves = cages()
+    return Parts({"Face": part(above, 2), "Waves": part(waves, 0)})
 
 
 def stage() -> Stage:
@@ -48,3 +55,15 @@ def stage() -> Stage:
 def session() -> Session:
     """One edit."""
     return Session("face", 7, "A subdivision face pressed into waves", single(stage))
+
+
+def face_into_waves() -> Fixture:
+    """The same in Blender."""
+    above, waves = cages()
+    return Fixture(
+        name="face_into_waves",
+        summary="A subdivision face pressed into waves, in one edit",
+        meshes=(MeshObject("Face", above, FUR, loop=2), MeshObject("Waves", waves, STILL)),
+        steps=(move(on_points("Face"), (0.0, 0.0, -DEPTH)),),
+        view=View((2.2, -2.6, 2.7), (0.0, 0.0, 0.1), 50.0),
+    )

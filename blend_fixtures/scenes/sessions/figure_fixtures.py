@@ -5,13 +5,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..colors import GLAZE, MOVING, ORGANS, STILL
+from ..colors import GLAZE, MOVING, ORGANS, SKIN
 from ..fixture import Fixture, MeshObject, Subdivision, VertexGroup, View
-from ..motion import move, on_points
-from ..primitives import box, icosphere
+from ..motion import move, on_objects, on_points, repair
+from ..shape import Shape
+from ..tangled import arm_in_body
 from . import knot, packing
+from .dressing import dressing
+from .face_into_waves import face_into_waves
 from .hare_in_pot import hare_in_pot
 from .tree_in_corner import tree_in_corner
+from .weighted_handles import weighted_handles
 
 
 def knot_by_handles() -> Fixture:
@@ -33,17 +37,16 @@ def knot_by_handles() -> Fixture:
     )
 
 
-def ball_into_cushion() -> Fixture:
-    """A subdivided ball pushed into a subdivided cushion."""
+def untangling() -> Fixture:
+    """A figure whose arm was bent into its own body and leg; repair takes it out."""
+    tangle = arm_in_body()
+    shape = Shape(tangle.positions, tuple(map(tuple, tangle.surface.triangles.tolist())))
     return Fixture(
-        name="ball_into_cushion",
-        summary="A ball pushed into a cushion; both are subdivision surfaces",
-        meshes=(
-            MeshObject("Ball", icosphere(1, 0.6).moved((0.03, 0.02, 1.05)), MOVING, subdivision=Subdivision(2)),
-            MeshObject("Cushion", box(5, (2.4, 2.4, 0.8)), STILL, subdivision=Subdivision(2)),
-        ),
-        steps=(move(on_points("Ball"), (0.0, 0.0, -0.075), repeat=12),),
-        view=View((2.6, -4.4, 2.2), (0.0, 0.0, 0.2)),
+        name="untangling",
+        summary="An arm bent into its own body and leg, and repaired",
+        meshes=(MeshObject("Figure", shape, SKIN),),
+        steps=(repair(on_objects(["Figure"])),),
+        view=View((2.4, -16.0, 3.4), (0.0, 0.0, 1.2), 45.0),
     )
 
 
@@ -66,5 +69,14 @@ def organs_in_bowl() -> Fixture:
 
 
 def figure_fixtures() -> tuple[Fixture, ...]:
-    """Every large fixture, in the order of the paper's figures."""
-    return organs_in_bowl(), ball_into_cushion(), hare_in_pot(), tree_in_corner(), knot_by_handles()
+    """Every large fixture, in the order of the paper's figures; its Figure 8 is the fixture `plant_in_vase`."""
+    return (
+        dressing(),
+        organs_in_bowl(),
+        untangling(),
+        weighted_handles(),
+        face_into_waves(),
+        hare_in_pot(),
+        tree_in_corner(),
+        knot_by_handles(),
+    )

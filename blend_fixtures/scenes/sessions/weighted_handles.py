@@ -5,19 +5,30 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..colors import MOVING, STILL
+from ..fixture import Fixture, MeshObject, VertexGroup, View
+from ..motion import Step, move, on_objects
 from ..primitives import box as box_cage
 from ..primitives import icosphere, triangulated
+from ..shape import Shape
 from .session import Array, Session, Stage, moved, repeated, single
 from .subdivision_parts import Parts, part
 
 PUSH, PUSHES = 0.9, 12
 WEIGHTINGS = ("both", "cushion", "ball", "left half")
+RESPONDERS = {"both": "all", "cushion": "unselected", "ball": "selected", "left half": "all"}
+APART = 3.0
+
+
+def cages() -> tuple[Shape, Shape]:
+    """A ball above a cushion."""
+    return icosphere(2, 0.55).moved((0.03, 0.02, 1.05)), triangulated(box_cage(5, (2.4, 2.4, 0.8)))
 
 
 def parts() -> Parts:
-    """A ball above a cushion."""
-    cushion = triangulated(box_cage(5, (2.4, 2.4, 0.8)))
-    return Parts({"Ball": part(icosphere(2, 0.55).moved((0.03, 0.02, 1.05)), 2), "Cushion": part(cushion, 2)})
+    """Both subdivided."""
+    ball, cushion = cages()
+    return Parts({"Ball": part(ball, 2), "Cushion": part(cushion, 2)})
 
 
 def weights(scene: Parts, weighting: str) -> Array:
@@ -50,3 +61,31 @@ def stage(weighting: str) -> Stage:
 def sessions() -> tuple[Session, ...]:
     """One session a weighting."""
     return tuple(Session(f"push, {w}", 6, "One push", single(lambda w=w: stage(w))) for w in WEIGHTINGS)
+
+
+def weighted_handles() -> Fixture:
+    """The four side by side, in the order of WEIGHTINGS; each push leaves the other three alone."""
+    ball, cushion = cages()
+    left = VertexGroup("Left", dict.fromkeys(np.flatnonzero(cushion.vertices[:, 0] < 0).tolist(), 1.0))
+    meshes, names = [], {weighting: (f"Ball, {weighting}", f"Cushion, {weighting}") for weighting in WEIGHTINGS}
+    for number, (first, second) in enumerate(names.values()):
+        place = (APART * (number - 1.5), 0.0, 0.0)
+        meshes.append(MeshObject(first, ball.moved(place), MOVING, loop=2))
+        meshes.append(MeshObject(second, cushion.moved(place), STILL, loop=2, groups=(left,)))
+    objects = {name: {"deformation": "vertices"} for pair in names.values() for name in pair}
+    objects[names["left half"][1]]["weight_group"] = "Left"
+
+    def push(weighting: str) -> Step:
+        taking_part = names[weighting]
+        roles = {mesh.name: "auto" if mesh.name in taking_part else "obstacle" for mesh in meshes}
+        step = move(on_objects([taking_part[0]]), (0.0, 0.0, -PUSH / PUSHES), repeat=PUSHES)
+        return {**step, "settings": {"responders": RESPONDERS[weighting], "roles": roles}}
+
+    return Fixture(
+        name="weighted_handles",
+        summary="One push, four weightings: both give way, the cushion, the ball, the ball and the cushion's left half",
+        meshes=tuple(meshes),
+        steps=tuple(push(weighting) for weighting in WEIGHTINGS),
+        view=View((2.0, -13.5, 6.0), (0.0, 0.0, 0.1), 36.0, (1000, 400)),
+        settings={"objects": objects},
+    )

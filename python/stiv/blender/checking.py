@@ -9,6 +9,7 @@ import bpy
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
+from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
 
@@ -31,9 +32,11 @@ class SceneCheck:
 def read_surface(context: bpy.types.Context, objects: Collection[str] | None = None) -> Assembly:
     """All visible meshes, or those of the objects named, as one surface in world space; every body deformable.
 
-    Raises InputError naming object and vertex when a coordinate is not finite.
+    A cage that another object shows counts only if it is named. Raises InputError naming object and vertex when a
+    coordinate is not finite.
     """
-    scene = read_scene(context, lambda name: objects is None or name in objects)
+    cages = cages_shown_by_others(context)
+    scene = read_scene(context, lambda name: name not in cages if objects is None else name in objects)
     return assemble(scene.meshes, ["deformable"] * len(scene.meshes))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from stiv.blender.cage import read_cage
 from stiv.blender.originals import forget_original, read_original
 from stiv.blender.repairing import carry_out
 from stiv.blender.reshaping import MOST_RECUTS, Reshaped, ReshapeReport, read_reshaped, writer_of
+from stiv.blender.results import summed
 from stiv.blender.settings import EditSettings
 from stiv.blender.trail import Place, latest
 from stiv.blender.verification import Verification
@@ -28,7 +30,8 @@ class ExpansionSettings:
     Attributes:
         edit: separation, roles, ignored pairs, smoothness, threads, time budget.
         target: name of a mesh object with the same vertices, whose shape, in its own frame, is gone toward; it does not
-            take part itself. Empty: the shape kept with each mesh by contraction or repair.
+            take part itself. Empty: the shape kept with each mesh by contraction or repair; meshes that none is kept
+            with are wanted as they are, and give way to the others.
         amount: how much of the way to go, in [0, 1].
         rounds: solved again so many times, from where the one before ended, while that brings it nearer.
     """
@@ -59,7 +62,7 @@ class BlenderExpansion:
         if chosen.rounds < 1:
             raise InputError(f"rounds: {chosen.rounds} is less than 1")
         reshaped = read_reshaped(context, chosen.edit, frozenset({chosen.target} if chosen.target else ()))
-        whole = reshaped.world([_target_of(ob, chosen.target) for ob in reshaped.objects])
+        whole = reshaped.world(_targets(reshaped.objects, chosen.target))
         return cls(reshaped, reshaped.start + chosen.amount * (whole - reshaped.start), chosen)
 
     def solve(self, **execution: Any) -> None:
@@ -134,7 +137,8 @@ class BlenderExpansion:
                 if self._reshaped.moves.all():
                     forget_original(writer_of(part).reference.find())
         changed = not np.array_equal(controls, self._reshaped.start)
-        return ReshapeReport(status, changed, message, (), 0, self._reshaped.deviation(controls))
+        done = summed(self._results)
+        return ReshapeReport(status, changed, message, (), 0, self._reshaped.deviation(controls), result=done)
 
 
 def expand_scene(
@@ -145,6 +149,14 @@ def expand_scene(
     Raises InputError, StartIntersectsError and SceneChangedError, with everything as it was.
     """
     return carry_out(BlenderExpansion.begin(context, settings), **execution)
+
+
+def _targets(objects: Sequence[bpy.types.Object], target: str) -> list[Singles | None]:
+    """Where the vertices of each object are to go; None where they are. Raises InputError if none is to go anywhere."""
+    if target or len(objects) == 1:
+        return [_target_of(ob, target) for ob in objects]
+    kept = [None if read_original(ob) is None else _target_of(ob, "") for ob in objects]
+    return kept if any(each is not None for each in kept) else [_target_of(ob, "") for ob in objects]
 
 
 def _target_of(ob: bpy.types.Object, target: str) -> Singles:

@@ -7,6 +7,8 @@ from stiv.blender.loop_surfaces import refine, refresh
 from stiv.blender.movability import check_data
 from stiv.blender.settings import LoopSurface
 
+SHOWS_PARENT = "stiv_shows_parent"  # custom property, so that it is known without the add-on too; copies keep it
+
 
 def add_refined(context: bpy.types.Context, cage: bpy.types.Object, levels: int, boundary: str) -> bpy.types.Object:
     """Make "<name>.loop", a child of the cage at the same place, in the same collections, with its materials.
@@ -19,6 +21,7 @@ def add_refined(context: bpy.types.Context, cage: bpy.types.Object, levels: int,
     name = f"{cage.name}.loop"
     refined = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     refined.parent = cage
+    refined[SHOWS_PARENT] = True
     for material in cage.data.materials:
         refined.data.materials.append(material)
     for collection in cage.users_collection:
@@ -27,6 +30,11 @@ def add_refined(context: bpy.types.Context, cage: bpy.types.Object, levels: int,
     context.view_layer.update()
     refresh(cage, refined, LoopSurface(refined.name, levels, boundary))
     return refined
+
+
+def cages_shown_by_others(context: bpy.types.Context) -> frozenset[str]:
+    """Names of the cages that a child of theirs shows in their place."""
+    return frozenset(ob.parent.name for ob in context.scene.objects if ob.parent and ob.get(SHOWS_PARENT))
 
 
 def remove_refined(refined: bpy.types.Object) -> None:

@@ -11,18 +11,22 @@ from typing import Any
 import bpy
 
 from stiv import InputError
+from stiv.blender.checking import find_pairs, read_surface
 from stiv.blender.selecting import select
-from stiv.edit_scripts import EditScript, EditStep
+from stiv.edit_scripts import RESHAPES, EditScript, EditStep
 
 OF_OBJECTS = ("roles", "objects")
 Report = dict[str, Any]
 
 
-def replay(script: EditScript, on_edit: Callable[[Report], None] = lambda report: None) -> list[Report]:
+def replay(
+    script: EditScript, on_edit: Callable[[Report], None] = lambda report: None, check: bool = False
+) -> list[Report]:
     """Runs every edit of the script; `on_edit` is told of each one when it is done.
 
-    Of each edit: `number`, `operator`, `milliseconds` of the whole operator call, and what the operator says about it
-    (`status`, `rounds`, `events`, `patches`, ...). Raises InputError, naming the edit, for what cannot be selected and
+    Of each edit: `number`, `operator`, `milliseconds` of the whole operator call, what the operator says about it
+    (`status`, `rounds`, `events`, `patches`, ...), and with `check` the `intersections` that the exact test, made anew,
+    finds in what Blender shows afterwards. Raises InputError, naming the edit, for what cannot be selected and
     for an edit that the operator refuses; the edits before it stay done. Ends in Object Mode.
     """
     reports: list[Report] = []
@@ -33,6 +37,8 @@ def replay(script: EditScript, on_edit: Callable[[Report], None] = lambda report
                 _prepare(step, script, len(reports))
                 selected = step
             reports.append(_edit(step, len(reports)))
+            if check:
+                reports[-1]["intersections"] = len(find_pairs(read_surface(bpy.context)))
             on_edit(reports[-1])
     finally:
         if bpy.context.mode != "OBJECT":
@@ -98,7 +104,7 @@ def _edit(step: EditStep, number: int) -> Report:
         reason = str(error).strip().removeprefix("Error: ")
         raise InputError(f"edit {number} ({step.operator}): {reason}") from error
     milliseconds = 1000 * (time.perf_counter() - begin)
-    if outcome != {"FINISHED"}:
+    if outcome != {"FINISHED"} and step.operator not in RESHAPES:  # those end so where nothing was left to do
         raise InputError(f"edit {number} ({step.operator}): the operator was cancelled")
     said = json.loads(bpy.context.window_manager.stiv_last_edit)
     return {"number": number, "operator": step.operator, "milliseconds": round(milliseconds, 3), **said}

@@ -46,6 +46,7 @@ class ReshapeReport:
         pairs_before: how many pairs met at the start.
         deviation: root mean square distance from the start, in diagonals of what moved.
         contracted: what a repair contracted.
+        result: of an expansion's edits, all together; None of anything else.
     """
 
     status: str
@@ -55,6 +56,7 @@ class ReshapeReport:
     pairs_before: int = 0
     deviation: float = 0.0
     contracted: str = ""
+    result: stiv.EditResult | None = None
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,8 @@ examples:
   stiv replay scene.blend edits.json -o edited.blend --report report.json --render picture.png
   stiv replay two_sheets.obj edits.json -o edited.obj
 
-exit codes: 0 done, 2 bad input (nothing is written), 1 wrong usage, 3 internal error, 5 cancelled"""
+exit codes: 0 done, 2 bad input (nothing is written), 4 with --check: something intersects after an edit,
+1 wrong usage, 3 internal error, 5 cancelled"""
 
 
 def add_to(subcommands: Subparsers) -> None:
@@ -56,6 +57,7 @@ def add_to(subcommands: Subparsers) -> None:
         help="where the result goes: a .blend, or a mesh file",
     )
     parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
+    parser.add_argument("--check", action="store_true", help="make the exact test anew after each edit of a .blend")
     parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
@@ -72,14 +74,14 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.report is not None:
         write_json(arguments.report, replay_report(arguments.scene, edits))
     print(summary(edits))
-    return ExitCode.DONE
+    return ExitCode.NOT_FREE if any(edit.get("intersections") for edit in edits) else ExitCode.DONE
 
 
 def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
     files = require_blender("stiv.blender.blend_files", arguments.scene)
     with quiet_blender():
         files.open_blend(arguments.scene)
-        edits = run_script(script, arguments.scene)
+        edits = run_script(script, arguments.scene, arguments.check)
         with written_atomically(arguments.output) as temporary:
             files.save_blend(temporary)
         if arguments.render is not None:
@@ -91,6 +93,8 @@ def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dic
 def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
     if arguments.render is not None:
         raise InputError("--render: a mesh file has no camera to render with")
+    if arguments.check:
+        raise InputError("--check: of a .blend; `stiv check` tests mesh files")
     require_writer(arguments.output)
     mesh = read_mesh(arguments.scene)
     with progress_bar("edits", len(script)) as advance:
@@ -103,11 +107,14 @@ def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict
     return edits
 
 
-def run_script(script: EditScript, scene: Path) -> list[dict[str, Any]]:
-    """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON."""
+def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dict[str, Any]]:
+    """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON.
+
+    check: make the exact test anew after each edit.
+    """
     replaying = require_blender("stiv.blender.replaying", scene)
     with addon_registered(scene), progress_bar("edits", len(script)) as advance:
-        edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]))
+        edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]), check)
     return edits
 
 
@@ -121,4 +128,6 @@ def summary(edits: list[dict[str, Any]]) -> str:
     milliseconds = sum(edit["milliseconds"] for edit in edits)
     rounds = sum(edit["rounds"] for edit in edits)
     stopped = sum(edit["status"] == "blocked" for edit in edits)
-    return f"{len(edits)} edits, {rounds} rounds, {milliseconds / 1000:.1f} s; {stopped} edits blocked"
+    text = f"{len(edits)} edits, {rounds} rounds, {milliseconds / 1000:.1f} s; {stopped} edits blocked"
+    tested = [edit["intersections"] for edit in edits if "intersections" in edit]
+    return f"{text}; {sum(tested)} intersections in {len(tested)} states" if tested else text
