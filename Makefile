@@ -67,11 +67,12 @@ bench: build/venv/bench ## Run every benchmark with its default settings, beside
 
 peers: build/venv/bench build/cgal ## Install what benchmarks race: ipctk and libigl from PyPI, CGAL from Debian
 
-fuzz: $(OPENSUBDIV) ## Fuzz pair tests, detection and the static test: make fuzz FUZZ_SECONDS=600 (each; default 30)
+fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, static test, edits and readers of files: make fuzz FUZZ_SECONDS=600 (each; default 30)
 	tools/install_debian_packages.sh tools/debian_packages_fuzz.txt
 	cmake --preset fuzz -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
 	cmake --build --preset fuzz
 	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
+	build/venv/bin/python -W ignore tests/long/file_fuzzing.py --seconds $(FUZZ_SECONDS) --findings build/fuzz
 
 coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection and acceptance need 95 %
 	tools/install_debian_packages.sh tools/debian_packages_coverage.txt
@@ -84,10 +85,11 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender ## Run the long forms: killed batches, random edits and every path they take, cancelled edits, memory
+test-long: build/venv/stiv build/venv-blender ## Run the long forms: killed batches, random edits and every path they take, cancelled edits, soak, memory
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
+	build/venv/bin/python tests/long/soak.py --drags 10000
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
 	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 

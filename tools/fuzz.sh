@@ -11,5 +11,5 @@ for program in "$build"/native/fuzz/fuzz_*; do
     echo "== $target, $seconds s"
     mkdir -p "$build/corpus/$target"
     "$program" "$build/corpus/$target" "native/fuzz/corpus/$target" -max_total_time="$seconds" -max_len=512 \
-        -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -artifact_prefix="$build/$target-"
+        -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -artifact_prefix="$build/$target-"
 done

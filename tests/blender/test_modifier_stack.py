@@ -7,7 +7,19 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, select, shift
+from building import (
+    add,
+    add_cube,
+    add_grid,
+    add_lattice,
+    add_modifier,
+    edit_mode,
+    evaluated,
+    mesh,
+    select,
+    shift,
+    snapshot,
+)
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings
@@ -161,11 +173,17 @@ def test_lattice_points(stack: Callable[[Any, Any], None], kind: str) -> None:
 
 
 def refused(pattern: str, settings: EditSettings = DEFORM) -> None:
+    before = snapshot()
     with pytest.raises(stiv.InputError, match=pattern):
         begin(settings)
+    assert snapshot() == before
 
 
-@pytest.mark.parametrize("kind", ["SOLIDIFY", "BEVEL", "CAST", "ARRAY", "MIRROR", "SMOOTH", "DISPLACE", "NODES"])
+OTHERS = ["SOLIDIFY", "BEVEL", "CAST", "ARRAY", "MIRROR", "SMOOTH", "DISPLACE", "NODES"]
+CACHED = ["CLOTH", "SOFT_BODY", "MESH_CACHE", "MESH_SEQUENCE_CACHE"]
+
+
+@pytest.mark.parametrize("kind", [*OTHERS, *CACHED])
 def test_other_modifiers_are_refused_by_name(kind: str) -> None:
     ob = add_cube("Böx")
     add_modifier(ob, kind, "My mödifier")

@@ -137,6 +137,7 @@ def test_a_goal_that_is_not_finite_names_object_and_control(session: stiv.EditSe
     goal[7, 1] = np.nan
     with pytest.raises(stiv.InputError, match='object "deformable 0", control 7: coordinate is not finite'):
         session.drag(goal)
+    assert np.array_equal(session.controls, edit.controls)
 
 
 def test_nothing_to_move_comes_back_unchanged(edit: families.Edit) -> None:

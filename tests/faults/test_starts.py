@@ -29,7 +29,8 @@ def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
     if case == "touching corner":
         vertices = sheets(1.0)
         vertices[-1] = vertices[FACES[0]].mean(axis=0)
-    with pytest.raises(stiv.StartIntersectsError) as raised:
+    ways_out = 'object "surface", face .* Move them apart, repair them, or exclude these pairs'
+    with pytest.raises(stiv.StartIntersectsError, match=f"the start already intersects: .*{ways_out}") as raised:
         session(vertices, triangles)
     assert len(raised.value.pairs) > 0
     found = {tuple(pair) for pair in stiv.find_intersections(vertices, triangles).tolist()}
@@ -63,8 +64,9 @@ def test_small_and_large_scenes_are_solved_alike(scale):
 
 
 def test_a_tiny_object_far_away_is_refused_with_the_least_separation():
+    """In single precision all of it is one point."""
     vertices, triangles = sheets(0.5, 1e-7, 1e7), np.vstack([FACES, ABOVE])
-    with pytest.raises(stiv.InputError):  # in single precision all of it is one point
+    with pytest.raises(stiv.InputError, match=r"the least that can be kept here is 4, .*move the scene nearer"):
         session(vertices, triangles, separation=1e-9)
 
 

@@ -78,6 +78,39 @@ def test_a_header_that_promises_too_much_is_refused(tmp_path, shape):
         read_mesh(path)
 
 
+def archive_member(dtype, shape, data):
+    text = f"{{'descr': {dtype!r}, 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + data
+
+
+@pytest.mark.parametrize("code", [0x110000, 0xFFFFFFFF, 0xD800])
+@pytest.mark.parametrize("order", ["little", "big"])
+def test_names_of_no_characters_are_refused(tmp_path, code, order):
+    path = tmp_path / "names.npz"
+    np.savez(path, vertices=VERTICES, triangles=TRIANGLES)
+    with zipfile.ZipFile(path, "a") as archive:
+        dtype = "<U2" if order == "little" else ">U2"
+        archive.writestr("object_names.npy", archive_member(dtype, "(1,)", code.to_bytes(4, order) + bytes(4)))
+    with pytest.raises(stiv.InputError, match=r'names\.npz: array "object_names": not a text'):
+        read_mesh(path)
+
+
+def test_names_of_length_zero_are_refused(tmp_path):
+    path = tmp_path / "names.npz"
+    np.savez(path, vertices=VERTICES, triangles=TRIANGLES)
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("object_names.npy", archive_member("<U0", "(1000000,)", b""))
+    with pytest.raises(stiv.InputError, match='array "object_names": numbers of type'):
+        read_mesh(path)
+
+
+def test_a_header_that_ends_within_brackets_is_refused(tmp_path):
+    path = tmp_path / "open.npz"
+    with_member(path, "vertices", archive_member("<f8", "(4, 3", bytes(96)))
+    with pytest.raises(stiv.InputError, match='array "vertices": not a NumPy array'):
+        read_mesh(path)
+
+
 def test_noise_is_refused(tmp_path):
     path = tmp_path / "noise.npz"
     path.write_bytes(np.random.default_rng(1).bytes(3000))

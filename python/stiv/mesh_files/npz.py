@@ -7,6 +7,7 @@ allocate more than the file holds; pickled objects are never loaded.
 
 from __future__ import annotations
 
+import tokenize
 import zipfile
 import zlib
 from pathlib import Path
@@ -32,9 +33,19 @@ def read_npz(path: Path) -> Mesh:
             owners = _optional(archive, "triangle_object", "iu")
     except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
         raise InputError(f"not a readable NPZ archive: {error}") from error
-    object_names = (path.stem,) if names is None else tuple(map(str, names))
+    object_names = (path.stem,) if names is None else _texts(names, "object_names")
     owner = None if owners is None else owners.astype(np.int64)
     return checked_mesh(vertices.astype(float), triangles.astype(np.int64), object_names, owner)
+
+
+def _texts(array: NDArray[np.str_], name: str) -> tuple[str, ...]:
+    """Texts that NumPy takes as they are: not all that four bytes may hold is a character."""
+    encoding = "utf-32-be" if array.dtype.str.startswith(">") else "utf-32-le"
+    rows = array.view(np.uint8).reshape(len(array), array.dtype.itemsize)
+    try:
+        return tuple(row.tobytes().decode(encoding).rstrip("\0") for row in rows)
+    except UnicodeDecodeError as error:
+        raise InputError(f'array "{name}": not a text: {error.reason}') from error
 
 
 def _optional(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any] | None:
@@ -48,7 +59,7 @@ def _array(archive: zipfile.ZipFile, name: str, kinds: str, columns: int | None)
     member = archive.getinfo(f"{name}.npy")
     with archive.open(member) as stream:
         shape, column_major, dtype = _header(stream, name)
-        if dtype.hasobject or dtype.kind not in kinds:
+        if dtype.hasobject or dtype.kind not in kinds or dtype.itemsize == 0:
             raise InputError(f'array "{name}": numbers of type {dtype} cannot be used here')
         if len(shape) != (1 if columns is None else 2) or (columns is not None and shape[1] != columns):
             raise InputError(
@@ -71,7 +82,7 @@ def _header(stream: Any, name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any
         version = npy.read_magic(stream)
         reader = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
         shape, column_major, dtype = reader(stream)
-    except (ValueError, TypeError, SyntaxError, RecursionError) as error:
+    except (ValueError, TypeError, SyntaxError, RecursionError, tokenize.TokenError) as error:
         raise InputError(f'array "{name}": not a NumPy array: {error}') from error
     if any(length < 0 for length in shape):
         raise InputError(f'array "{name}": negative length in its shape {shape}')

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ten thousand drags in the scenes of the ogre's dressing, the exact test after each move.
+
+    python tests/long/soak.py [--drags 10000] [--moves 2] [--seed 1]
+
+One session for each stage of the dressing, alive all along. Blocks of random drags alternate with one block that is
+always the same, from the same start: its results must be the same to the last bit, and the processor time that it
+takes tells whether edits become slower. Ends with 1 if something intersects, if a repeated block differs, if the
+memory in use grew by 1 % or more after the first tenth, or if the repeated block became slower by 10 % or more. Needs
+/proc.
+"""
+
+import argparse
+import hashlib
+import os
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+import numpy as np
+
+import stiv
+from blend_fixtures.scenes.sessions import dressing
+from blend_fixtures.scenes.sessions.session import Stage
+
+BLOCK = 60  # drags, over all stages in turn
+LONGEST = 0.05  # of a drag, in diagonals of what may move
+MOST_GROWTH, MOST_DRIFT = 0.01, 0.10
+
+
+@dataclass
+class Scene:
+    """A stage of the dressing with its session and the controls from which each block starts."""
+
+    stage: Stage
+    session: stiv.EditSession
+    start: np.ndarray
+    diagonal: float
+
+
+@dataclass
+class Account:
+    """What was seen."""
+
+    drags: int = 0
+    intersections: int = 0
+    statuses: dict[str, int] = field(default_factory=dict)
+    memory: list[tuple[int, int]] = field(default_factory=list)  # drags so far, bytes in use
+    repeated_seconds: list[float] = field(default_factory=list)
+    repeated_results: set[str] = field(default_factory=set)
+
+
+def scenes() -> list[Scene]:
+    """Every stage, its controls where the dressing left them: in contact."""
+    found, stages = [], dressing.stages()
+    stage = next(stages)
+    while True:
+        session = stiv.EditSession(
+            stage.surface, stage.deformation, stage.controls, stiv.EditOptions(threads=1, **stage.options)
+        )
+        for edit in stage.edits:
+            session.edit(edit(session.controls))
+        mobile = stage.deformation.surface(stage.controls) != session.surface
+        extent = np.ptp(session.surface[mobile.any(axis=1)], axis=0)
+        found.append(Scene(stage, session, session.controls, float(np.linalg.norm(extent))))
+        try:
+            stage = stages.send(session.controls)
+        except StopIteration:
+            return found
+
+
+def random_goal(chance: np.random.Generator, scene: Scene) -> np.ndarray:
+    """Controls about a random one moved, less the farther from it; a rigid body moved and turned."""
+    goal = scene.session.controls
+    shift = chance.normal(size=3)
+    shift *= chance.uniform(0, LONGEST) * scene.diagonal / np.linalg.norm(shift)
+    if len(goal) == 2:
+        return goal + np.array([shift, chance.normal(scale=0.05, size=3)])
+    away = np.linalg.norm(goal - goal[chance.integers(len(goal))], axis=1)
+    return goal + np.exp(-((away / (chance.uniform(0.05, 0.5) * scene.diagonal)) ** 2))[:, None] * shift
+
+
+def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account) -> None:
+    """One drag in a few moves; what each shows is tested."""
+    begin = scene.session.controls
+    goal = random_goal(chance, scene)
+    for move in range(1, moves + 1):
+        result = scene.session.drag(begin + move / moves * (goal - begin))
+        account.intersections += len(stiv.find_intersections(result.surface, scene.stage.surface))
+        account.statuses[result.status] = account.statuses.get(result.status, 0) + 1
+    account.drags += 1
+
+
+def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> tuple[float, str]:
+    """One block from the start on: processor seconds, and a hash of where it ended."""
+    chance, begin = np.random.default_rng(seed), time.process_time()
+    for scene in all_scenes:
+        scene.session.restore(scene.start)
+    for number in range(BLOCK):
+        drag(all_scenes[number % len(all_scenes)], chance, moves, account)
+    ends = hashlib.sha256(b"".join(scene.session.surface.tobytes() for scene in all_scenes))
+    return time.process_time() - begin, ends.hexdigest()
+
+
+def memory_in_use() -> int:
+    """Bytes of this process that are in memory."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+
+def run(drags: int, seed: int, moves: int) -> Account:
+    """Blocks until there were so many drags."""
+    account, all_scenes = Account(), scenes()
+    while account.drags < drags:
+        seconds, ends = block(all_scenes, 0, moves, account)
+        account.repeated_seconds.append(seconds)
+        account.repeated_results.add(ends)
+        block(all_scenes, seed, moves, account)
+        seed += 1
+        account.memory.append((account.drags, memory_in_use()))
+        print(f"{account.drags} drags, {account.memory[-1][1] / 1e6:.1f} MB, {seconds:.2f} s", flush=True)
+    return account
+
+
+def growth_of_memory(account: Account) -> float:
+    """From what was in use after the first tenth to what is at the end."""
+    settled = next(used for drags, used in account.memory if 10 * drags >= account.drags)
+    return account.memory[-1][1] / settled - 1
+
+
+def drift_of_time(account: Account) -> float:
+    """The least time of the repeated block in the last fifth against the first: other work only ever adds to it."""
+    count = max(1, len(account.repeated_seconds) // 5)
+    return min(account.repeated_seconds[-count:]) / min(account.repeated_seconds[:count]) - 1
+
+
+def main() -> int:
+    """Drags, tests, compares."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--drags", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--moves", type=int, default=2, help="mouse moves a drag (default 2)")
+    chosen = parser.parse_args()
+    account = run(chosen.drags, chosen.seed, chosen.moves)
+    growth, drift = growth_of_memory(account), drift_of_time(account)
+    counts = ", ".join(f"{count} {status}" for status, count in sorted(account.statuses.items()))
+    print(f"{account.drags} drags of {chosen.moves} moves ({counts}), {account.intersections} intersections")
+    print(f"memory {100 * growth:+.2f} %, time {100 * drift:+.1f} %, {len(account.repeated_results)} ends of one block")
+    same = len(account.repeated_results) == 1
+    return int(account.intersections > 0 or not same or growth >= MOST_GROWTH or drift >= MOST_DRIFT)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
