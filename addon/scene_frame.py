@@ -14,6 +14,7 @@ from .modal.proportional import Proportional
 from .transform.frame import Frame
 from .transform.pivot import pivot_of
 from .transform.view import Vector, View
+from .wording import say
 
 
 def read_frame(context: Any) -> Frame:
@@ -47,15 +48,15 @@ def notes(context: Any) -> list[str]:
     found = []
     chosen = orientation_names(context)[0]
     if not scene_axes.is_followed(context, chosen):
-        found.append(f"orientation {chosen.title()} is not supported here: global axes")
+        found.append(say("orientation {} is not supported here: global axes").format(say(chosen.title())))
     tools = context.scene.tool_settings
     if context.mode == "OBJECT" and tools.use_proportional_edit_objects:
-        found.append("proportional editing of objects is not supported")
+        found.append(say("proportional editing of objects is not supported"))
     if context.mode != "OBJECT" and tools.use_proportional_edit:
         if tools.use_proportional_projected:
-            found.append("proportional editing from view is not supported: by distance in space")
+            found.append(say("proportional editing from view is not supported: by distance in space"))
         if tools.transform_pivot_point == "INDIVIDUAL_ORIGINS":
-            found.append("proportional editing about individual origins is not supported: about their median")
+            found.append(say("proportional editing about individual origins is not supported: about their median"))
     return found
 
 

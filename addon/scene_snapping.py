@@ -12,6 +12,7 @@ import numpy as np
 from .scene_frame import active_point, selected_points
 from .transform.snapping import GEOMETRY, Seen, Snap, Steps
 from .transform.view import Pixel, Vector, View
+from .wording import say
 
 PIXELS = 20.0  # the least length of an increment in a parallel view
 FOLLOWED = frozenset({"INCREMENT", "GRID", *GEOMETRY})
@@ -37,7 +38,8 @@ def notes(scene: Any) -> list[str]:
     others = sorted(set(scene.tool_settings.snap_elements) - FOLLOWED)
     if not others or not scene.tool_settings.use_snap:
         return []
-    return [f"snapping to {', '.join(name.replace('_', ' ').lower() for name in others)} is not supported"]
+    names = ", ".join(say(name.replace("_", " ").title()) for name in others)
+    return [say("snapping to {} is not supported").format(names)]
 
 
 def _look(context: Any, view: View | None, pixel: Pixel, moving: frozenset[str]) -> Seen | None:

@@ -2,7 +2,8 @@
 """Every text of the add-on's interface that Blender can translate, as the sources have it.
 
 Names and descriptions of properties and of the choices of enumerations, labels and tooltips of operators, labels of
-panels and menus, and constant texts of layouts. Printed one a line when run.
+panels and menus, constant texts of layouts, what the code says by `say("text")`, and what stands in dictionaries named
+..._WORDS, which are said by variables. Printed one a line when run.
 """
 
 import ast
@@ -26,10 +27,19 @@ def _of(node: ast.AST) -> Iterator[str]:
         yield from _of_class(node)
     elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple):
         yield from _of_choices(node.value)
+    elif (
+        isinstance(node, ast.Assign)
+        and isinstance(node.value, ast.Dict)
+        and ast.unparse(node.targets[0]).endswith("_WORDS")
+    ):
+        for value in node.value.values:
+            yield from _constants(value)
 
 
 def _of_call(node: ast.Call) -> Iterator[str]:
     name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+    if name == "say":
+        yield from _constants(node.args[0])
     wanted = {"name", "description"} if name.endswith("Property") else {"text"} if name in LAYOUT_CALLS else set()
     for keyword in node.keywords:
         if keyword.arg in wanted:

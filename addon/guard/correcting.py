@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..settings import edit_settings
+from ..wording import say
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def test(context: Any) -> Outcome:
     if not pairs:
         return Outcome(True)
     names = sorted({each.object for pair in pairs for each in (pair.first, pair.second)})
-    return Outcome(False, text=f"{len(pairs)} pairs of faces intersect: {listed(names)}")
+    return Outcome(False, text=say("{} pairs of faces intersect: {}").format(len(pairs), listed(names)))
 
 
 def correct(context: Any, accepted: Any) -> Outcome:
@@ -66,14 +67,16 @@ def correct(context: Any, accepted: Any) -> Outcome:
         return _tested_instead(context, str(error))
     if not followed.corrected:
         return Outcome(True)
-    blocked = f", in the way: {listed(followed.blocking)}" if followed.blocking else ""
-    return Outcome(True, True, f"corrected {listed(followed.names)}{blocked}")
+    told = say("corrected {}").format(listed(followed.names))
+    if followed.blocking:
+        told = say("corrected {}, in the way: {}").format(listed(followed.names), listed(followed.blocking))
+    return Outcome(True, True, told)
 
 
 def listed(names: Any, most: int = 3) -> str:
     """Some names, and how many more there are."""
     shown = ", ".join(list(names)[:most])
-    return f"{shown} and {len(names) - most} more" if len(names) > most else shown
+    return say("{} and {} more").format(shown, len(names) - most) if len(names) > most else shown
 
 
 def _tested_instead(context: Any, reason: str) -> Outcome:
@@ -81,7 +84,7 @@ def _tested_instead(context: Any, reason: str) -> Outcome:
     found = test(context)
     if found.free or not reason:
         return found
-    return Outcome(False, text=f"{found.text}; not corrected: {reason}")
+    return Outcome(False, text=say("{}; not corrected: {}").format(found.text, reason))
 
 
 def _settings(context: Any) -> Any:

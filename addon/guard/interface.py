@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+from ..wording import say
+
 SHOWN = 6.0  # seconds for which the status bar keeps a message
 
 
@@ -30,7 +32,7 @@ def tell(wrote: str, problem: str) -> None:
     if not text:
         return
     for workspace in bpy.data.workspaces:
-        workspace.status_text_set(f"Live guard: {text}")
+        workspace.status_text_set(say("Live guard: {}").format(text))
     _forget_clearing()
     bpy.app.timers.register(clear_when_idle, first_interval=SHOWN)
 

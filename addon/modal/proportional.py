@@ -37,11 +37,3 @@ class Proportional:
     def resized(self, key: str) -> Proportional:
         """After a notch of the wheel, or a page key."""
         return replace(self, size=self.size * (GROWTH if key in LARGER_KEYS else 1.0 / GROWTH))
-
-    @property
-    def text(self) -> str:
-        """For the header."""
-        if not self.active:
-            return ""
-        how = self.falloff.replace("_", " ").lower()
-        return f"proportional {self.size:.4g} {how}{' connected' if self.connected else ''}"

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What header and status bar say during a drag."""
+"""What header and status bar say during a drag; `say` puts a text into the language of the interface."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from .proportional import Proportional
 from .state import State
 
-_VERDICTS = {
+Say = Callable[[str], str]
+
+_VERDICT_WORDS = {
     "reached": "clear",
     "corrected": "gives way",
     "blocked": "blocked",
@@ -16,44 +19,65 @@ _VERDICTS = {
     "unchanged": "",
     "unguarded": "interference ignored",
 }
+_RESPONDER_WORDS = {"unselected": "gives way: what is not selected", "all": "gives way: all"}
 
 
 def header_text(
-    state: State, transform: str, verdict: str, notes: Sequence[str] = (), axes: tuple[str, str] = ("", "")
+    state: State,
+    transform: str,
+    verdict: str,
+    notes: Sequence[str] = (),
+    axes: tuple[str, str] = ("", ""),
+    say: Say = str,
 ) -> str:
     """One line: the value, the lock, the typed text, what became of it. `axes` names both choices of axes."""
     parts = [transform]
     if state.constraint.label:
-        parts.append(f"along {axes[state.constraint.second].title()} {state.constraint.label}".replace("  ", " "))
+        name = axes[state.constraint.second].title()
+        parts.append(
+            say("along {}").format(f"{say(name)} {state.constraint.label}" if name else state.constraint.label)
+        )
     if state.typed.active:
         parts.append(state.typed.text(state.components))
-    parts.extend(text for text in (state.proportional.text, *_modes(state)) if text)
+    parts.extend(text for text in (_proportional_text(state.proportional, say), *_modes(state, say)) if text)
     return "  |  ".join(part for part in ["  ".join(parts), verdict, *notes] if part)
 
 
-def _modes(state: State) -> list[str]:
+def _proportional_text(proportional: Proportional, say: Say) -> str:
+    if not proportional.active:
+        return ""
+    parts = [say("proportional {}").format(f"{proportional.size:.4g}")]
+    parts.append(say(proportional.falloff.replace("_", " ").title()))
+    return " ".join([*parts, *([say("connected")] if proportional.connected else [])])
+
+
+def _modes(state: State, say: Say) -> list[str]:
     """What is not as usual."""
-    who = "" if state.request.responders == "selected" else f"gives way: {state.request.responders}"
-    return ["precise" if state.precise else "", "snap" if state.snapping else "", who]
+    who = _RESPONDER_WORDS.get(state.request.responders, "")
+    return [say("precise") if state.precise else "", say("snap") if state.snapping else "", say(who) if who else ""]
 
 
-def status_text(state: State) -> str:
+def status_text(state: State, say: Say = str) -> str:
     """The keys that do something now."""
     if state.typed.expression:
-        keys = ["Enter: confirm", "Esc: cancel", "+ - * / ( ) and units: expression", "Tab: next", "Backspace: delete"]
-        return "    ".join(keys)
-    keys = ["Enter, Space, Left Mouse: confirm", "Esc, Right Mouse: cancel", "G R S: kind", "X Y Z: axis"]
-    keys.append("Shift+X/Y/Z: plane")
+        keys = [say("Enter: confirm"), say("Esc: cancel"), say("+ - * / ( ) and units: expression")]
+        return "    ".join([*keys, say("Tab: next"), say("Backspace: delete")])
+    keys = [say("Enter, Space, Left Mouse: confirm"), say("Esc, Right Mouse: cancel"), say("G R S: kind")]
+    keys += [say("X Y Z: axis"), say("Shift+X/Y/Z: plane")]
     if state.typed.active:
-        keys += ["Tab: next", "=: expression", "Backspace: delete"]
+        keys += [say("Tab: next"), say("=: expression"), say("Backspace: delete")]
     else:
-        keys += ["0-9 . - =: value", "Shift: precise", "Ctrl: snap"]
+        keys += [say("0-9 . - =: value"), say("Shift: precise"), say("Ctrl: snap")]
     if state.proportional.available:
-        keys += ["O: proportional", *(["Wheel, Page: size", "Shift+O: falloff"] if state.proportional.on else [])]
-    return "    ".join([*keys, "W: who gives way", "I: interference"])
+        keys.append(say("O: proportional"))
+    if state.proportional.active:
+        keys += [say("Wheel, Page: size"), say("Shift+O: falloff")]
+    return "    ".join([*keys, say("W: who gives way"), say("I: interference")])
 
 
-def verdict_text(status: str, blocking: Sequence[str] = ()) -> str:
+def verdict_text(status: str, blocking: Sequence[str] = (), say: Say = str) -> str:
     """What a result's status means to the user; `blocking` are names of objects in the way."""
-    verdict = _VERDICTS.get(status, status)
-    return f"{verdict} by {', '.join(blocking)}" if status == "blocked" and blocking else verdict
+    if status == "blocked" and blocking:
+        return say("blocked by {}").format(", ".join(blocking))
+    word = _VERDICT_WORDS.get(status, status)
+    return say(word) if word else ""

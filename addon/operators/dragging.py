@@ -15,6 +15,7 @@ from ..modal.request import Request
 from ..modal.state import Effect, State
 from ..overlay import showing
 from ..transform.measuring import measure
+from ..wording import say
 from . import interface, outcomes
 from .adapter import begin_drag
 from .choices import chosen_properties, make_influence
@@ -110,7 +111,8 @@ class Dragging:
         if news == self._shown or drag.progress is not Progress.RUNNING:
             return
         self._shown = news
-        value = drag.transform.text() if drag.transform is not None else OPERATORS[drag.state.kind].bl_label
+        label = say(OPERATORS[drag.state.kind].bl_label)
+        value = drag.transform.text(say) if drag.transform is not None else label
         verdict = outcome_text(drag.result) if drag.result is not None else ""
         told = [text for text in (drag.note, write_failure(drag.report)) if text]
         interface.show(context, drag.state, value, verdict, [*told, *self._notes], self._axes)

@@ -12,6 +12,7 @@ from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.texts import header_text, status_text
 from ..transform.frame import Frame
+from ..wording import say
 
 MODIFIERS = ("shift", "ctrl", "alt", "oskey")
 
@@ -57,15 +58,15 @@ def show(
     context: bpy.types.Context, state: State, value: str, verdict: str, notes: Sequence[str], axes: tuple[str, str]
 ) -> None:
     """Write header and status bar, and have the views drawn again."""
-    text = header_text(state, value, verdict, notes, axes)
+    text = header_text(state, value, verdict, notes, axes, say)
     for area in _views(context):
         area.header_text_set(text)
         area.tag_redraw()
     if context.workspace is not None:
-        context.workspace.status_text_set(status_text(state))
+        context.workspace.status_text_set(status_text(state, say))
 
 
-def say(context: bpy.types.Context, text: str) -> None:
+def write_header(context: bpy.types.Context, text: str) -> None:
     """Write a line of text into the headers of the views."""
     for area in _views(context):
         area.header_text_set(text)

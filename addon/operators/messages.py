@@ -8,11 +8,12 @@ from typing import Any
 
 from ..modal.drag import DragEnded, put_back
 from ..modal.texts import verdict_text
+from ..wording import say
 
 
 def outcome_text(result: Any) -> str:
     """What became of an edit; an object in the way is named."""
-    return verdict_text(result.status, tuple(result.blocking))
+    return verdict_text(result.status, tuple(result.blocking), say)
 
 
 def write_failure(report: Any) -> str:

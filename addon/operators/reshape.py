@@ -13,6 +13,7 @@ import bpy
 
 from ..overlay import showing
 from ..settings import edit_settings
+from ..wording import say
 from . import interface
 from .last_edit import numbers
 from .native_module import NeedsNativeModule
@@ -104,13 +105,14 @@ class ReshapeOperator(NeedsNativeModule):
             self._worker.token.cancel()
             self._leave(context)
             self._put_back()
-            self.report({"INFO"}, "cancelled, nothing is changed")
+            self.report({"INFO"}, say("cancelled, nothing is changed"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         if self._worker.is_alive():
             phase, fraction = self._worker.progress
-            interface.say(context, f"{self.bl_label}: {phase} {fraction:.0%}    Esc: cancel")
+            told = f"{say(self.bl_label)}: {phase} {fraction:.0%}    {say('Esc: cancel')}"
+            interface.write_header(context, told)
             return {"RUNNING_MODAL"}
         return self._write(context)
 
@@ -167,7 +169,7 @@ class ReshapeOperator(NeedsNativeModule):
         return {"CANCELLED"}
 
 
-_OUTCOMES = {
+_OUTCOME_WORDS = {
     "already_free": "nothing intersects",
     "repaired": "repaired",
     "refused": "not repaired, nothing is changed",
@@ -183,14 +185,14 @@ _OUTCOMES = {
 
 def outcome(report: Any) -> str:
     """What became of it, what is left, and where the first of it is: one line."""
-    text = _OUTCOMES.get(report.status, report.status)
+    text = say(_OUTCOME_WORDS.get(report.status, report.status))
     if report.status == "repaired":
-        text += f": {report.pairs_before} intersecting pairs are gone, {report.deviation:.2%} off in the mean"
+        figures = say("{} intersecting pairs are gone, {} off in the mean")
+        text += ": " + figures.format(report.pairs_before, f"{report.deviation:.2%}")
     parts = [text, report.message] if report.message and report.status != "cancelled" else [text]
     if report.pairs:
-        parts.append(
-            f"{len(report.pairs)} pairs meet: {_named(report.pairs[:TOLD])}{' ...' * (len(report.pairs) > TOLD)}"
-        )
+        named = _named(report.pairs[:TOLD]) + " ..." * (len(report.pairs) > TOLD)
+        parts.append(say("{} pairs meet: {}").format(len(report.pairs), named))
     return "; ".join(parts)
 
 

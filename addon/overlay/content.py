@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -75,17 +76,20 @@ def arrows(points: Any, directions: Any, length: float) -> Any:
     return np.stack([points, tips, tips, barbs[0], tips, barbs[1]], axis=1).reshape(-1, 3)
 
 
-def texts_of(content: Content, chosen: Any, length_text: Any) -> list[str]:
-    """Lines of text for the corner of the view. length_text: from a length to how the scene writes it."""
+def texts_of(content: Content, chosen: Any, length_text: Any, say: Callable[[str], str] = str) -> list[str]:
+    """Lines of text for the corner of the view.
+
+    length_text: from a length to how the scene writes it; say: from a text to the language of the interface.
+    """
     texts = []
     if content.clearance is not None and chosen.clearance:
         between = f" ({', '.join(content.clearance.names)})" if content.clearance.names else ""
-        texts.append(f"Least distance {length_text(content.clearance.distance)}{between}")
+        texts.append(say("Least distance {}").format(length_text(content.clearance.distance)) + between)
     if len(content.intersecting) and chosen.intersections:
-        texts.append(f"{len(content.intersecting)} intersecting triangles")
+        texts.append(say("{} intersecting triangles").format(len(content.intersecting)))
     if content.contacts is not None and chosen.contacts:
-        texts.append(f"{len(content.contacts[0])} contacts")
+        texts.append(say("{} contacts").format(len(content.contacts[0])))
     if content.milliseconds is not None and chosen.speed:
-        rate = f", {content.frames:.0f} frames a second" if content.frames else ""
+        rate = say(", {} frames a second").format(f"{content.frames:.0f}") if content.frames else ""
         texts.append(f"{content.milliseconds:.0f} ms{rate}")
     return texts

@@ -10,6 +10,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
+from ..wording import say
 from .content import Content, lines_of, texts_of
 
 ARROW = 0.06  # length of an arrow in distances from the eye to the view's centre
@@ -53,7 +54,7 @@ def draw_text(content: Content, chosen: Any) -> None:
     scale = context.preferences.system.ui_scale
     blf.size(0, TEXT_SIZE * scale)
     blf.color(0, *colours(context)["text"], 1.0)
-    for number, text in enumerate(reversed(texts_of(content, chosen, _length_text))):
+    for number, text in enumerate(reversed(texts_of(content, chosen, _length_text, say))):
         blf.position(0, CORNER[0] * scale, (CORNER[1] + 1.5 * TEXT_SIZE * number) * scale, 0)
         blf.draw(0, text)
 

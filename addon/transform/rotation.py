@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,9 +39,9 @@ class Rotation:
         """A fraction of the way to it, 0 to 1."""
         return Rotation(fraction * self.angle, self.axis)
 
-    def text(self) -> str:
-        """For the header."""
-        return f"Rotate {math.degrees(self.angle):.4g}°"
+    def text(self, say: Callable[[str], str] = str) -> str:
+        """For the header; `say` puts a text into the language of the interface."""
+        return say("Rotate {}").format(f"{math.degrees(self.angle):.4g}°")
 
 
 def read_degrees(text: str) -> float:

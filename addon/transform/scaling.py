@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -35,10 +36,10 @@ class Scaling:
         """A fraction of the way to it, 0 to 1."""
         return Scaling(1.0 + fraction * (self.factors - 1.0), self.axes)
 
-    def text(self) -> str:
-        """For the header."""
+    def text(self, say: Callable[[str], str] = str) -> str:
+        """For the header; `say` puts a text into the language of the interface."""
         x, y, z = self.factors
-        return f"Scale {x:.4g}" if x == y == z else f"Scale X {x:.4g}  Y {y:.4g}  Z {z:.4g}"
+        return say("Scale {}").format(f"{x:.4g}" if x == y == z else f"X {x:.4g}  Y {y:.4g}  Z {z:.4g}")
 
 
 def measure_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:

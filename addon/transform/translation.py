@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,10 +40,11 @@ class Translation:
         """A fraction of the way to it, 0 to 1."""
         return Translation(fraction * self.vector)
 
-    def text(self) -> str:
-        """For the header."""
+    def text(self, say: Callable[[str], str] = str) -> str:
+        """For the header; `say` puts a text into the language of the interface."""
         x, y, z = self.vector
-        return f"Move X {x:.4g}  Y {y:.4g}  Z {z:.4g}  (distance {np.linalg.norm(self.vector):.4g})"
+        length = float(np.linalg.norm(self.vector))
+        return say("Move {}  (distance {})").format(f"X {x:.4g}  Y {y:.4g}  Z {z:.4g}", f"{length:.4g}")
 
 
 def measure_translation(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Translation:

@@ -2,6 +2,7 @@
 """The modal half of the operators, which Blender without a window cannot run: with a context made of plain values."""
 
 import sys
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -40,7 +41,7 @@ class Value(SimpleNamespace):
 
     rotation = None
 
-    def text(self) -> str:
+    def text(self, say: Callable[[str], str] = str) -> str:
         return f"{self.value}"
 
 
