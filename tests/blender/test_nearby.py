@@ -12,7 +12,7 @@ pytest.importorskip("bpy")
 
 import bpy
 
-from stiv.blender import BlenderEdit, EditSettings, begin_nearby, check_scene, reach
+from stiv.blender import BlenderEdit, EditSettings, SceneChangedError, begin_nearby, check_scene, reach
 from stiv.blender.measuring import nearest_pair
 from stiv.blender.roles import find_movers
 
@@ -179,3 +179,57 @@ def test_what_is_tied_to_anything_is_taken_in(row: Any, tie: str) -> None:
 def test_small_scenes_are_taken_in_whole(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reach, "LEAST_FACES", 1000)
     assert isinstance(begin_nearby(bpy.context, EditSettings(), "move"), BlenderEdit)
+
+
+@pytest.fixture
+def ground(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A ball above one end of a long wavy ground, of which a part is taken in at first."""
+    monkeypatch.setattr(reach, "LARGE", 100)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=80, y_subdivisions=20, size=2)
+    below = bpy.context.object
+    below.name, below.scale = "Ground", (20, 5, 1)
+    for vertex in below.data.vertices:
+        vertex.co.z = 0.3 * np.sin(20 * vertex.co.x)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, location=(-15, 0, 1.5))
+    bpy.context.object.name = "Ball"
+    select(bpy.context.object)
+    return bpy.context.object
+
+
+def moved(edit: Any, name: str) -> np.ndarray:
+    return edit.surface[edit.assembly.vertices(names(edit).index(name))]
+
+
+def test_a_large_obstacle_is_taken_in_where_it_is_near(ground: Any) -> None:
+    edit, entire = begin_nearby(bpy.context, EditSettings(), "move"), whole(EditSettings())()
+    assert not edit.has_all and edit.start_digest == entire.start_digest
+    part, all_of_it = (each.assembly.meshes[names(each).index("Ground")] for each in (edit, entire))
+    assert 0 < len(part.triangles) < 0.5 * len(all_of_it.triangles)
+    matrix = np.eye(4)
+    matrix[2, 3] = -0.8
+    for each in (edit, entire):
+        assert each.drag(matrix).status == "corrected"
+    assert_allclose(moved(edit, "Ball"), moved(entire, "Ball"), atol=1e-3)
+    assert edit.write().passed and check_scene(bpy.context).pairs == ()
+
+
+@pytest.mark.parametrize("steps", [1, 8, 50])
+def test_a_drag_along_a_large_obstacle_meets_every_part_of_it(ground: Any, steps: int) -> None:
+    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    matrix = np.eye(4)
+    for step in range(1, steps + 1):
+        matrix[0, 3], matrix[2, 3] = 30.0 * step / steps, -1.2
+        edit.drag(matrix)
+        assert edit.write().passed and check_scene(bpy.context).pairs == ()
+    assert moved(edit, "Ball")[:, 2].min() > -0.35
+    edit.restore()
+    assert ground.location.x == -15
+
+
+def test_an_obstacle_that_changes_its_size_during_a_drag_ends_it(ground: Any) -> None:
+    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit.drag(along_x(0.5))
+    bpy.data.objects["Ground"].modifiers.new("More", "SUBSURF").levels = 1
+    bpy.context.view_layer.update()
+    with pytest.raises(SceneChangedError):
+        edit.write()

@@ -53,7 +53,7 @@ class Assembly:
     def vertex(self, vertex: int) -> Element:
         """The vertex that a vertex of the surface is."""
         mesh, number = self._locate(vertex, [len(each.local) for each in self.meshes])
-        return Element(mesh.owner.name, "vertex", number)
+        return Element(mesh.owner.name, "vertex", mesh.vertex_number(number))
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)

@@ -15,6 +15,7 @@ from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
+from stiv.blender.reach import Reach
 from stiv.blender.sessions import mobilities, stacked
 from stiv.blender.settings import EditSettings
 
@@ -46,14 +47,18 @@ def read_beginning(
     kind: str,
     movers: Sequence[Mover],
     adapt: Callable[[Part], Part],
-    left_out: frozenset[str],
+    reach: Reach | None,
 ) -> Beginning:
     """Read the scene for an edit of this kind with these movers; changes nothing. Raises InputError.
 
-    adapt: may change who responds in a part. left_out: names of objects that do not take part, and do not hang
-    together with any that does.
+    adapt: may change who responds in a part. reach: what does not touch it does not take part; None: all does.
     """
-    scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
+    left_out = frozenset() if reach is None else reach.left_out
+    scene = read_scene(
+        context,
+        lambda name: settings.takes_part(name) and name not in left_out,
+        lambda name: None if reach is None else reach.box_of(name),
+    )
     found, groups = make_parts(context, movers, scene.meshes, settings, kind)
     parts = tuple(adapt(part) for part in found)
     if not any(part.rule.moves for part in parts):

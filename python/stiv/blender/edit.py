@@ -20,6 +20,7 @@ from stiv.blender.increments import motions_toward
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
+from stiv.blender.reach import Reach
 from stiv.blender.results import summed
 from stiv.blender.roles import find_movers
 from stiv.blender.sessions import split, stacked
@@ -70,13 +71,13 @@ class BlenderEdit:
         kind: str,
         movers: Sequence[Mover],
         adapt: Callable[[Part], Part] = lambda part: part,
-        left_out: frozenset[str] = frozenset(),
+        reach: Reach | None = None,
     ) -> BlenderEdit:
         """The same with movers that were found otherwise; `adapt` may change who responds in a part.
 
-        `left_out` names objects that do not take part, and do not hang together with any that does.
+        What does not touch a `reach` does not take part.
         """
-        return cls(read_beginning(context, settings, kind, movers, adapt, left_out))
+        return cls(read_beginning(context, settings, kind, movers, adapt, reach))
 
     @property
     def summary(self) -> Summary:

@@ -10,6 +10,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, Singles, as_matrix, transform_points
 from stiv.blender.mesh_reading import evaluated_mesh, read_edges, read_loose_numbers, read_positions, read_triangles
+from stiv.blender.near_faces import NearFaces, read_near_faces
 from stiv.blender.references import ObjectReference
 
 SURFACE_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"})
@@ -28,6 +29,7 @@ class VisibleMesh:
         faces: the face each triangle belongs to, (f,).
         loose_edges: edges of no face, (l, 2).
         loose_numbers: their numbers among all edges, (l,).
+        near: which part of Blender's mesh this is; None: all of it.
     """
 
     owner: ObjectReference
@@ -38,6 +40,7 @@ class VisibleMesh:
     faces: Indices
     loose_edges: Indices
     loose_numbers: Indices
+    near: NearFaces | None = None
 
     @property
     def is_instance(self) -> bool:
@@ -47,6 +50,15 @@ class VisibleMesh:
     def world(self) -> Floats:
         """World positions, (n, 3)."""
         return transform_points(self.matrix, self.local)
+
+    def vertex_number(self, vertex: int) -> int:
+        """Number of a vertex in Blender's mesh."""
+        return vertex if self.near is None else int(self.near.vertices[vertex])
+
+    @property
+    def size(self) -> int:
+        """Number of vertices of Blender's mesh."""
+        return len(self.local) if self.near is None else self.near.size
 
 
 @dataclass(frozen=True)
@@ -69,9 +81,17 @@ class Placed:
         """World positions, (n, 3)."""
         return transform_points(self.matrix, self.local)
 
+    def limited_to(self, vertices: Indices) -> "Placed":
+        """Some of the vertices, (k,)."""
+        return Placed(self.owner, self.local[vertices], self.matrix)
 
-def read_scene(context: bpy.types.Context, accept: Callable[[str], bool] = lambda name: True) -> EvaluatedScene:
-    """Read every visible mesh whose owner's name is accepted.
+
+def read_scene(
+    context: bpy.types.Context,
+    accept: Callable[[str], bool] = lambda name: True,
+    box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
+) -> EvaluatedScene:
+    """Read every visible mesh whose owner's name is accepted; with a box of the world, (3,) and (3,), what touches it.
 
     Curves, text, surfaces, metaballs and instances come as the meshes they show. Local view is respected where the
     context has a 3D view. Raises InputError naming object and vertex when a coordinate is not finite.
@@ -83,7 +103,7 @@ def read_scene(context: bpy.types.Context, accept: Callable[[str], bool] = lambd
             shown[owner.session_uid] = accept(owner.name) and is_visible(context, owner)
         return shown[owner.session_uid]
 
-    meshes = [_read_mesh(instance, owner) for instance, owner in _mesh_instances(context, is_shown)]
+    meshes = [_read_mesh(instance, owner, box_of(owner.name)) for instance, owner in _mesh_instances(context, is_shown)]
     return EvaluatedScene(tuple(meshes), _hidden_count(context))
 
 
@@ -117,15 +137,23 @@ def _mesh_instances(
             yield instance, ObjectReference.of(owner)
 
 
-def _read_mesh(instance: bpy.types.DepsgraphObjectInstance, owner: ObjectReference) -> VisibleMesh:
+def _read_mesh(
+    instance: bpy.types.DepsgraphObjectInstance, owner: ObjectReference, box: tuple[Floats, Floats] | None
+) -> VisibleMesh:
     source = instance.instance_object.original.name if instance.is_instance else owner.name
+    matrix = as_matrix(instance.matrix_world)
     with evaluated_mesh(instance.object) as mesh:
-        triangles, faces = read_triangles(mesh)
-        loose = read_loose_numbers(mesh)
-        found = VisibleMesh(
-            owner, source, read_positions(mesh), as_matrix(instance.matrix_world), triangles, faces,
-            read_edges(mesh)[loose], loose,
-        )  # fmt: skip
+        if box is not None:
+            near = read_near_faces(mesh, matrix, *box)
+            found = VisibleMesh(
+                owner, source, near.local, matrix, near.triangles, near.faces, near.loose_edges, near.loose_numbers,
+                near,
+            )  # fmt: skip
+        else:
+            triangles, faces = read_triangles(mesh)
+            loose = read_loose_numbers(mesh)
+            edges = read_edges(mesh)[loose] if len(loose) else np.empty((0, 2), np.int32)
+            found = VisibleMesh(owner, source, read_positions(mesh), matrix, triangles, faces, edges, loose)
     _check_finite(found)
     return found
 
@@ -135,7 +163,7 @@ def _check_finite(mesh: VisibleMesh) -> None:
         raise InputError(f'object "{mesh.owner.name}": its placement is not finite; clear its location and scale')
     finite = np.isfinite(mesh.local).all(axis=1)
     if not finite.all():
-        vertex = int(np.argmin(finite))
+        vertex = mesh.vertex_number(int(np.argmin(finite)))
         raise InputError(f'object "{mesh.owner.name}", vertex {vertex}: coordinate is not finite')
 
 

@@ -41,8 +41,9 @@ def read_positions(mesh: bpy.types.Mesh) -> Singles:
 def read_triangles(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
     """Blender's own triangulation: corners, (f, 3), and the face each triangle belongs to, (f,)."""
     mesh.calc_loop_triangles()
-    triangles = mesh.loop_triangles
-    return read_collection(triangles, "vertices", 3, np.int32), read_collection(triangles, "polygon_index", 1, np.int32)
+    sizes = read_collection(mesh.polygons, "loop_total", 1, np.int32)
+    faces = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes - 2)  # in their order; faster than to ask for it
+    return read_collection(mesh.loop_triangles, "vertices", 3, np.int32), faces
 
 
 def read_edges(mesh: bpy.types.Mesh) -> Indices:
@@ -52,8 +53,23 @@ def read_edges(mesh: bpy.types.Mesh) -> Indices:
 
 def read_loose_numbers(mesh: bpy.types.Mesh) -> Indices:
     """Numbers of the edges of no face, (l,)."""
-    loose = read_collection(mesh.edges, "is_loose", 1, np.bool_)
+    used = mesh.attributes.get(".corner_edge")
+    if used is None:
+        loose = read_collection(mesh.edges, "is_loose", 1, np.bool_)
+    else:  # a tenth of the time
+        loose = np.ones(len(mesh.edges), np.bool_)
+        loose[read_collection(used.data, "value", 1, np.int32)] = False
     return np.flatnonzero(loose).astype(np.int32)
+
+
+def read_corners(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
+    """As `read_faces`, a hundred times faster for evaluated meshes."""
+    attribute = mesh.attributes.get(".corner_vert")
+    if attribute is None:
+        return read_faces(mesh)
+    corners = read_collection(attribute.data, "value", 1, np.int32)
+    starts = read_collection(mesh.polygons, "loop_start", 1, np.int32)
+    return corners, np.append(starts, len(corners)).astype(np.int32)
 
 
 def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An edit for drags in large scenes: far obstacles are taken in when what moves comes near them."""
+"""An edit for drags in large scenes: obstacles, and parts of large ones, are taken in when what moves comes near."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_WIDENINGS = 4  # then all obstacles are taken in, so that it ends
 
 
 def begin_nearby(context: bpy.types.Context, settings: EditSettings, kind: str) -> NearbyEdit | BlenderEdit:
-    """An edit as of `BlenderEdit.begin`; in a large scene without the obstacles that are far away yet.
+    """An edit as of `BlenderEdit.begin`; in a large scene without the obstacles, and parts of them, that are far yet.
 
     Raises what that one raises.
     """
@@ -47,7 +47,7 @@ class NearbyEdit:
         self._settings, self._kind = settings, kind
         self._reach: Reach | None = reach
         movers = find_movers(context, settings)
-        self._edit = BlenderEdit.begin_with(context, settings, kind, movers, left_out=reach.left_out)
+        self._edit = BlenderEdit.begin_with(context, settings, kind, movers, reach=reach)
         self._shown = self._edit.controls
         self._widened = 0
 
@@ -122,8 +122,7 @@ class NearbyEdit:
         shown = self._shown
         self._edit.restore()
         movers = find_movers(bpy.context, self._settings)
-        left_out = frozenset() if reach is None else reach.left_out
-        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers, left_out=left_out)
+        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers, reach=reach)
         self._reach = reach
         if self._edit.take_up(shown):
             self._edit.write()

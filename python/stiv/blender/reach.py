@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which obstacles are too far to matter to an edit yet, and the box that what moves must not leave meanwhile."""
+"""What of the obstacles is too far to matter to an edit yet, and the box that what moves must not leave meanwhile."""
 
 from __future__ import annotations
 
@@ -16,17 +16,26 @@ from stiv.blender.movers import Mover
 from stiv.blender.settings import EditSettings
 
 LEAST_FACES = 50_000  # of obstacles: below, all of them are taken in
+LARGE = 20_000  # faces of one obstacle from which only its near part is taken in
 MARGIN = 0.01  # of the size of the box, which what moves keeps from its sides
 
 
 @dataclass(frozen=True)
 class Reach:
-    """The box from `low` to `high`, (3,), which nothing named in `left_out` touches, and the separation to be kept."""
+    """The box from `low` to `high`, (3,), and the separation to be kept.
+
+    Nothing named in `left_out` touches it; of what is named in `cropped` only what touches it takes part.
+    """
 
     low: Floats
     high: Floats
     left_out: frozenset[str]
+    cropped: frozenset[str]
     separation: float = 0.0
+
+    def box_of(self, name: str) -> tuple[Floats, Floats] | None:
+        """What part of an object takes part, (3,) and (3,); None: all of it."""
+        return (self.low, self.high) if name in self.cropped else None
 
     def contains(self, points: Floats) -> bool:
         """Are all points, (n, 3), within the box, a margin and twice the separation away from its sides?"""
@@ -40,11 +49,11 @@ def find_reach(
     settings: EditSettings,
     beyond: Floats = np.empty((0, 3)),  # noqa: B008 (never written)
 ) -> Reach | None:
-    """The objects that movers cannot meet without moving farther than their own size; None where nothing is gained.
+    """What movers cannot meet without moving farther than their own size; None where nothing is gained.
 
     With points, (n, 3), where they are to go: than the size of all of that.
-    Left out are only meshes that stand alone: what is tied to others by parents, modifiers, constraints or instances,
-    or named in the settings, is always taken in.
+    Left out, or cropped where they are large, are only meshes that stand alone: what is tied to others by parents,
+    modifiers, constraints or instances, or named in the settings, is always taken in.
     """
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     candidates = [ob for ob in objects if _stands_alone(ob)]
@@ -60,8 +69,13 @@ def find_reach(
     high = np.max([*(box[1] for box in moving), *beyond], axis=0)
     size = float(np.linalg.norm(high - low)) + 2 * settings.separation
     low, high = low - size, high + size
-    far = [ob.name for ob in candidates if ob.name not in tied | named and _apart(_box(ob, depsgraph), (low, high))]
-    return Reach(low, high, frozenset(far), settings.separation) if far else None
+    free = [ob for ob in candidates if ob.name not in tied | named]
+    far = frozenset(ob.name for ob in free if _apart(_box(ob, depsgraph), (low, high)))
+    cropped = frozenset(
+        ob.name for ob in free
+        if ob.name not in far and len(ob.data.polygons) >= LARGE and not _holds((low, high), _box(ob, depsgraph))
+    )  # fmt: skip
+    return Reach(low, high, far, cropped, settings.separation) if far or cropped else None
 
 
 def _stands_alone(ob: bpy.types.Object) -> bool:
@@ -89,6 +103,10 @@ def _box(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, 
         as_matrix(evaluated.matrix_world), np.array([list(each) for each in evaluated.bound_box])
     )
     return corners.min(axis=0), corners.max(axis=0)
+
+
+def _holds(outer: tuple[Floats, Floats], inner: tuple[Floats, Floats]) -> bool:
+    return bool((outer[0] <= inner[0]).all() and (inner[1] <= outer[1]).all())
 
 
 def _apart(a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> bool:

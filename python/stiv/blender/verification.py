@@ -101,9 +101,13 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
     """World positions of the assembly's meshes as Blender evaluates them now, (N, 3)."""
     owners = frozenset(mesh.owner.session_uid for mesh in assembly.meshes)
     placed = read_placed(context, owners)
-    if [_shape(each) for each in placed] != [(len(mesh.local), mesh.owner.session_uid) for mesh in assembly.meshes]:
+    if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in assembly.meshes]:
         raise SceneChangedError("objects were shown, hidden or changed in size during the edit")
-    return np.concatenate([np.empty((0, 3)), *(each.world() for each in placed)])
+    parts = [
+        each if mesh.near is None else each.limited_to(mesh.near.vertices)
+        for each, mesh in zip(placed, assembly.meshes, strict=True)
+    ]
+    return np.concatenate([np.empty((0, 3)), *(part.world() for part in parts)])
 
 
 def named_pairs(assembly: Assembly, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
