@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import bpy  # noqa: E402
+from films import Film, films  # noqa: E402
 from PIL import Image  # noqa: E402
 
 import stiv  # noqa: E402
@@ -30,7 +31,6 @@ from blend_fixtures.blender_objects import build_scene  # noqa: E402
 from blend_fixtures.scenes import colors  # noqa: E402
 from blend_fixtures.scenes.fixture import Fixture, Material, MeshObject, View  # noqa: E402
 from blend_fixtures.scenes.shape import Shape  # noqa: E402
-from docs.films import Film, films  # noqa: E402
 from stiv.command_line.quiet import quiet_blender  # noqa: E402
 
 Array = NDArray[np.float64]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws frames a second over sessions, as the paper's Figure 12, from what `stiv bench profile --json F` wrote.
 
-python docs/make_profile.py F [--output docs/gallery/profile.png]
+python docs/make_profile.py F [F ...] [--scenes NAME ...] [--output docs/gallery/profile.png]
 """
 
 from __future__ import annotations
@@ -21,31 +21,42 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def draw(rows: list[dict], output: Path) -> None:
-    """One graph a session; stages are told apart by dashed lines, interactive is what lies above 24."""
-    figure, axes = pyplot.subplots(len(rows), 1, figsize=(7, 1.9 * len(rows)), layout="constrained", squeeze=False)
-    for row, axis in zip(rows, axes[:, 0], strict=True):
-        rates = 1 / np.array(row["seconds"])
-        axis.semilogy(np.arange(1, len(rates) + 1), rates, lw=1.2, color="#c05a1c")
+    """One graph a session with a line for each of its rows; dashed lines part stages, dotted is 24 a second."""
+    names = list(dict.fromkeys(row["scene"] for row in rows))
+    figure, axes = pyplot.subplots(len(names), 1, figsize=(7, 2.1 * len(names)), layout="constrained", squeeze=False)
+    for name, axis in zip(names, axes[:, 0], strict=True):
+        of = [row for row in rows if row["scene"] == name]
+        for row in of:
+            _draw_row(axis, row)
         axis.axhline(24, color="#888888", lw=0.8, ls=":")
-        changes = [k for k in range(1, len(rates)) if row["stages"][k] != row["stages"][k - 1]]
-        for change in changes:
-            axis.axvline(change + 0.5, color="#aaaaaa", lw=0.8, ls="--")
-        axis.set_title(f"{row['scene']}: edits a second, {row['time']} time, {row['threads']} thread(s)", fontsize=9)
+        axis.set_title(f"{name}: frames a second, {of[0]['time']} time, {of[0]['threads']} thread(s)", fontsize=9)
         axis.set_xlabel("edit", fontsize=8)
         axis.tick_params(labelsize=8)
         axis.yaxis.set_major_formatter(ticker.ScalarFormatter())
         axis.yaxis.set_minor_formatter(ticker.NullFormatter())
         axis.margins(x=0.01)
+        axis.legend(fontsize=7, frameon=False)
     figure.savefig(output, dpi=110)
 
 
+def _draw_row(axis: pyplot.Axes, row: dict) -> None:
+    in_blender = row.get("in_blender", False)
+    rates, stages = 1 / np.array(row["seconds"]), row["stages"]
+    color, label = ("#2a6f97", "in Blender, its evaluation included") if in_blender else ("#c05a1c", "core alone")
+    axis.semilogy(np.arange(1, len(rates) + 1), rates, lw=1.2, color=color, label=label)
+    for change in (k for k in range(1, len(rates)) if stages[k] != stages[k - 1]):
+        axis.axvline(change + 0.5, color=color, alpha=0.5, lw=0.8, ls="--")
+
+
 def main() -> None:
-    """Draws what a file holds."""
+    """Draws what files hold."""
     parser = argparse.ArgumentParser(description="Draw frames a second over sessions.")
-    parser.add_argument("profile", type=Path, help="written by stiv bench profile --json")
+    parser.add_argument("profiles", type=Path, nargs="+", help="written by stiv bench profile --json")
+    parser.add_argument("--scenes", nargs="+", default=["plant", "dressing"], help="default: those of Figure 12")
     parser.add_argument("--output", type=Path, default=ROOT / "docs" / "gallery" / "profile.png")
     arguments = parser.parse_args()
-    draw(json.loads(arguments.profile.read_text(encoding="utf-8"))["rows"], arguments.output)
+    rows = [row for path in arguments.profiles for row in json.loads(path.read_text(encoding="utf-8"))["rows"]]
+    draw([row for row in rows if row["scene"] in arguments.scenes and row["threads"] == 1], arguments.output)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from .fields import ellipsoid, limb, merged, mirrored, path, ring
+from .fixture import Triple
 from .primitives import triangulated
 from .shape import Shape
 from .surface_nets import surface_net
@@ -42,12 +43,15 @@ def ogre(cell: float = 0.1416) -> Shape:
     return triangulated(surface_net(whole, (-10.5 * cell, -0.6, -0.1), (10.5 * cell, 0.6, 2.2), cell, 8))
 
 
-def shirt(cell: float = 0.136) -> Shape:
-    """An open shirt with short sleeves, its waist slim: it follows another body than the ogre's."""
+SLEEVE = ((0.22, 0, 1.22), (0.95, -0.03, 1.2))
+
+
+def shirt(cell: float = 0.136, sleeve_line: tuple[Triple, Triple] = SLEEVE) -> Shape:
+    """An open shirt with short sleeves along a line, its waist slim: it follows another body than the ogre's."""
     waist = path(
         [(0, 0, 0.45), (0, 0, 0.82), (0, -0.03, 1.1), (0, 0, 1.24), (0, 0, 1.6)], [0.38, 0.32, 0.36, 0.33, 0.2]
     )
-    sleeve = path([(0.22, 0, 1.22), (0.95, -0.03, 1.2)], [0.27, 0.16])
+    sleeve = path(list(sleeve_line), [0.27, 0.16])
     slim = merged(waist, mirrored(sleeve), smooth=0.08)
     whole = surface_net(slim, (-1.3, -0.6, 0.0), (1.3, 0.6, 1.9), cell, 8)
     cuts = ((2, 0.55, -1.0), (2, 1.47, 1.0), (0, 0.66, 1.0), (0, -0.66, -1.0))  # axis, place, side that goes

@@ -65,9 +65,8 @@ def expansions(first: Array, last: Array, block: Array) -> tuple[Edit, ...]:
     return tuple(toward((k + 1) / EXPANSIONS) for k in range(EXPANSIONS))
 
 
-def stages() -> Stages:
-    """The session from the contracted body to the hat."""
-    scene = parts()
+def stages(scene: Parts) -> Stages:
+    """The session from the contracted body to the hat, of any parts with these names."""
     full = scene.cages["Ogre"]
     contract_body(scene)
 
@@ -91,7 +90,9 @@ def stages() -> Stages:
 
 def session() -> Session:
     """The whole dressing."""
-    return Session("dressing", 1, "An ogre is dressed with a shirt, glasses and a hat made for others", stages)
+    return Session(
+        "dressing", 1, "An ogre is dressed with a shirt, glasses and a hat made for others", lambda: stages(parts())
+    )
 
 
 def dressing() -> Fixture:

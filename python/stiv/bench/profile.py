@@ -10,7 +10,7 @@ import numpy as np
 
 from stiv.bench.running import Report, record
 from stiv.bench.scene_library import scene_module
-from stiv.bench.table1 import PARTS, shares
+from stiv.bench.table1 import shares
 
 
 def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
@@ -39,7 +39,7 @@ def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> lis
 
 def profile_text(rows: Sequence[dict[str, Any]]) -> str:
     """A line a row: frames a second, the least, the median and the mean, and the split of the time."""
-    parts = (*PARTS, "other")
+    parts = tuple(rows[0]["shares"])
     lines = [
         f"{'Model':9} {'threads':>7} {'least':>6} {'median':>6} {'mean':>6}  " + " ".join(f"{p:>10}" for p in parts)
     ]

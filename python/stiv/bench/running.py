@@ -52,6 +52,7 @@ class EditFigures:
     energy: float
     intersections: int  #: pairs of triangles in the accepted state, by the exact test
     timings: dict[str, float]
+    detections: int = 0
 
     @property
     def touches(self) -> bool:
@@ -111,4 +112,5 @@ def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigu
         result.energy,
         len(stiv.find_intersections(result.surface, stage.surface)),
         result.timings,
+        result.counters["detections"],
     )

@@ -34,9 +34,9 @@ def replay(
     try:
         for step in script.edits():
             if step is not selected:
-                _prepare(step, script, len(reports))
+                prepare(step, script, len(reports))
                 selected = step
-            reports.append(_edit(step, len(reports)))
+            reports.append(run_edit(step, len(reports)))
             if check:
                 reports[-1]["intersections"] = len(find_pairs(read_surface(bpy.context)))
             on_edit(reports[-1])
@@ -51,7 +51,8 @@ def operators_are_there() -> bool:
     return hasattr(bpy.types.Scene, "stiv")
 
 
-def _prepare(step: EditStep, script: EditScript, number: int) -> None:
+def prepare(step: EditStep, script: EditScript, number: int) -> None:
+    """Gives the settings of a step and selects what it names. Raises InputError naming the edit."""
     try:
         _apply_settings({**script.settings, **step.settings})
         select(step)
@@ -96,7 +97,8 @@ def _apply_handles(rows: Any, groups: Sequence[str]) -> None:
         rows.add().name = group
 
 
-def _edit(step: EditStep, number: int) -> Report:
+def run_edit(step: EditStep, number: int) -> Report:
+    """Calls the operator of a step on what is selected; its report. Raises InputError naming the edit."""
     begin = time.perf_counter()
     try:
         outcome = getattr(bpy.ops.stiv, step.operator)("EXEC_DEFAULT", **step.values)

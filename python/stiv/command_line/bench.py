@@ -8,18 +8,25 @@ import os
 import platform
 import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
+from stiv.bench.blender_profile import blender_profile
+from stiv.bench.cloth import cloth, cloth_text
+from stiv.bench.models import models, models_text
 from stiv.bench.profile import profile, profile_text
 from stiv.bench.race import race, race_text
 from stiv.bench.running import Report
 from stiv.bench.scaling import scaling, scaling_text
 from stiv.bench.table1 import PUBLISHED, shares_text, table1, table_text
+from stiv.command_line.blender_module import addon_registered, require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json
+from stiv.command_line.quiet import quiet_blender
+from stiv.edit_scripts import read_edit_script
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -27,14 +34,17 @@ if TYPE_CHECKING:
 SCHEMA, VERSION = "stiv-bench", 1
 
 _DESCRIPTION = """\
-Measures whole editing sessions of the sizes that the paper shows, without Blender, and checks each accepted state by
-the exact test. Processor time is given for one thread, the clock's for several."""
+Measures whole editing sessions of the sizes that the paper shows, mostly without Blender, and checks each accepted
+state by the exact test. Processor time is given for one thread, the clock's for several."""
 _EXAMPLES = """\
 examples:
   stiv bench table1                          the paper's Table 1, its method and ours beside its figures
   stiv bench table1 --scenes knot tree --threads 1 --json table1.json
   stiv bench profile --scenes plant dressing frames a second, edit by edit
-  stiv bench race                            against stopping at the first contact (needs ipctk)
+  stiv bench profile --in-blender             the same as drags in Blender, its own evaluation included
+  stiv bench race                            against stopping at the first contact, and our loop on ipctk (needs ipctk)
+  stiv bench cloth                           against Blender's own cloth simulation, where it applies
+  stiv bench --models FOLDER                 Figures 9 and 1 with the bunny, the teapot and the ogre of a folder
   stiv bench scaling --largest 300000        growth with the number of triangles
 
 exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
@@ -49,7 +59,7 @@ def add_to(subcommands: Subparsers) -> None:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("what", choices=tuple(_BENCHES), help="what to measure")
+    parser.add_argument("what", choices=tuple(_BENCHES), nargs="?", help="what to measure")
     parser.add_argument("--scenes", nargs="+", default=list(PUBLISHED), metavar="NAME", help="default: all five")
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], metavar="N", help="default: 1 2")
     parser.add_argument(
@@ -59,18 +69,30 @@ def add_to(subcommands: Subparsers) -> None:
         metavar="N",
         help="scaling: triangles of the largest size (default: all)",
     )
+    parser.add_argument(
+        "--models",
+        type=Path,
+        metavar="FOLDER",
+        help="models: with stanford-bunny.obj, teapot.obj and ogre.obj, of which any may be absent",
+    )
+    parser.add_argument("--in-blender", action="store_true", help="profile: in Blender, from the .blend files")
     parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
     parser.set_defaults(run=_run)
 
 
 def _run(arguments: argparse.Namespace) -> ExitCode:
     require_folder(arguments.json)
+    what = arguments.what or ("models" if arguments.models else None)
+    if what is None or (what == "models") != (arguments.models is not None):
+        raise InputError(
+            f"bench: name one of {', '.join(_BENCHES)}; models takes --models FOLDER, and nothing else does"
+        )
     unknown = [name for name in arguments.scenes if name not in PUBLISHED]
     if unknown or min(arguments.threads) < 1:
         raise InputError(
             f"bench: there is no scene {', '.join(unknown)}" if unknown else "bench: threads are from 1 on"
         )
-    rows, text = _BENCHES[arguments.what](arguments, _say)
+    rows, text = _BENCHES[what](arguments, _say)
     print(text)
     if arguments.json is not None:
         write_json(arguments.json, result(rows))
@@ -101,13 +123,36 @@ def _table(arguments: argparse.Namespace, report: Report) -> _Result:
 
 
 def _profile(arguments: argparse.Namespace, report: Report) -> _Result:
-    rows = profile(arguments.scenes, arguments.threads, report)
+    if arguments.in_blender:
+        rows = blender_profile(arguments.scenes, _frames_in_blender, report)
+    else:
+        rows = profile(arguments.scenes, arguments.threads, report)
     return rows, profile_text(rows)
+
+
+def _frames_in_blender(path: Path) -> Sequence[Any]:
+    files, times = (require_blender(f"stiv.blender.{name}", path) for name in ("blend_files", "frame_times"))
+    with quiet_blender(), addon_registered(path):
+        files.open_blend(path)
+        of_scene = require_blender("stiv_addon.settings", path).edit_settings
+        script = read_edit_script(path.with_suffix(".edits.json"))
+        found: Sequence[Any] = times.frame_times(script, lambda scene: replace(of_scene(scene), threads=1))
+        return found
 
 
 def _race(arguments: argparse.Namespace, report: Report) -> _Result:
     rows = race(arguments.scenes, report)
     return rows, race_text(rows)
+
+
+def _cloth(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = cloth(report)
+    return rows, cloth_text(rows)
+
+
+def _models(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = models(arguments.models, arguments.threads, report)
+    return rows, models_text(rows)
 
 
 def _scaling(arguments: argparse.Namespace, report: Report) -> _Result:
@@ -119,5 +164,7 @@ _BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
     "table1": _table,
     "profile": _profile,
     "race": _race,
+    "cloth": _cloth,
+    "models": _models,
     "scaling": _scaling,
 }

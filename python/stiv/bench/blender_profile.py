@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames a second of the sessions in Blender, its own evaluation included, and the split of the time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from stiv import InputError
+from stiv.bench.running import Report
+from stiv.bench.scene_library import CHECKOUT
+from stiv.bench.table1 import PARTS
+
+FILES = {
+    "plant": "plant_in_vase",
+    "hare": "figures/hare_in_pot",
+    "tree": "figures/tree_in_corner",
+    "knot": "figures/knot_by_handles",
+    "dressing": "figures/dressing",
+}
+
+
+def blender_profile(
+    names: Sequence[str], frames_of: Callable[[Path], Sequence[Any]], report: Report
+) -> list[dict[str, Any]]:
+    """One row a scene, one thread, processor time. Raises InputError where there are no .blend files.
+
+    frames_of: opens a .blend and runs the script beside it; the `stiv.blender.frame_times.FrameTime` of each frame.
+    """
+    rows = []
+    for name in names:
+        path = CHECKOUT / "blend_fixtures" / f"{FILES[name]}.blend"
+        if not path.is_file():
+            raise InputError(f"bench profile --in-blender: there is no {path.name}; run it in a source checkout")
+        frames = frames_of(path)
+        report(name)
+        total = sum(frame.seconds for frame in frames)
+        rows.append(
+            {
+                "scene": name,
+                "threads": 1,
+                "time": "processor",
+                "in_blender": True,
+                "stages": [frame.stage for frame in frames],
+                "seconds": [frame.seconds for frame in frames],
+                "evaluation": [frame.evaluation for frame in frames],
+                "touches": [frame.touches for frame in frames],
+                "shares": shares_with_blender(frames, total),
+                "intersections": sum(not frame.passed for frame in frames),
+            }
+        )
+    return rows
+
+
+def shares_with_blender(frames: Sequence[Any], total: float) -> dict[str, float]:
+    """How all time divides: the parts of the pipeline, Blender's evaluation, the rest of writing, the rest of all.
+
+    The core's timings are by the clock; of a frame they are taken as shares of the processor time of solving.
+    """
+    parts = dict.fromkeys((*PARTS, "evaluation", "writing"), 0.0)
+    for frame in frames:
+        solving = frame.seconds - frame.evaluation - frame.writing
+        whole = frame.solved.get("total", 0.0)
+        for part, timers in PARTS.items():
+            parts[part] += solving * sum(frame.solved.get(timer, 0.0) for timer in timers) / whole if whole else 0.0
+        parts["evaluation"] += frame.evaluation
+        parts["writing"] += frame.writing
+    shares = {part: seconds / (total or 1.0) for part, seconds in parts.items()}
+    return {**shares, "other": 1 - sum(shares.values())}

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's own cloth simulation of a mesh beside a body that it collides with; for comparisons in `stiv bench`."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from stiv.blender.arrays import Floats, Indices, read_collection
+from stiv.blender.mesh_reading import evaluated_mesh
+
+QUALITY, COLLISION_QUALITY = 10, 5  # steps a frame, twice Blender's defaults and more: it shall do its best
+
+
+@dataclass(frozen=True)
+class ClothRun:
+    """Positions (n, 3) of the cloth after the last frame, and the seconds of processor time of each frame."""
+
+    cloth: Floats
+    seconds: tuple[float, ...]
+
+
+def simulate_cloth(
+    cloth: tuple[Floats, Indices],
+    body: tuple[Floats, Indices],
+    body_end: Floats,
+    frames: int,
+    shrink: float = 0.0,
+    distance: float = 1e-3,
+) -> ClothRun:
+    """Replace the open file by a scene of a cloth and a body that goes evenly to `body_end`, (m, 3), and simulate it.
+
+    Meshes are positions (n, 3) and triangles (f, 3). The cloth is without weight, collides with itself too, and its
+    fabric shrinks evenly by the share `shrink`. `distance` is kept between them, in world units.
+    """
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.use_gravity = False
+    scene.frame_start, scene.frame_end = 1, frames + 1
+    _add_body(body, body_end, frames, distance)
+    dressed = _add_cloth(cloth, shrink, distance, frames)
+    scene.frame_set(1)
+    seconds = []
+    for frame in range(2, frames + 2):
+        begin = time.process_time()
+        scene.frame_set(frame)
+        seconds.append(time.process_time() - begin)
+    with evaluated_mesh(dressed.evaluated_get(bpy.context.evaluated_depsgraph_get())) as mesh:
+        shown: NDArray[np.float32] = read_collection(mesh.vertices, "co", 3, np.float32)
+    return ClothRun(shown.astype(float), tuple(seconds))
+
+
+def _add(name: str, shape: tuple[Floats, Indices]) -> bpy.types.Object:
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(shape[0].tolist(), [], shape[1].tolist())
+    thing = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(thing)
+    return thing
+
+
+def _add_body(body: tuple[Floats, Indices], end: Floats, frames: int, distance: float) -> None:
+    thing = _add("Body", body)
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name="End")
+    key.data.foreach_set("co", end.astype(np.float32).ravel())
+    _animate(key, "value", 1.0, frames)
+    thing.modifiers.new("Collision", "COLLISION")
+    thing.collision.thickness_outer = max(distance, 1e-3)  # Blender takes no less
+
+
+def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, frames: int) -> bpy.types.Object:
+    thing = _add("Cloth", shape)
+    modifier = thing.modifiers.new("Cloth", "CLOTH")
+    modifier.point_cache.frame_end = frames + 1
+    modifier.settings.quality = QUALITY
+    if shrink:
+        modifier.settings.use_dynamic_mesh = True  # or the fabric would keep the size of the first frame
+        _animate(modifier.settings, "shrink_min", shrink, frames)
+    collisions = modifier.collision_settings
+    collisions.collision_quality = COLLISION_QUALITY
+    collisions.distance_min = max(distance, 1e-3)
+    collisions.use_self_collision = True
+    collisions.self_distance_min = max(distance, 1e-3)
+    return thing
+
+
+def _animate(owner: Any, name: str, last: float, frames: int) -> None:
+    """Let a property go evenly from 0 to its last value."""
+    for value, frame in ((0.0, 1), (last, frames + 1)):
+        setattr(owner, name, value)
+        owner.keyframe_insert(name, frame=frame)
+    action = owner.id_data.animation_data.action
+    curves = getattr(action, "fcurves", None) or action.layers[0].strips[0].channelbags[0].fcurves
+    for point in curves[0].keyframe_points:
+        point.interpolation = "LINEAR"
