@@ -44,12 +44,21 @@ def into_module(archive: Path, environment: Path) -> None:
     (folders / "stiv_extension.pth").write_text(f"{resources / 'package'}\n{wheels}\n")
 
 
+def validation(archive: Path) -> list[str | Path]:
+    """The command by which this environment's Blender module validates an archive, its tags included, as a program does."""
+    import bpy
+
+    scripts = Path(bpy.utils.system_resource("SCRIPTS"))
+    tags = scripts / "modules/_bpy_internal/extensions/tags.py"
+    validator = scripts / "addons_core/bl_pkg/cli/blender_ext.py"
+    return [sys.executable, validator, "validate", "--valid-tags", tags, archive]
+
+
 def here(archive: Path) -> None:
     """Validate, install, enable and look whether the native module can be used. Ends the process."""
     import bpy
 
-    validator = Path(bpy.utils.system_resource("SCRIPTS"), "addons_core/bl_pkg/cli/blender_ext.py")
-    subprocess.run([sys.executable, validator, "validate", archive], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(validation(archive), check=True, stdout=subprocess.DEVNULL)
     bpy.ops.extensions.package_install_files(filepath=str(archive), repo=REPOSITORY, enable_on_install=True)
     name = f"bl_ext.{REPOSITORY}.{IDENTIFIER}"
     enabled = name in bpy.context.preferences.addons

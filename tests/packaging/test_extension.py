@@ -11,6 +11,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
+from tools import install_extension  # noqa: E402
+
 ROOT = Path(__file__).resolve().parents[2]
 INSTALL_SCRIPT = Path(__file__).with_name("install_extension.py")
 
@@ -38,10 +40,7 @@ def site_packages_without_stiv(folder: Path) -> Path:
 
 
 def test_zip_passes_blenders_own_validation(extension: Path) -> None:
-    validator = Path(bpy.utils.system_resource("SCRIPTS"), "addons_core/bl_pkg/cli/blender_ext.py")
-    run = subprocess.run(
-        [sys.executable, validator, "validate", extension], capture_output=True, text=True, check=False
-    )
+    run = subprocess.run(install_extension.validation(extension), capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
 
 
