@@ -9,5 +9,6 @@ folder=$3
 shift 3
 here=$(dirname "$0")
 "$here/portable_modules.sh" "$python" "$opensubdiv" "$@" >&2
-"$python" "$here/portable_wheels.py" build/wheel/*.whl build/portable/cmake/native/bindings/_native.*.so
+"$python" "$here/portable_wheels.py" build/wheel/*.whl build/portable/wheels manylinux_2_17_x86_64 \
+    build/portable/cmake/native/bindings/_native.*.so
 "$python" "$here/build_extension.py" "$folder" build/portable/wheels/*.whl

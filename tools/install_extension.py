@@ -45,7 +45,7 @@ def into_module(archive: Path, environment: Path) -> None:
 
 
 def validation(archive: Path) -> list[str | Path]:
-    """The command by which this environment's Blender module validates an archive, its tags included, as a program does."""
+    """How this environment's Blender module validates an archive, its tags included, as a Blender program does."""
     import bpy
 
     scripts = Path(bpy.utils.system_resource("SCRIPTS"))

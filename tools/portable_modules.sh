@@ -40,7 +40,7 @@ cmp -s "$build/compiler.new" "$build/c++" || mv "$build/compiler.new" "$build/c+
 
 # Nor are other trials linked.
 cmake -S . -B "$build/cmake" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY \
-    -DCMAKE_CXX_COMPILER="$PWD/$build/c++" -DSTIV_BUILD_TESTS=OFF -DSTIV_BUILD_PYTHON=ON -DSTIV_WERROR=ON \
+    -DCMAKE_CXX_COMPILER="$PWD/$build/c++" -DSTIV_BUILD_TESTS=OFF -DSTIV_BUILD_PYTHON=OFF -DSTIV_WERROR=ON \
     -DSTIV_HIGHWAY_INCLUDE="$PWD/$build/include" -DSTIV_OPENSUBDIV_SOURCE="$opensubdiv" \
     -Dpybind11_DIR="$("$python" -m pybind11 --cmakedir)" "-DSTIV_PYTHON_HEADERS=$headers" >"$build/cmake.log" 2>&1 ||
     { cat "$build/cmake.log" >&2; exit 1; }

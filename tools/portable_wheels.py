@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Make a wheel for every Python that the extension carries a module for.
 
-Usage: portable_wheels.py WHEEL MODULE...
+Usage: portable_wheels.py WHEEL FOLDER PLATFORM MODULE...
 
 WHEEL is of this source tree, for any Python; each MODULE takes the place of its module in one of the new wheels. They
-are written into build/portable/wheels, in place of what is there. All but module and tag is the same, without the
-add-on, which the extension has itself.
+are written into FOLDER, in place of what is there, and tagged for PLATFORM: manylinux_2_17_x86_64 where the modules are
+compiled for that version of the C library, linux_x86_64 where they are for systems like this one. All but module and
+tag is the same, without the add-on, which the extension has itself.
 """
 
 import base64
@@ -15,7 +16,6 @@ import sys
 import zipfile
 from pathlib import Path
 
-PLATFORM = "manylinux_2_17_x86_64"  # tools/portable_modules.sh compiles for this version of the C library
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -61,7 +61,7 @@ def write_wheel(path: Path, files: dict[str, bytes]) -> None:
             archive.writestr(entry, data)
 
 
-def main(wheel: Path, modules: list[Path], folder: Path) -> None:
+def main(wheel: Path, folder: Path, platform: str, modules: list[Path]) -> None:
     """Write all wheels."""
     files = read_wheel(wheel)
     folder.mkdir(parents=True, exist_ok=True)
@@ -70,12 +70,12 @@ def main(wheel: Path, modules: list[Path], folder: Path) -> None:
     name = "-".join(wheel.name.split("-")[:2])
     for module in modules:
         python = python_tag(module)
-        tag = f"{python}-{python}-{PLATFORM}"
+        tag = f"{python}-{python}-{platform}"
         write_wheel(folder / f"{name}-{tag}.whl", with_module(files, module, tag))
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
-        raise SystemExit("portable_wheels.py: name a wheel and at least one module")
-    wheel, *modules = map(Path, sys.argv[1:])
-    main(wheel, modules, Path("build/portable/wheels"))
+    if len(sys.argv) < 5:
+        raise SystemExit("portable_wheels.py: name a wheel, a folder, a platform and at least one module")
+    wheel, folder, platform, *modules = sys.argv[1:]
+    main(Path(wheel), Path(folder), platform, [Path(module) for module in modules])

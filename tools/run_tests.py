@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 2400  # seconds for one command
+WINDOW_SEQUENCES = 25  # of random events; `make test-window` plays more
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 PRINTING = threading.Lock()
 
@@ -95,7 +96,8 @@ def window(title: str) -> Counts:
     """The add-on in a real window; skipped with the reason where no folder for it can be set up."""
     report = REPORTS / "window.xml"
     report.unlink(missing_ok=True)
-    return junit_counts.from_pytest(report, run(title, [sys.executable, "tests/window/run.py", "--report", report]))
+    command = [sys.executable, "tests/window/run.py", "--report", report, "--sequences", str(WINDOW_SEQUENCES)]
+    return junit_counts.from_pytest(report, run(title, command))
 
 
 def jobs(name: str) -> Iterator[Job]:

@@ -1,7 +1,9 @@
 # One module for each version of Python in STIV_PYTHON_HEADERS, a list of VERSION=FOLDER, all over one core. Headers are
 # all that a module needs of a Python: its symbols are found in the process that loads it.
-set(PYBIND11_NOPYTHON ON)
-find_package(pybind11 CONFIG REQUIRED)
+if(NOT TARGET pybind11::headers)
+  set(PYBIND11_NOPYTHON ON)
+  find_package(pybind11 CONFIG REQUIRED)
+endif()
 
 add_custom_target(stiv_portable_modules)
 foreach(entry IN LISTS STIV_PYTHON_HEADERS)
@@ -11,7 +13,7 @@ foreach(entry IN LISTS STIV_PYTHON_HEADERS)
   endif()
   set(minor ${CMAKE_MATCH_1})
   set(folder "${CMAKE_MATCH_2}")
-  add_library(_native_cp3${minor} MODULE ${stiv_bindings})
+  add_library(_native_cp3${minor} MODULE EXCLUDE_FROM_ALL ${stiv_bindings})
   # Debian's pyconfig.h asks for one below the folder, named by the processor.
   target_include_directories(_native_cp3${minor} SYSTEM PRIVATE "${folder}/python3.${minor}" "${folder}")
   target_link_libraries(_native_cp3${minor} PRIVATE pybind11::headers)

@@ -120,7 +120,7 @@ def made_wheel(folder: Path) -> Path:
 def test_a_module_takes_the_place_of_the_one_in_a_wheel(tmp_path: Path) -> None:
     module = tmp_path / "_native.cpython-313-x86_64-linux-gnu.so"
     module.write_bytes(b"new")
-    portable_wheels.main(made_wheel(tmp_path), [module], tmp_path / "out")
+    portable_wheels.main(made_wheel(tmp_path), tmp_path / "out", "manylinux_2_17_x86_64", [module])
     (made,) = (tmp_path / "out").iterdir()
     assert made.name == "stiv-9.9-cp313-cp313-manylinux_2_17_x86_64.whl"
     with zipfile.ZipFile(made) as archive:
@@ -128,7 +128,7 @@ def test_a_module_takes_the_place_of_the_one_in_a_wheel(tmp_path: Path) -> None:
         assert "stiv/_native.cpython-311-x86_64-linux-gnu.so" not in archive.namelist()
         assert b"Tag: cp313-cp313-manylinux_2_17_x86_64\n" in archive.read("stiv-9.9.dist-info/WHEEL")
     first = hashlib.sha256(made.read_bytes()).digest()
-    portable_wheels.main(made_wheel(tmp_path), [module], tmp_path / "out")
+    portable_wheels.main(made_wheel(tmp_path), tmp_path / "out", "manylinux_2_17_x86_64", [module])
     assert hashlib.sha256(made.read_bytes()).digest() == first
 
 

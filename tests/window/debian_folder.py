@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Debian 13 in a folder, with the Blender of its own packages: how a current window is had on any Debian."""
+"""A release of Debian in a folder, with the Blender of its own packages: how a current window is had on any Debian."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-RELEASE = "trixie"
-PACKAGES = Path(__file__).with_name("debian_packages.txt")
+PACKAGES = Path(__file__).resolve().parents[2] / "tools/debian_packages_window.txt"
 STAMP = "stiv-packages-installed"
 ENVIRONMENT = ("PATH=/usr/bin:/bin:/usr/sbin:/sbin", "HOME=/root", "LC_ALL=C.UTF-8", "DEBIAN_FRONTEND=noninteractive")
 
@@ -25,21 +24,35 @@ def obstacle() -> str:
     return ""
 
 
-def prepare(folder: Path) -> None:
+def prepare(folder: Path, release: str) -> None:
     """Fill the folder once; later calls only look whether the list of packages is still the same."""
     stamp, wanted = folder / STAMP, PACKAGES.read_text()
     if stamp.is_file() and stamp.read_text() == wanted:
         return
-    if not (folder / "usr/bin/apt-get").exists():
-        print(f"Debian {RELEASE} into {folder} (about a minute)", flush=True)
-        folder.mkdir(parents=True, exist_ok=True)
-        subprocess.run(["debootstrap", "--variant=minbase", RELEASE, folder], check=True, stdout=subprocess.DEVNULL)
+    if not folder.exists():
+        print(f"Debian {release} into {folder} (about a minute)", flush=True)
+        # Renamed when complete: a run that was interrupted leaves nothing that looks finished.
+        partial = folder.with_name(f"{folder.name}.partial")
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        bootstrap(release, partial)
+        partial.rename(folder)
     names = [line for line in wanted.splitlines() if line and not line.startswith("#")]
     print(f"its packages: {' '.join(names)} (about a minute)", flush=True)
     with system_mounts(folder):
         run(folder, ["apt-get", "-qq", "update"])
         run(folder, ["apt-get", "-qq", "install", "--no-install-recommends", *names], quiet=True)
+        run(folder, ["apt-get", "clean"])
     stamp.write_text(wanted)
+
+
+def bootstrap(release: str, folder: Path) -> None:
+    """The least of a release."""
+    command = ["debootstrap", "--variant=minbase", release, folder]
+    done = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode:
+        print(done.stdout[-2000:])
+        raise subprocess.CalledProcessError(done.returncode, "debootstrap")
 
 
 @contextmanager

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import sys
@@ -14,22 +13,9 @@ from pathlib import Path
 
 import bpy
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-TICK = 0.1  # seconds between two steps of a scenario: Blender handles events and draws in between
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+TICK = 0.05  # seconds between two steps of a scenario: Blender handles events and draws in between
 DRAW_LIMIT = 120.0  # seconds for the first picture; software rendering compiles its shaders first
-
-
-def import_extension() -> None:
-    """Register addon/ under the name that the tests use."""
-    sys.path[:0] = [str(ROOT / "python"), str(HERE)]
-    spec = importlib.util.spec_from_file_location(
-        "stiv_addon", ROOT / "addon/__init__.py", submodule_search_locations=[str(ROOT / "addon")]
-    )
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["stiv_addon"] = module
-    spec.loader.exec_module(module)
-    module.register()
 
 
 class Driver:
@@ -38,7 +24,9 @@ class Driver:
     def __init__(self, output: Path, names: list[str]):
         """Choose scenarios by name; none means all."""
         from grammar import GRAMMAR
+        from guard_edit_mode import GUARD_EDIT_MODE
         from guard_scenarios import GUARD
+        from guard_switch import GUARD_SWITCH
         from guide_pictures import PICTURES
         from measuring import MEASURES
         from scenarios import SCENARIOS
@@ -46,7 +34,7 @@ class Driver:
         from simulation import Window
 
         self.window = Window(output)
-        usual = SCENARIOS | GRAMMAR | GUARD | SEQUENCES | PICTURES
+        usual = SCENARIOS | GRAMMAR | GUARD | GUARD_EDIT_MODE | GUARD_SWITCH | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
@@ -108,7 +96,10 @@ def start() -> float | None:
     if not bpy.context.window_manager.windows:
         return TICK
     try:
-        import_extension()
+        import extension
+
+        problem = extension.problem()
+        assert not problem, problem
         output, *names = sys.argv[sys.argv.index("--") + 1 :]
         bpy.app.timers.register(Driver(Path(output), names).tick)
     except Exception:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import bpy
+import extension
 import scenes
 from scenarios import FURTHEST, INTO_WALL, NEAR, box_x, expect_free, expect_near, prepared
 from simulation import Steps, Window
@@ -23,8 +24,7 @@ def guarded(window: Window, build: object, active: str, mode: str = "OBJECT") ->
 
 def at_rest(window: Window) -> Steps:
     """Wait until the guard has looked at everything."""
-    from stiv_addon.guard import watching
-
+    watching = extension.module("guard.watching")
     yield from window.settle()
     yield from window.until(lambda: not bpy.app.timers.is_registered(watching.look), "the guard at rest")
     yield from window.settle()
@@ -43,8 +43,7 @@ def with_tool(window: Window, key: str, target: tuple[float, float, float], conf
 
 def steps() -> list[str]:
     """Names of all undo steps."""
-    from stiv_addon.guard import undo_steps
-
+    undo_steps = extension.module("guard.undo_steps")
     return [line.split("name=")[1] for line in undo_steps._printed().splitlines() if "name=" in line]
 
 
@@ -108,10 +107,26 @@ def guard_cancelled_tool(window: Window) -> Steps:
     assert steps() == before, steps()
 
 
+def guard_redo_panel(window: Window) -> Steps:
+    """The redo panel runs a tool again with other values: corrected anew, still one step."""
+    yield from guarded(window, scenes.add_box, "Box")
+    before = steps()
+    yield from with_tool(window, "G", (0.7, 0.0, 0.0))
+    with window.override():
+        operator = bpy.context.window_manager.operators[-1]
+        operator.properties.value = (4.0, 0.0, 0.0)
+        bpy.ops.ed.undo_redo()
+    yield from at_rest(window)
+    expect_near(box_x(), FURTHEST, NEAR, "the box after the tool was run again")
+    expect_free(window)
+    assert len(steps()) == len(before) + 1, steps()
+
+
 _ALL = (
     guard_move,
     guard_through_wall,
     guard_scale,
     guard_cancelled_tool,
+    guard_redo_panel,
 )
 GUARD = {scenario.__name__: scenario for scenario in _ALL}

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drive the extension in a real window of Blender, in a Debian folder under a display in memory.
+"""Drive the extension, installed from its zip, in a real window of Blender: in a Debian folder, on a display in memory.
 
-Usage: run.py [--folder DIR] [--opensubdiv DIR] [--pictures DIR] [--report F] [--sequences N] [SCENARIO...]
+Usage: build/venv/bin/python tests/window/run.py [--release trixie|sid] [--folder DIR] [--zip ZIP] [--pictures DIR]
+                                                 [--report F] [--sequences N] [--limit SECONDS] [SCENARIO...]
 
 Sets everything up itself where it can (root, debootstrap, Debian's archive), otherwise says why it cannot and skips
-(exit code 0). Exit code 1 when a scenario fails.
+(exit code 0). Without --zip the extension is built for the Python of that release, out of build/wheel and build/native,
+which `make` fills. Exit code 1 when a scenario fails.
 """
 
 from __future__ import annotations
@@ -22,34 +24,37 @@ import debian_folder
 
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = Path("/opt/stiv")  # in the folder
+USED = ("tests/window", "blend_fixtures")  # what the driver reads of the source tree
+BLENDER = ("env", f"BLENDER_USER_RESOURCES={INSIDE}/user", "blender")
 SCREEN = (1280, 800)
-TIME_LIMIT = 900.0  # seconds for all scenarios
+TIME_LIMIT = 1800.0  # seconds for all scenarios
 SEQUENCES = 200  # of random events
 
 
 def main() -> int:
-    """Set up, build, drive, report."""
+    """Set up, install, drive, report."""
     chosen = arguments()
-    folder = chosen.folder.resolve()
-    why_not = debian_folder.obstacle() or set_up(folder)
+    folder = (chosen.folder or ROOT / "build/window" / chosen.release).resolve()
+    why_not = debian_folder.obstacle() or set_up(folder, chosen.release)
     if why_not:
         print(f"window tests skipped: {why_not}")
         write_report(chosen.report, {"window": None}, why_not)
         return 0
+    archive = chosen.zip or built_extension(chosen.release)
     with debian_folder.system_mounts(folder):
-        copy_sources(folder, chosen.opensubdiv.resolve())
-        build(folder)
-        drive(folder, chosen.scenarios, chosen.sequences)
+        copy_sources(folder)
+        install(folder, archive)
+        drive(folder, chosen)
     keep_pictures(folder, chosen.pictures)
     failures = read_failures(folder)
     write_report(chosen.report, failures)
     return report(failures)
 
 
-def set_up(folder: Path) -> str:
+def set_up(folder: Path, release: str) -> str:
     """Why the folder could not be filled (no network, no right to mount), empty if it is."""
     try:
-        debian_folder.prepare(folder)
+        debian_folder.prepare(folder, release)
     except (subprocess.SubprocessError, OSError) as error:
         return f"the Debian folder could not be set up: {error}"
     return ""
@@ -58,71 +63,59 @@ def set_up(folder: Path) -> str:
 def arguments() -> argparse.Namespace:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--folder", type=Path, default=ROOT / "build/window/debian", help="the Debian folder")
-    parser.add_argument("--opensubdiv", type=Path, default=ROOT / "build/opensubdiv", help="OpenSubdiv's source")
+    parser.add_argument("--release", default="trixie", help="of Debian: trixie (Blender 4.3) or sid (5.2)")
+    parser.add_argument("--folder", type=Path, help="the Debian folder; build/window/RELEASE when not given")
+    parser.add_argument("--zip", type=Path, help="the extension; built when not given")
     parser.add_argument("--pictures", type=Path, default=ROOT / "build/window/pictures", help="where pictures go")
     parser.add_argument("--report", type=Path, default=ROOT / "build/test-reports/window.xml", help="JUnit file")
     parser.add_argument("--sequences", type=int, default=SEQUENCES, help="how many sequences of random events")
+    parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="seconds for all scenarios")
     parser.add_argument("scenarios", nargs="*", help="names; all when none is given")
     return parser.parse_args()
 
 
-def copy_sources(folder: Path, opensubdiv: Path) -> None:
-    """The files of the source tree that differ, so that the build inside is quick the second time."""
+def built_extension(release: str) -> Path:
+    """The extension's zip for the Python of a release, out of what `make` compiled."""
+    command = [ROOT / "tools/window_extension.sh", sys.executable, release, f"build/window/extension-{release}"]
+    done = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
+    return ROOT / done.stdout.split()[-1]
+
+
+def copy_sources(folder: Path) -> None:
+    """Scenarios and scenes; nothing of the extension, which comes from its zip."""
+    source = folder / INSIDE.relative_to("/") / "source"
+    shutil.rmtree(source, ignore_errors=True)
+    for name in USED:
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+
+
+def install(folder: Path, archive: Path) -> None:
+    """Let Blender validate the zip and install it, for a user that has never had it."""
     home = folder / INSIDE.relative_to("/")
-    listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT, check=True, capture_output=True,
-    )  # fmt: skip
-    for name in filter(None, listed.stdout.decode().split("\0")):
-        copy_changed(ROOT / name, home / "source" / name)
-    for path in opensubdiv.rglob("*"):
-        copy_changed(path, home / "opensubdiv" / path.relative_to(opensubdiv))
+    shutil.rmtree(home / "user", ignore_errors=True)
+    (home / "user").mkdir(parents=True)
+    shutil.copyfile(archive, home / archive.name)
+    print(f"installing {archive.name}", flush=True)
+    extension = [*BLENDER, "--command", "extension"]
+    inside = str(INSIDE / archive.name)
+    debian_folder.run(folder, [*extension, "validate", inside], quiet=True)
+    debian_folder.run(folder, [*extension, "install-file", "-r", "user_default", "--enable", inside], quiet=True)
 
 
-def copy_changed(source: Path, target: Path) -> None:
-    """Copy a file unless the target is the same already."""
-    if not source.is_file() or (target.is_file() and target.read_bytes() == source.read_bytes()):
-        return
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(source, target)
-
-
-def build(folder: Path) -> None:
-    """The native module for the Python inside, beside the package."""
-    source, binary = INSIDE / "source", INSIDE / "build"
-    options = ["-DSTIV_BUILD_PYTHON=ON", "-DSTIV_BUILD_TESTS=OFF", f"-DSTIV_OPENSUBDIV_SOURCE={INSIDE}/opensubdiv"]
-    configure = ["cmake", "-S", str(source), "-B", str(binary), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", *options]
-    print("native module for the window's Python", flush=True)
-    debian_folder.run(folder, configure, quiet=True)
-    debian_folder.run(folder, ["cmake", "--build", str(binary), "--target", "_native"], quiet=True)
-    for module in (folder / binary.relative_to("/")).glob("native/bindings/_native*.so"):
-        shutil.copyfile(module, folder / source.relative_to("/") / "python/stiv" / module.name)
-
-
-def drive(folder: Path, scenarios: list[str], sequences: int) -> None:
+def drive(folder: Path, chosen: argparse.Namespace) -> None:
     """Run Blender with the driver; it leaves results and pictures in the folder."""
     results = folder / INSIDE.relative_to("/") / "results"
     shutil.rmtree(results, ignore_errors=True)
     results.mkdir(parents=True)
     width, height = map(str, SCREEN)
-    blender = [
-        "blender", "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", width, height,
-        "--python", f"{INSIDE}/source/tests/window/driver.py", "--", f"{INSIDE}/results", *scenarios,
-    ]  # fmt: skip
-    screen = f"-screen 0 {width}x{height}x24"
     command = [
-        "env",
-        f"STIV_WINDOW_SEQUENCES={sequences}",
-        "LIBGL_ALWAYS_SOFTWARE=1",
-        "xvfb-run",
-        "-a",
-        "-s",
-        screen,
-        *blender,
-    ]
+        "env", "LIBGL_ALWAYS_SOFTWARE=1", f"STIV_WINDOW_SEQUENCES={chosen.sequences}",
+        "xvfb-run", "-a", "-s", f"-screen 0 {width}x{height}x24",
+        *BLENDER, "--enable-event-simulate", "--window-geometry", "0", "0", width, height,
+        "--python", f"{INSIDE}/source/tests/window/driver.py", "--", f"{INSIDE}/results", *chosen.scenarios,
+    ]  # fmt: skip
     try:
-        debian_folder.run(folder, command, timeout=TIME_LIMIT)
+        debian_folder.run(folder, command, timeout=chosen.limit)
     except subprocess.SubprocessError as error:
         print(f"Blender did not end well: {error}")
 

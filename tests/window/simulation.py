@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import extension
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 Steps = Generator[float | None, None, None]  # a number: seconds until the next step, None: as usual
@@ -40,8 +41,7 @@ class Window:
 
     def _watch_interface(self) -> None:
         """Count what a drag adds to Blender's interface and takes away: Blender itself cannot be asked."""
-        from stiv_addon.operators import interface
-
+        interface = extension.module("operators.interface")
         self.timers, self.texts = 0, False
         start_timer, stop_timer, show, clear = (
             getattr(interface, name) for name in ("start_timer", "stop_timer", "show", "clear")

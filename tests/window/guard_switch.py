@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live guard turned on where surfaces intersect already, and turned off."""
+
+from __future__ import annotations
+
+import bpy
+import extension
+import scenes
+from guard_scenarios import at_rest, guarded, with_tool
+from scenarios import FURTHEST, INTO_WALL, NEAR, box_x, expect_near, prepared
+from scenes import WALL_FACE
+from simulation import Steps, Window
+
+
+def guard_intersecting(window: Window) -> Steps:
+    """Turned on where surfaces intersect already: it says so, writes nothing, and takes over once they are free."""
+    watching = extension.module("guard.watching")
+    bpy.context.scene.stiv.live_guard = False
+    yield from prepared(window, scenes.add_box, "Box")
+    bpy.data.objects["Box"].location.x = WALL_FACE
+    bpy.context.scene.stiv.live_guard = True
+    yield from at_rest(window)
+    assert "intersect" in watching.problem(), watching.problem()
+    sidebar(window, True)
+    yield from window.settle()
+    window.picture("guard_intersecting")
+    sidebar(window, False)
+    yield from with_tool(window, "G", (-1.5, 0.0, 0.0))
+    assert watching.problem() == "", watching.problem()
+    yield from with_tool(window, "G", INTO_WALL)
+    expect_near(box_x(), FURTHEST, NEAR, "the box after the guard took over")
+    bpy.context.scene.stiv.live_guard = False
+
+
+def sidebar(window: Window, shown: bool) -> None:
+    """Open the tab, or close the sidebar."""
+    window.area.spaces.active.show_region_ui = shown
+    if shown:
+        next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
+
+
+def guard_leaves_nothing(window: Window) -> Steps:
+    """Turned off, there is no timer and no message left; another tool is not corrected."""
+    watching = extension.module("guard.watching")
+    yield from guarded(window, scenes.add_box, "Box")
+    bpy.context.scene.stiv.live_guard = False
+    yield from window.settle()
+    assert not bpy.app.timers.is_registered(watching.look)
+    window.key("G")
+    yield from window.glide(window.pixel((WALL_FACE, 0.0, 0.0)))
+    window.key("LEFTMOUSE")
+    yield from window.settle()
+    assert box_x() > FURTHEST + 0.1, box_x()
+
+
+GUARD_SWITCH = {scenario.__name__: scenario for scenario in (guard_intersecting, guard_leaves_nothing)}
