@@ -14,6 +14,7 @@ from .request import Request
 from .state import Effect, Phase, State, step
 
 LAST_SLICES = 10  # solves, each within its time, for what is left to do when a drag is confirmed
+GAIN = 0.99  # of the energy before: a solve for the same goal that leaves more of it was the last
 
 
 class Edit(Protocol):
@@ -90,6 +91,7 @@ class Drag:
         self._measure = measure
         self._motion = motion
         self._pending = False
+        self._solved: tuple[State | None, float] = (None, 0.0)
 
     def handle(self, event: Event) -> Effect:
         """Take one event; says what it asked for."""
@@ -147,8 +149,19 @@ class Drag:
             return
         self.transform = wanted
         self.note = refusal
-        self._pending = self.result.status == "budget"
+        self._pending = self._may_gain()
         self._write()
+
+    def _may_gain(self) -> bool:
+        """Is it worth to solve for the same state once more? A solve goes only so far toward a goal that is far off.
+
+        While the mouse moves the next motion does that; where it rests, so that what is shown does not hang on how
+        many motions there was time for.
+        """
+        solved, least = self._solved
+        self._solved = (self.state, self.result.energy)
+        gained = solved != self.state or self.result.energy < GAIN * least
+        return self.result.status == "budget" or (self.result.status == "corrected" and gained)
 
     def _begin_again(self) -> str:
         """Another edit from the start where another is requested; where that is refused, the old one goes on.

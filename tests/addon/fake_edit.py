@@ -8,7 +8,10 @@ from typing import Any
 
 @dataclass
 class FakeEdit:
-    """`statuses`: what the next solves say; `failing`: name of a call -> exception that it raises."""
+    """`statuses`: what the next solves say; `failing`: name of a call -> exception that it raises.
+
+    `furthest`: how far one solve goes.
+    """
 
     statuses: list[str] = field(default_factory=list)
     failing: dict[str, Exception] = field(default_factory=dict)
@@ -19,6 +22,7 @@ class FakeEdit:
     requests: list[Any] = field(default_factory=list)
     interference: bool = True
     moving = frozenset({"Box"})
+    furthest: float = 10.0
     start_digest = "start"
     controls = ()
 
@@ -60,5 +64,6 @@ class FakeEdit:
 
     def _solve(self, matrix: Any) -> Any:
         self.goals.append(float(matrix))
-        self.accepted = min(float(matrix), 1.0)
-        return SimpleNamespace(status=self.statuses.pop(0) if self.statuses else "reached", blocking=())
+        self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
+        status = self.statuses.pop(0) if self.statuses else "reached"
+        return SimpleNamespace(status=status, blocking=(), energy=(float(matrix) - self.accepted) ** 2)

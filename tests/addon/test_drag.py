@@ -247,3 +247,23 @@ def test_every_sequence_ends_shown_as_accepted_or_restored(
     drag.handle(Event("MOUSEMOVE", "NOTHING", (7.0, 7.0)))
     drag.tick()
     assert edit.calls == before
+
+
+def test_a_goal_that_one_solve_does_not_get_near_is_solved_for_until_the_mouse_has_rested_for_long_enough() -> None:
+    edit = FakeEdit(statuses=["corrected"] * 30, furthest=0.3)
+    drag = new_drag(edit)
+    drag.handle(move_to(500))  # far beyond the wall at 1
+    for _ in range(20):
+        drag.tick()
+    assert edit.shown == 1.0
+    assert edit.goals == [5.0] * 5  # the last one gained nothing
+
+
+def test_no_more_is_solved_for_a_goal_that_is_reached_or_blocked() -> None:
+    for status in ("reached", "blocked", "cancelled"):
+        edit = FakeEdit(statuses=[status])
+        drag = new_drag(edit)
+        drag.handle(move_to(500))
+        for _ in range(5):
+            drag.tick()
+        assert edit.goals == [5.0]
