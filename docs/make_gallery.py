@@ -40,8 +40,8 @@ MATERIALS: dict[str, Material] = {
     "Hat": colors.FELT, "Bowl": colors.GLAZE, "Ball": colors.MOVING, "Cushion": colors.STILL, "Face": colors.FUR,
     "Waves": colors.STILL, "figure": colors.SKIN, **{material.name: material for material in colors.ORGANS},
 }  # fmt: skip
-FRAMES, PAUSE = 24, 6  # of an animation, and how long its last one stays
-MILLISECONDS = 120  # a frame
+FRAMES, PAUSE = 20, 5  # of an animation, and how long its last one stays
+MILLISECONDS = 140  # a frame
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,7 @@ class Stage:
         ]
         with quiet_blender(errors=True):
             build_scene(Fixture("gallery", "", tuple(meshes), (), view))
+        bpy.context.scene.display.render_aa = "8"  # there are many pictures
 
     def _shape(self, film: Film, number: int) -> Shape:
         kept = np.flatnonzero(self._body == number)

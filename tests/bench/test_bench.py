@@ -100,6 +100,11 @@ def test_the_command_prints_the_table_and_writes_its_rows(small_scenes, tmp_path
     assert "150 / 124" in capsys.readouterr().out
 
 
+def test_one_kind_of_constraint_can_be_asked_for(small_scenes):
+    rows = table1.table1(["knot"], [1], lambda note: None, ["many"])
+    assert [(r["preset"], r["constraints"]) for r in rows] == [("stiv", "many"), ("paper", "many")]
+
+
 def test_a_row_that_intersects_ends_the_command_with_4(small_scenes, monkeypatch):
     monkeypatch.setattr(stiv, "find_intersections", lambda *_: [(0, 1)])
     assert program.run(["bench", "table1", "--scenes", "knot", "--threads", "1"]) == 4

@@ -21,7 +21,7 @@ from stiv.bench.profile import profile, profile_text
 from stiv.bench.race import race, race_text
 from stiv.bench.running import Report
 from stiv.bench.scaling import scaling, scaling_text
-from stiv.bench.table1 import PUBLISHED, shares_text, table1, table_text
+from stiv.bench.table1 import KINDS, PUBLISHED, shares_text, table1, table_text
 from stiv.command_line.blender_module import addon_registered, require_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json
@@ -62,6 +62,9 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("what", choices=tuple(_BENCHES), nargs="?", help="what to measure")
     parser.add_argument("--scenes", nargs="+", default=list(PUBLISHED), metavar="NAME", help="default: all five")
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], metavar="N", help="default: 1 2")
+    parser.add_argument(
+        "--constraints", nargs="+", choices=tuple(KINDS), default=list(KINDS), help="table1: default: both"
+    )
     parser.add_argument(
         "--largest",
         type=int,
@@ -118,7 +121,7 @@ _Result = tuple[list[dict[str, Any]], str]
 
 
 def _table(arguments: argparse.Namespace, report: Report) -> _Result:
-    rows = table1(arguments.scenes, arguments.threads, report)
+    rows = table1(arguments.scenes, arguments.threads, report, arguments.constraints)
     return rows, table_text(rows) + "\n\n" + shares_text(rows)
 
 
