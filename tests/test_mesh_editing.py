@@ -72,6 +72,7 @@ def test_turning_and_scaling_act_about_the_middle():
             {"operator": "rotate", "objects": ["Below"], "values": {"angle": 1, "axis": [0, 0, 0]}},
             "axis: has no direction",
         ),
+        ({"operator": "repair", "objects": ["Below"]}, "mesh files take move, scale, rotate alone; `stiv repair`"),
     ],
 )
 def test_what_does_not_fit_is_named(step, message):
