@@ -74,8 +74,10 @@ def untangled() -> Film:
         states.append(stiv.contraction_step(tangle.surface, states[-1], start=tangle.positions, smoothing=strength))
         strength *= 2
     solver = stiv.EditSession(tangle.surface, stiv.identity(tangle.surface.vertex_count), states[-1])
-    for _ in range(EXPANSIONS):
-        states.append(solver.edit(tangle.positions).surface)
+    contracted = states[-1]
+    for number in range(EXPANSIONS):
+        share = (number + 1) / EXPANSIONS
+        states.append(solver.edit(contracted + share * (tangle.positions - contracted)).surface)
     return Film(tangle.surface, [(state,) for state in states])
 
 

@@ -40,8 +40,8 @@ MATERIALS: dict[str, Material] = {
     "Hat": colors.FELT, "Bowl": colors.GLAZE, "Ball": colors.MOVING, "Cushion": colors.STILL, "Face": colors.FUR,
     "Waves": colors.STILL, "figure": colors.SKIN, **{material.name: material for material in colors.ORGANS},
 }  # fmt: skip
-FRAMES, PAUSE = 20, 5  # of an animation, and how long its last one stays
-MILLISECONDS = 140  # a frame
+FRAMES, PAUSE = 16, 4  # of an animation, and how long its last one stays
+MILLISECONDS = 170  # a frame
 
 
 @dataclass(frozen=True)
