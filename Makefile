@@ -55,7 +55,7 @@ test-window: $(WHEEL) ## Drive the installed zip in a real window, longer than `
 lint: build/venv/lint ## Check format, style and types
 	build/venv/bin/python tools/run_tests.py lint
 
-extension: $(WHEEL) $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate it, try it; BLENDER=blender: install it there
+extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate it, try it; BLENDER=blender: install it there
 	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist >build/extension-all
 	$(ZIP_VENV)/bin/python tools/install_extension.py "$$(cat build/extension-all)"
 	build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_extension_wheels.py

@@ -28,13 +28,14 @@ class Driver:
         from guard_scenarios import GUARD
         from guard_switch import GUARD_SWITCH
         from guide_pictures import PICTURES
+        from languages import LANGUAGES
         from measuring import MEASURES
         from scenarios import SCENARIOS
         from sequences import SEQUENCES
         from simulation import Window
 
         self.window = Window(output)
-        usual = SCENARIOS | GRAMMAR | GUARD | GUARD_EDIT_MODE | GUARD_SWITCH | SEQUENCES | PICTURES
+        usual = SCENARIOS | GRAMMAR | GUARD | GUARD_EDIT_MODE | GUARD_SWITCH | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Header and status bar of a drag in the languages that there are catalogues for."""
+
+from __future__ import annotations
+
+import bpy
+import extension
+import scenes
+from scenarios import INTO_WALL, click, prepared, start
+from simulation import Steps, Window
+
+SAYS = {"de_DE": "Umschalt: genau", "ja_JP": "Shift: 精密"}  # for "Shift: precise"
+
+
+def in_language(code: str) -> object:
+    """A scenario: a drag in that language; what it says is looked at on its picture."""
+
+    def scenario(window: Window) -> Steps:
+        view = bpy.context.preferences.view
+        before = view.language
+        view.language, view.use_translate_interface = code, True
+        try:
+            assert extension.module("wording").say("Shift: precise") == SAYS[code]
+            yield from prepared(window, scenes.add_box, "Box")
+            yield from start(window)
+            yield from window.glide(window.pixel(INTO_WALL))
+            window.picture(f"drag_{code}")
+            yield from click(window, "ESC")
+        finally:
+            view.language = before
+
+    scenario.__name__ = f"drag_in_{code.lower()}"
+    return scenario
+
+
+LANGUAGES = {scenario.__name__: scenario for scenario in map(in_language, SAYS)}
