@@ -34,8 +34,9 @@ from blend_fixtures.scenes.shape import Shape  # noqa: E402
 from stiv.command_line.quiet import quiet_blender  # noqa: E402
 
 Array = NDArray[np.float64]
+CLEAR = Material("Clear", (0.75, 0.9, 1.0, 0.16), 0.2)
 MATERIALS: dict[str, Material] = {
-    "Shoots": colors.GRASS, "Vase": colors.GLAZE, "Hare": colors.FUR, "Pot": colors.GLAZE, "Tree": colors.LEAF,
+    "Shoots": colors.GRASS, "Vase": colors.GLAZE, "Hare": colors.FUR, "Pot": CLEAR, "Tree": colors.LEAF,
     "Corner": colors.STILL, "Knot": colors.MOVING, "Ogre": colors.SKIN, "Shirt": colors.CLOTH, "Glasses": colors.HORN,
     "Hat": colors.FELT, "Bowl": colors.GLAZE, "Ball": colors.MOVING, "Cushion": colors.STILL, "Face": colors.FUR,
     "Waves": colors.STILL, "figure": colors.SKIN, **{material.name: material for material in colors.ORGANS},
@@ -78,7 +79,7 @@ class Stage:
         ]
         with quiet_blender(errors=True):
             build_scene(Fixture("gallery", "", tuple(meshes), (), view))
-        bpy.context.scene.display.render_aa = "8"  # there are many pictures
+        bpy.context.scene.display.render_aa = "5"  # there are many pictures
 
     def _shape(self, film: Film, number: int) -> Shape:
         kept = np.flatnonzero(self._body == number)
