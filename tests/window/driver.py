@@ -48,7 +48,9 @@ class Driver:
             started = time.time()
             self.save(name)  # in case it takes Blender down
             self.results["scenarios"][name] = yield from self.play_one(scenario)
-            print(f"{name}: {time.time() - started:.1f} s", flush=True)
+            failure = self.results["scenarios"][name].strip()
+            told = f"FAILED: {failure.splitlines()[-1]}" if failure else "passed"
+            print(f"{name}: {time.time() - started:.1f} s, {told}", flush=True)
             self.save()
         self.results["complete"] = True
 
@@ -102,7 +104,7 @@ def start() -> float | None:
         problem = extension.problem()
         assert not problem, problem
         output, *names = sys.argv[sys.argv.index("--") + 1 :]
-        bpy.app.timers.register(Driver(Path(output), names).tick)
+        bpy.app.timers.register(Driver(Path(output), names).tick, persistent=True)  # files are opened
     except Exception:
         traceback.print_exc()
         leave(3)

@@ -87,13 +87,17 @@ def measured(window: Window, key: str, step: tuple[int, int]) -> Steps:
     try:
         began = time.perf_counter()
         yield from start(window, key)
-        print(f"start of the drag, to the first event after it: {1000.0 * (time.perf_counter() - began):.0f} ms")
+        print(
+            f"start of the drag, to the first event after it: {1000.0 * (time.perf_counter() - began):.0f} ms",
+            flush=True,
+        )
         laps = []
         for number in range(1, MOVES + 1):
             watch.lap()
             sent, drawn = now(), window.drawn_at
             window.move(centre[0] + step[0] * number, centre[1] + step[1] * number)
             while window.drawn_at == drawn or "write, all" not in watch.spent:
+                assert window.dragging(), "the drag has ended"
                 yield 0.001
             lap = watch.lap()
             # The clock as the frame was drawn; the thread's time has run on a little further.
@@ -102,11 +106,12 @@ def measured(window: Window, key: str, step: tuple[int, int]) -> Steps:
             laps.append(lap)
         window.move(centre[0] + 2 * step[0] * MOVES, centre[1] + 2 * step[1] * MOVES)
         yield 0.02  # Esc arrives while this one is solved
-        sent = time.perf_counter()
+        sent = now()
         window.key("ESC")
         while window.dragging():
             yield 0.001
-        print(f"Esc: {1000.0 * (time.perf_counter() - sent):.0f} ms")
+        clock, own = now() - sent
+        print(f"Esc: {clock:.0f} ms, of this thread {own:.0f} ms", flush=True)
     finally:
         watch.end()
     for label in HEAD:

@@ -22,6 +22,7 @@ def clear() -> None:
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     scene = bpy.context.scene
+    scene.stiv.live_guard = False
     for name in ("separation", "responders", "object_response", "interference"):
         scene.stiv.property_unset(name)
     tools = scene.tool_settings

@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import random
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from simulation import Steps, Window
 
 COUNT = int(os.environ.get("STIV_WINDOW_SEQUENCES", "200"))
 EVENTS = 14  # of a sequence, at most
-PATIENCE = 500  # pauses until a drag has begun
+PATIENCE = 20.0  # seconds until a drag has begun
 PAUSE = 0.004  # seconds between two of them
 SCENES = (
     (scenes.add_box, "Box", "OBJECT"),
@@ -48,11 +49,10 @@ class Sequence:
         yield from prepared_quickly(self.window, build, active, mode)
         before = self.state()
         self.window.key(self.random.choice("MRE"), shift=True, alt=True)
-        for _ in range(PATIENCE):
+        deadline = time.monotonic() + PATIENCE
+        while not self.window.dragging():
+            assert time.monotonic() < deadline, "the drag did not begin"
             yield PAUSE
-            if self.window.dragging():
-                break
-        assert self.window.dragging(), "the drag did not begin"
         for _ in range(self.random.randint(3, EVENTS)):
             self.act()
             yield PAUSE
@@ -169,6 +169,7 @@ def prepared_quickly(window: Window, build: Callable[[], object], active: str, m
     """As `prepared`, with shorter pauses."""
     for pause in prepared(window, build, active, mode):
         yield PAUSE if pause is None else pause
+    yield from window.next_draw()  # events before it may be lost
 
 
 def random_sequences(window: Window) -> Steps:

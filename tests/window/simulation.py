@@ -97,6 +97,12 @@ class Window:
             self.area.tag_redraw()
             yield
 
+    def next_draw(self, limit: float = 20.0) -> Steps:
+        """Wait until the 3D view has been drawn once more."""
+        drawn = self._draws
+        self.area.tag_redraw()
+        yield from self.until(lambda: self._draws > drawn, "a drawing", limit)
+
     def settle(self, ticks: int = SETTLE) -> Steps:
         """Let Blender work."""
         for _ in range(ticks):
