@@ -148,6 +148,8 @@ def _settle(context: Any, outcome: correcting.Outcome) -> None:
     if outcome.free:
         watch.state = correcting.read(context)
     watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.free)
+    # Reading a mesh in Edit Mode marks it as changed: told while the guard works, it is no change to look at again.
+    context.view_layer.update()
 
 
 def _give_up(reason: str) -> None:

@@ -260,6 +260,18 @@ def test_looking_again_does_nothing() -> None:
     assert names_of_steps() == steps
 
 
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_its_own_reading_gives_it_nothing_to_look_at(mode: str) -> None:
+    """Blender marks a mesh that was read in Edit Mode as changed: the guard looked at it once a second, for ever."""
+    bpy.ops.object.mode_set(mode=mode)
+    for _ in range(2):
+        look()
+        noted = watching._watch.updates
+        bpy.context.view_layer.update()
+        assert watching._watch.updates == noted
+        move(0.1)
+
+
 def test_a_file_that_is_loaded_is_watched_over_if_it_says_so(tmp_path: Any) -> None:
     path = str(tmp_path / "guarded scene.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)

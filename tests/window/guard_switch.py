@@ -21,10 +21,9 @@ def guard_intersecting(window: Window) -> Steps:
     bpy.context.scene.stiv.live_guard = True
     yield from at_rest(window)
     assert "intersect" in watching.problem(), watching.problem()
-    sidebar(window, True)
-    yield from window.settle()
+    yield from open_tab(window)
     window.picture("guard_intersecting")
-    sidebar(window, False)
+    window.area.spaces.active.show_region_ui = False
     yield from with_tool(window, "G", (-1.5, 0.0, 0.0))
     assert watching.problem() == "", watching.problem()
     yield from with_tool(window, "G", INTO_WALL)
@@ -32,11 +31,12 @@ def guard_intersecting(window: Window) -> Steps:
     bpy.context.scene.stiv.live_guard = False
 
 
-def sidebar(window: Window, shown: bool) -> None:
-    """Open the tab, or close the sidebar."""
-    window.area.spaces.active.show_region_ui = shown
-    if shown:
-        next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
+def open_tab(window: Window) -> Steps:
+    """Show the extension's tab; a sidebar that is not drawn yet takes no category."""
+    window.area.spaces.active.show_region_ui = True
+    yield from window.settle()
+    next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
+    yield from window.settle()
 
 
 def guard_leaves_nothing(window: Window) -> Steps:
