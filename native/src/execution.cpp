@@ -43,12 +43,15 @@ int usable_processors() { return std::max(1, static_cast<int>(std::thread::hardw
 
 Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()) {}
 
-void Execution::set_time_budget(double seconds) {
+void Execution::set_time_budget(double seconds, bool after_gain) {
   using Clock = std::chrono::steady_clock;
   deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  waits_for_gain_ = after_gain;
 }
 
-bool Execution::budget_used_up() const { return deadline_ && std::chrono::steady_clock::now() >= *deadline_; }
+bool Execution::budget_used_up() const {
+  return deadline_ && !waits_for_gain_ && std::chrono::steady_clock::now() >= *deadline_;
+}
 
 void Execution::check() const {
   if (checks_left_.fetch_sub(1, std::memory_order_relaxed) <= 0) throw Interrupted("cancelled");

@@ -28,6 +28,11 @@ TEST_CASE("execution: cancelling and a used up budget interrupt") {
   Execution late(1);
   late.set_time_budget(0);
   CHECK_THROWS_AS(late.check(), Interrupted);
+  Execution gaining(1);
+  gaining.set_time_budget(0, true);
+  CHECK_NOTHROW(gaining.check());
+  gaining.note_gain();
+  CHECK_THROWS_AS(gaining.check(), Interrupted);
   std::atomic<bool> flag{false};
   Execution watching(1);
   watching.watch(&flag);

@@ -82,7 +82,7 @@ class EditOptions:
     pull_limit: float = 0.04  #: farthest pull of a drag toward its goal, in diagonals of what may move; 0: none
     single_precision: bool = True  #: controls are stored as float32; False: as they are
     storage: Sequence[StorageFrame] = ()  #: frames of stored controls; empty: world coordinates for all
-    time_budget: float = 0.0  #: seconds an edit may take; 0: no limit
+    time_budget: float = 0.0  #: seconds an edit may take; never less than one round does; 0: no limit
     threads: int = 0  #: 0: one for each processor
 
     @classmethod

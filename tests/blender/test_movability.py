@@ -209,6 +209,25 @@ def test_what_geometry_nodes_look_at() -> None:
     refused('object "Other", modifier "Look": would change with object "Cube"')
 
 
+def test_what_is_given_to_geometry_nodes() -> None:
+    cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
+    tree = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
+    socket = tree.interface.new_socket("Object", in_out="INPUT", socket_type="NodeSocketObject")
+    modifier = add_modifier(other, "NODES", "Look")
+    modifier.node_group = tree
+    give(modifier, socket.identifier, cube)
+    select(cube)
+    refused('object "Other", modifier "Look": would change with object "Cube"')
+
+
+def give(modifier: Any, socket: str, value: Any) -> None:
+    """Set an input of geometry nodes, which is a property of the modifier's interface since Blender 5.2."""
+    if bpy.app.version >= (5, 2):
+        getattr(modifier.properties.inputs, socket).value = value
+    else:
+        modifier[socket] = value
+
+
 def test_what_instances_show() -> None:
     cube = add_cube("Cube")
     collection = bpy.data.collections.new("Shared")

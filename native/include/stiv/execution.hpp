@@ -52,8 +52,11 @@ class Execution {
   /// Let another object's flag (set from another thread, alive during the call) cancel the work as well.
   void watch(const std::atomic<bool>* flag) { external_flag_ = flag; }
 
-  /// Stop after so many seconds from now, as if cancelled.
-  void set_time_budget(double seconds);
+  /// Stop after so many seconds from now, as if cancelled; with `after_gain` not before `note_gain` was called, so
+  /// that calls that take up where the last one ended get on however short their time is.
+  void set_time_budget(double seconds, bool after_gain = false);
+  /// Something was done that the end of the budget does not lose. From the calling thread, outside for_chunks.
+  void note_gain() noexcept { waits_for_gain_ = false; }
   bool budget_used_up() const;
 
   /// Stop at the check after so many, as if cancelled there: with one thread the same place each time.
@@ -81,6 +84,7 @@ class Execution {
   const std::atomic<bool>* external_flag_ = nullptr;
   mutable std::atomic<std::int64_t> checks_left_{std::numeric_limits<std::int64_t>::max()};
   std::optional<std::chrono::steady_clock::time_point> deadline_;
+  bool waits_for_gain_ = false;
   std::function<void(const char*, double)> progress_;
 };
 

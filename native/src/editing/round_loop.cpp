@@ -62,6 +62,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     kept.add(std::move(rows));
     const Controls& from = accumulate ? goal : outcome.candidate.controls;
     p = inequalities ? kept.project(from, execution) : kept.project_as_equations(from);
+    execution.note_gain();  // kept with the problem, see RoundProgress
   }
 }
 

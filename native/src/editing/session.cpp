@@ -118,7 +118,7 @@ class EditSession::Implementation {
     State target{goal, before.surface};
     {
       const ScopedTimer timer(execution.timings.total);
-      if (problem_.options().time_budget > 0) execution.set_time_budget(problem_.options().time_budget);
+      if (problem_.options().time_budget > 0) execution.set_time_budget(problem_.options().time_budget, true);
       try {
         target.surface = problem_.surface_at(goal, execution);
         problem_.surface().check_positions(target.surface);

@@ -58,6 +58,7 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
     record(report, outcome, acceptance);
     if (acceptance.fraction == 0) return;
     accepted = std::move(acceptance.state);
+    execution.note_gain();
     report.path.push_back(accepted.controls);
     const double after = energy(accepted.surface, aim.surface);
     if (part == 1 && !report.blocked) return;

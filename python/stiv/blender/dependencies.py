@@ -41,7 +41,7 @@ def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[
 def _looked_at(owner: Any) -> Iterator[bpy.types.Object]:
     values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
     if isinstance(owner, bpy.types.NodesModifier):
-        values += list(owner.values())
+        values += _inputs(owner)
         values += _in_nodes(owner.node_group, set())
     if isinstance(owner, bpy.types.ArmatureConstraint):
         values += [target.target for target in owner.targets]
@@ -50,6 +50,15 @@ def _looked_at(owner: Any) -> Iterator[bpy.types.Object]:
             yield value
         elif isinstance(value, bpy.types.Collection):
             yield from value.all_objects
+
+
+def _inputs(modifier: bpy.types.NodesModifier) -> list[Any]:
+    """What is given to a node tree: properties of its interface since Blender 5.2, before that the modifier's own."""
+    given = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if given is None:
+        return list(modifier.values())
+    sockets = [getattr(given, item.identifier) for item in given.bl_rna.properties if item.type == "POINTER"]
+    return [getattr(socket, "value", None) for socket in sockets]
 
 
 def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:

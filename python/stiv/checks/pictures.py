@@ -92,7 +92,7 @@ def _marked(shapes: Shapes, findings: Sequence[Finding]) -> NDArray[np.bool_]:
         if each.kind in ("face", "triangle")
     }
     rows = np.array(sorted(faces), np.int64).reshape(-1, 2)
-    stride = int(max(shapes.number.max(initial=0), rows[:, 1].max(initial=0))) + 1
+    stride = max(int(shapes.number.max(initial=0)), int(rows[:, 1].max(initial=0))) + 1
     return np.isin(shapes.owner * np.int64(stride) + shapes.number, rows[:, 0] * stride + rows[:, 1])
 
 

@@ -45,7 +45,7 @@ struct EditOptions {
   double pull_limit = 0.04;           ///< a drag's pull toward its goal, in diagonals of what may move; 0: none
   bool single_precision = true;       ///< controls are stored as float32; false: as they are
   std::vector<StorageFrame> storage;  ///< frames of stored controls; empty with single_precision: world frame for all
-  double time_budget = 0;             ///< seconds an edit; 0: none
+  double time_budget = 0;             ///< seconds an edit, but not less than one round; 0: none
   int threads = 0;                    ///< 0: all
 };
 
