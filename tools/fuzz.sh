@@ -10,6 +10,6 @@ for program in "$build"/native/fuzz/fuzz_*; do
     target=$(basename "$program" | sed 's/^fuzz_//')
     echo "== $target, $seconds s"
     mkdir -p "$build/corpus/$target"
-    "$program" "$build/corpus/$target" "native/fuzz/corpus/$target" -max_total_time="$seconds" -max_len=512 \
+    "$program" "$build/corpus/$target" "native/fuzz/corpus/$target" -max_total_time="$seconds" -max_len=512 -len_control=0 \
         -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -artifact_prefix="$build/$target-"
 done

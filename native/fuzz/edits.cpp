@@ -159,12 +159,15 @@ void require_no_trace_of_cancelled(fuzz::Input& input, EditSession& session, con
 }
 
 std::optional<EditSession> begun(const tests::Scene& scene, const EditOptions& options) {
+  const Positions start = scene.deformation->surface(scene.controls);
   try {
     return std::optional<EditSession>(std::in_place, scene.surface, scene.deformation, scene.controls, options);
   } catch (const StartIntersectsError& error) {
-    fuzz::require(!error.pairs.empty() || scene.surface->loose_edges().rows() > 0 ||
-                      scene.surface->vertex_count() > scene.surface->triangles().rows(),
-                  "a start that is refused says why");
+    for (const auto& [a, b] : error.pairs)
+      fuzz::require(triangles_intersect(corners(*scene.surface, a), corners(*scene.surface, b), start),
+                    "pairs for which a start is refused meet");
+    Execution execution(1);
+    fuzz::require(!IntersectionTest(scene.surface).is_free(start, {}, execution), "a start that is free is taken");
   } catch (const InputError&) {  // a separation that single precision cannot hold
   }
   return std::nullopt;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sessions on threads of their own. Under the thread sanitizer this tells whether anything is shared.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "editing/small_scenes.hpp"
+#include "stiv/editing/session.hpp"
+
+using namespace stiv;
+using namespace stiv::tests;
+
+namespace {
+
+/// A drag, a settling and an edit; what they came to.
+std::array<Controls, 3> solved(const Scene& scene, double shift) {
+  EditSession session(scene.surface, scene.deformation, scene.controls);
+  Controls goal = scene.controls;
+  goal.topRows(scene.controls.rows() / 3).rowwise() += Eigen::RowVector3d(shift, -shift / 2, -0.8);
+  Execution first(2), second(2), third(2);
+  const Controls dragged = session.drag(goal, first).controls;
+  const Controls settled = session.settle(second).controls;
+  return {dragged, settled, session.edit(scene.controls, third).controls};
+}
+
+}  // namespace
+
+TEST_CASE("sessions: four at once over one surface give what they give one after the other, bit by bit") {
+  const Scene scene = two_sheets(8);
+  constexpr std::size_t count = 4;
+  std::array<std::array<Controls, 3>, count> alone, at_once;
+  for (std::size_t k = 0; k < count; ++k) alone[k] = solved(scene, 0.1 * static_cast<double>(k));
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < count; ++k)
+    threads.emplace_back([&, k] { at_once[k] = solved(scene, 0.1 * static_cast<double>(k)); });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t k = 0; k < count; ++k) CHECK(at_once[k] == alone[k]);
+  CHECK(alone[0] != alone[1]);
+}
+
+TEST_CASE("sessions: cancelled from another thread at any moment, nothing is left of it") {
+  const Scene scene = two_sheets(12);
+  EditSession session(scene.surface, scene.deformation, scene.controls);
+  const Controls before = session.controls();
+  Controls goal = before;
+  goal.topRows(169).rowwise() += Eigen::RowVector3d(0.1, 0, -0.8);
+  for (int waits = 1; waits <= 1 << 14; waits *= 4) {
+    std::atomic<bool> flag{false};
+    Execution execution(2);
+    execution.watch(&flag);
+    std::thread other([&] {
+      for (int k = 0; k < waits; ++k) std::this_thread::yield();
+      flag = true;
+    });
+    const EditResult result = session.edit(goal, execution);
+    other.join();
+    if (result.status == EditStatus::cancelled) CHECK(session.controls() == before);
+    session.restore(before);
+  }
+}
