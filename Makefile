@@ -24,7 +24,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: docs test-long peers fuzz coverage help demo test test-native test-sanitizers test-python test-blender test-window lint extension bench format clean
+.PHONY: docs test-long peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -42,6 +42,9 @@ test-native: build/stiv_tests ## Run the core's own tests
 
 test-sanitizers: build/stiv_tests_asan ## Run the core's own tests under address and undefined-behaviour sanitizers
 	build/venv/bin/python tools/run_tests.py sanitizers
+
+test-threads: build/stiv_thread_tests ## Run the tests of what works on several threads under the thread sanitizer
+	build/venv/bin/python tools/run_tests.py threads
 
 test-python: build/venv/stiv ## Run the Python tests that need no Blender
 	build/venv/bin/python tools/run_tests.py python
@@ -87,11 +90,14 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender ## Run the long forms: killed batches, random edits and every path they take, cancelled edits, soak, memory
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long forms: all under the thread sanitizer, killed batches, random edits and every path they take, cancelled edits, soak, memory
+	cmake --build --preset tsan --target stiv_tests
+	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	build/venv/bin/python tests/long/soak.py --drags 10000
+	build/venv/bin/python tests/long/cluster_throughput.py
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
 	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 
@@ -155,6 +161,11 @@ build/stiv_tests: $(WHEEL)
 build/stiv_tests_asan: $(NATIVE_SOURCES) $(OPENSUBDIV)
 	cmake --preset asan -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
 	cmake --build --preset asan --target stiv_tests
+	touch $@
+
+build/stiv_thread_tests: $(NATIVE_SOURCES) $(OPENSUBDIV)
+	cmake --preset tsan -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset tsan --target stiv_thread_tests
 	touch $@
 
 build/venv-blender-%/ready: $(WHEEL) tools/requirements/test.txt

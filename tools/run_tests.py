@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run the named parts of the tests, all of them even when one fails, and print one summary at the end.
 
-Usage: run_tests.py PART...   with the parts native, sanitizers, python, blender, lint and window.
+Usage: run_tests.py PART...   with the parts native, sanitizers, threads, python, blender, lint and window.
 """
 
 import os
@@ -66,12 +66,12 @@ def run(title: str, command: list[str | Path]) -> int:
     return code
 
 
-def native(title: str, folder: str) -> Counts:
-    """Native tests of one build folder."""
+def native(title: str, folder: str, *arguments: str) -> Counts:
+    """Native tests of one build folder; `arguments` for ctest."""
     report = REPORTS / f"{folder}.xml"
     report.unlink(missing_ok=True)
     command = ["ctest", "--test-dir", BUILD / folder, "--output-on-failure", "--output-junit", report]
-    code = run(title, [*command, "--parallel", str(os.cpu_count()), "--test-output-size-passed", "65536"])
+    code = run(title, [*command, "--parallel", str(os.cpu_count()), "--test-output-size-passed", "65536", *arguments])
     return junit_counts.from_ctest(report, code)
 
 
@@ -106,6 +106,8 @@ def jobs(name: str) -> Iterator[Job]:
         yield Job(name, lambda: native(name, "native"), alone=True)
     elif name == "sanitizers":
         yield Job(name, lambda: native(name, "asan"), alone=True)
+    elif name == "threads":
+        yield Job(name, lambda: native(name, "tsan", "--tests-regex", "^threads$"), alone=True)
     elif name == "python":
         yield Job(name, lambda: pytest(name, BUILD / "venv", "-m", "not blender"))
     elif name == "blender":

@@ -22,6 +22,7 @@ from stiv.edit_scripts import read_edit_script
 from stiv.mesh_files import read_mesh
 
 HANG = 10  # seconds
+CORPUS = Path(__file__).parent / "hostile_files"
 FEW = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 
 
@@ -95,6 +96,12 @@ def test_mutated_files(suffix):
     places = st.integers(0, len(valid) - 1)
     changes = st.lists(st.tuples(places, st.integers(0, 3), st.binary(min_size=1, max_size=6)), min_size=1, max_size=5)
     FEW(given(changes)(lambda several: read(suffix, mutated(valid, several))))()
+
+
+@pytest.mark.parametrize("path", sorted(CORPUS.iterdir()), ids=lambda path: path.name)
+def test_what_the_fuzzer_kept(path):
+    """Inputs that reached all there is to reach in the readers (tests/long/file_fuzzing.py)."""
+    read("".join(path.suffixes), path.read_bytes())
 
 
 def mutated(data: bytes, changes) -> bytes:

@@ -25,12 +25,11 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS.parent), str(TESTS / "faults")]
 
 import numpy as np  # noqa: E402
-from test_hostile_files import HANG, VALID  # noqa: E402
+from test_hostile_files import CORPUS, HANG, VALID  # noqa: E402
 
 import stiv  # noqa: E402
 from stiv.mesh_files import Mesh  # noqa: E402
 
-CORPUS = TESTS / "faults/hostile_files"
 PACKAGE = str(Path(stiv.__file__).parent)
 MOST_BYTES = 4096
 MEMORY = 4 * 2**30

@@ -55,7 +55,7 @@ class Account:
 
 def scenes() -> list[Scene]:
     """Every stage, its controls where the dressing left them: in contact."""
-    found, stages = [], dressing.stages()
+    found, stages = [], dressing.session().stages()
     stage = next(stages)
     while True:
         session = stiv.EditSession(

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The same job on a local Dask cluster of one worker and of two, in turn: how much sooner it is done.
+
+    python tests/long/cluster_throughput.py [--scenes 40] [--repeats 3]
+
+Prints scenes a second of wall time, the processor seconds that a scene costs (of all worker processes), and the ratio.
+Ends with 1 if the results differ by a byte, or the best ratio is below 1.7. Two workers need two idle processors; on a
+busy machine they only compete better with what else runs. Needs /proc.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS.parent), str(TESTS / "batch")]
+
+from distributed import LocalCluster  # noqa: E402
+from jobs import results, write_job  # noqa: E402
+
+from stiv.command_line import program  # noqa: E402
+
+WANTED = 1.7
+
+
+def children(parent: int) -> list[int]:
+    """Processes below one, of all generations."""
+    found = []
+    for task in Path(f"/proc/{parent}/task").iterdir():
+        for child in map(int, (task / "children").read_text().split()):
+            found += [child, *children(child)]
+    return found
+
+
+def processor_seconds() -> float:
+    """User and system time of all processes below this one that are alive."""
+    ticks = 0
+    for pid in children(os.getpid()):
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        ticks += int(fields[11]) + int(fields[12])
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def run(job: Path, scheduler: str) -> tuple[float, float]:
+    """Seconds of the clock and of processors for a job on a cluster."""
+    begin, used = time.perf_counter(), processor_seconds()
+    with redirect_stdout(StringIO()):
+        code = program.run(["batch", str(job), "--scheduler", scheduler])
+    if code != 0:
+        raise SystemExit(f"the job ended with {code}")
+    return time.perf_counter() - begin, processor_seconds() - used
+
+
+def cluster(workers: int) -> LocalCluster:
+    """Processes of one thread each."""
+    return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None)
+
+
+def main() -> int:
+    """Both clusters, in turn."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scenes", type=int, default=40)
+    parser.add_argument("--repeats", type=int, default=3)
+    chosen = parser.parse_args()
+    ratios = []
+    with tempfile.TemporaryDirectory() as folder, cluster(1) as single, cluster(2) as double:
+        places = {1: Path(folder, "one"), 2: Path(folder, "two")}
+        clusters = {1: single, 2: double}
+        for workers, place in places.items():
+            place.mkdir()
+            write_job(place, chosen.scenes, repeat=10)
+            run(place / "job ü.json", clusters[workers].scheduler_address)  # starts the worker processes
+        for _ in range(chosen.repeats):
+            took = {}
+            for workers, place in places.items():
+                took[workers], used = run(place / "job ü.json", clusters[workers].scheduler_address)
+                rate = chosen.scenes / took[workers]
+                print(
+                    f"{workers} worker(s): {rate:.2f} scenes a second, {used / chosen.scenes:.3f} s of processors each"
+                )
+            ratios.append(took[1] / took[2])
+        same = results(places[1]) == results(places[2])
+    print(f"throughput of two workers: {', '.join(f'{ratio:.2f}' for ratio in ratios)} times that of one")
+    print("the results are the same" if same else "THE RESULTS DIFFER")
+    return int(not same or max(ratios) < WANTED)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
