@@ -115,7 +115,7 @@ def guard_redo_panel(window: Window) -> Steps:
     with window.override():
         operator = bpy.context.window_manager.operators[-1]
         operator.properties.value = (4.0, 0.0, 0.0)
-        bpy.ops.ed.undo_redo()
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # with undo, as the panel does it
     yield from at_rest(window)
     expect_near(box_x(), FURTHEST, NEAR, "the box after the tool was run again")
     expect_free(window)
