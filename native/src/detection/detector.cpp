@@ -2,21 +2,36 @@
 #include "stiv/detection/detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <tuple>
 
 #include "detection/candidates.hpp"
 #include "detection/pair_test.hpp"
+#include "detection/relevance.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
 
 namespace {
 
+/// Which pairs a search looks at.
+enum class Extent {
+  all,
+  manageable  ///< all, or none if they are too many
+};
+
+/// Pairs of each kind that a search looked at closely.
+using ClosePairs = std::array<std::vector<Candidate>, 2>;
+constexpr std::size_t most_close_pairs = 1 << 20;
+
+std::size_t number(EventKind kind) { return static_cast<std::size_t>(kind); }
+
 /// What one chunk found.
 struct ChunkResult {
   Events events;
+  std::vector<Candidate> close;
   std::int64_t candidates = 0;
   std::int64_t tested = 0;
 };
@@ -33,6 +48,24 @@ void lower(std::atomic<double>& minimum, double value) {
   double seen = minimum.load(std::memory_order_relaxed);
   while (value < seen && !minimum.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
   }
+}
+
+/// Does no plane across an axis keep the sides so far apart for the whole step that their boxes might be? Broad phases
+/// leave out some of the others, and which ones depends on where boxes were seen from: what is left does not.
+bool near_along_axes(const VertexStep* steps, EventKind kind, const std::array<Index, 4>& v, double separation) {
+  const std::size_t others = kind == EventKind::vertex_face ? 1 : 2;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double least_gap = never, least_gap_behind = never;
+    for (std::size_t i = 0; i < others; ++i)
+      for (std::size_t j = others; j < 4; ++j) {
+        const VertexStep &a = steps[v[i]], &b = steps[v[j]];
+        const double start = a.start[axis] - b.start[axis], end = a.end[axis] - b.end[axis];
+        least_gap = std::min({least_gap, start, end});
+        least_gap_behind = std::min({least_gap_behind, -start, -end});
+      }
+    if (std::max(least_gap, least_gap_behind) > 1.1 * separation) return false;
+  }
+  return true;
 }
 
 bool comes_before(const Event& a, const Event& b) {
@@ -61,27 +94,39 @@ class Detector::Implementation {
         source_(make_source(options.broad_phase, *surface_)) {}
 
   /// Nothing if the step is not `manageable` though asked to be.
-  std::optional<Events> find(const Step& step, bool manageable, Execution& execution) {
-    std::optional<std::vector<ChunkResult>> results =
-        search(step, manageable, execution, [](const PairTest& test, EventKind kind) {
-          return [&test, kind](const Candidate& candidate, ChunkResult& result) {
-            if (auto event = test.event(kind, candidate, 1)) result.events.push_back(*event);
-          };
-        });
+  std::optional<Events> find(const Step& step, Extent extent, Execution& execution) {
+    std::optional<std::vector<ChunkResult>> results = search(step, extent, execution, all_events);
     if (!results) return std::nullopt;
-    Events events;
-    for (ChunkResult& result : *results) {
-      events.insert(events.end(), result.events.begin(), result.events.end());
-      result.events = Events();  // there may be millions
-    }
-    std::sort(events.begin(), events.end(), comes_before);
-    execution.counters.events += static_cast<std::int64_t>(events.size());
-    return events;
+    return collected(*results, execution);
   }
 
-  std::optional<double> earliest_time(const Step& step, bool manageable, Execution& execution) {
+  std::optional<Events> find_among_kept(const Step& step, Execution& execution) {
+    check_step(step);
+    surface_->check_positions(step.start);
+    surface_->check_positions(step.end);
+    if (!kept_) return std::nullopt;
+    const FloatingPointScope floating_point;
+    kept_steps_.update(step.start, step.end, execution);
+    const PairTest test(*surface_, step, narrow_phase_, kept_steps_);
+    constexpr Index size = 1024;
+    const auto faces = Execution::chunk_count(kept_count(EventKind::vertex_face), size);
+    const auto chunks = faces + Execution::chunk_count(kept_count(EventKind::edge_edge), size);
+    std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
+    execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
+      const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
+      const Index begin = (chunk < faces ? chunk : chunk - faces) * size,
+                  end = std::min(begin + size, kept_count(kind));
+      const std::vector<Candidate>& pairs = (*kept_)[number(kind)];
+      std::vector<Candidate> some(pairs.begin() + begin, pairs.begin() + end);
+      decide_all(test, kind, some, all_events(test, kind), results[static_cast<std::size_t>(chunk)]);
+    });
+    count(results, execution.counters);
+    return collected(results, execution);
+  }
+
+  std::optional<double> earliest_time(const Step& step, Extent extent, Execution& execution) {
     std::atomic<double> earliest{never};
-    const auto results = search(step, manageable, execution, [&](const PairTest& test, EventKind kind) {
+    const auto results = search(step, extent, execution, [&](const PairTest& test, EventKind kind) {
       return [&test, &earliest, kind](const Candidate& candidate, ChunkResult&) {
         const double latest = std::min(1.0, earliest.load(std::memory_order_relaxed));
         if (latest == 0) return;
@@ -97,15 +142,16 @@ class Detector::Implementation {
  private:
   /// Calls `decide(test, kind)(candidate, result)` for every candidate that needs the narrow phase.
   template <class Decide>
-  std::optional<std::vector<ChunkResult>> search(const Step& step, bool manageable, Execution& execution,
+  std::optional<std::vector<ChunkResult>> search(const Step& step, Extent extent, Execution& execution,
                                                  const Decide& decide) {
-    check_shape(step);
-    check_proximity(step.proximity);
+    check_step(step);
     const FloatingPointScope floating_point;
+    kept_.reset();
     source_->update(step, execution);
     ++execution.counters.detections;
-    if (manageable && !source_->manageable()) return std::nullopt;
+    if (extent == Extent::manageable && !source_->manageable()) return std::nullopt;
     const PairTest test(*surface_, step, narrow_phase_, source_->vertex_steps());
+    const VertexStep* const steps = source_->vertex_steps().data();
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -114,18 +160,63 @@ class Detector::Implementation {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
       const auto decide_pair = decide(test, kind);
       source_->visit(kind, chunk < faces ? chunk : chunk - faces, [&](std::span<Candidate> candidates) {
-        const std::span<Candidate> left = test.reduce(kind, candidates);
-        result.candidates += static_cast<std::int64_t>(candidates.size());
-        result.tested += static_cast<std::int64_t>(left.size());
-        for (const Candidate& candidate : left) decide_pair(candidate, result);
+        for (const Candidate& candidate : decide_all(test, kind, candidates, decide_pair, result))
+          if (near_along_axes(steps, kind, vertices_of(*surface_, kind, candidate), step.proximity.separation))
+            result.close.push_back(candidate);
       });
     });
     count(results, execution.counters);
+    keep(results, faces);
     return results;
   }
 
+  /// Calls `decide` for those that need the narrow phase, and returns them.
+  template <class Decide>
+  static std::span<Candidate> decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates,
+                                         const Decide& decide, ChunkResult& result) {
+    const std::span<Candidate> left = test.reduce(kind, candidates);
+    result.candidates += static_cast<std::int64_t>(candidates.size());
+    result.tested += static_cast<std::int64_t>(left.size());
+    for (const Candidate& candidate : left) decide(candidate, result);
+    return left;
+  }
+
+  static constexpr auto all_events = [](const PairTest& test, EventKind kind) {
+    return [&test, kind](const Candidate& candidate, ChunkResult& result) {
+      if (auto event = test.event(kind, candidate, 1)) result.events.push_back(*event);
+    };
+  };
+
+  static Events collected(std::vector<ChunkResult>& results, Execution& execution) {
+    Events events;
+    for (ChunkResult& result : results) {
+      events.insert(events.end(), result.events.begin(), result.events.end());
+      result.events = Events();  // there may be millions
+    }
+    std::sort(events.begin(), events.end(), comes_before);
+    execution.counters.events += static_cast<std::int64_t>(events.size());
+    return events;
+  }
+
+  /// Keeps the pairs looked at closely, of which the first chunks' are of a vertex and a face, unless they are too
+  /// many.
+  void keep(const std::vector<ChunkResult>& results, Index faces) {
+    std::size_t sum = 0;
+    for (const ChunkResult& result : results) sum += result.close.size();
+    if (sum > most_close_pairs) return;
+    kept_.emplace();
+    for (std::size_t chunk = 0; chunk < results.size(); ++chunk) {
+      const bool of_faces = static_cast<Index>(chunk) < faces;
+      std::vector<Candidate>& pairs = (*kept_)[number(of_faces ? EventKind::vertex_face : EventKind::edge_edge)];
+      pairs.insert(pairs.end(), results[chunk].close.begin(), results[chunk].close.end());
+    }
+  }
+
+  Index kept_count(EventKind kind) const { return static_cast<Index>((*kept_)[number(kind)].size()); }
+
   /// What the numbers are is for the source to check.
-  void check_shape(const Step& step) const {
+  void check_step(const Step& step) const {
+    check_proximity(step.proximity);
     for (const Positions* positions : {&step.start, &step.end})
       if (positions->rows() != surface_->vertex_count()) surface_->check_positions(*positions);
   }
@@ -140,6 +231,8 @@ class Detector::Implementation {
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
+  std::optional<ClosePairs> kept_;  ///< of the last complete search
+  VertexSteps kept_steps_;
 };
 
 Detector::Detector(std::shared_ptr<const Surface> surface, DetectorOptions options)
@@ -149,22 +242,27 @@ Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
 Events Detector::find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution) {
-  return *implementation_->find({start, end, proximity}, false, execution);
+  return *implementation_->find({start, end, proximity}, Extent::all, execution);
 }
 
 double Detector::earliest_time(const Positions& start, const Positions& end, Proximity proximity,
                                Execution& execution) {
-  return *implementation_->earliest_time({start, end, proximity}, false, execution);
+  return *implementation_->earliest_time({start, end, proximity}, Extent::all, execution);
 }
 
 std::optional<Events> Detector::find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
                                                    Execution& execution) {
-  return implementation_->find({start, end, proximity}, true, execution);
+  return implementation_->find({start, end, proximity}, Extent::manageable, execution);
 }
 
 std::optional<double> Detector::earliest_time_if_manageable(const Positions& start, const Positions& end,
                                                             Proximity proximity, Execution& execution) {
-  return implementation_->earliest_time({start, end, proximity}, true, execution);
+  return implementation_->earliest_time({start, end, proximity}, Extent::manageable, execution);
+}
+
+std::optional<Events> Detector::find_among_kept(const Positions& start, const Positions& end, Proximity proximity,
+                                                Execution& execution) {
+  return implementation_->find_among_kept({start, end, proximity}, execution);
 }
 
 const Surface& Detector::surface() const { return implementation_->surface(); }

@@ -120,6 +120,15 @@ std::optional<Events> Problem::find_events(const Positions& from, const Position
   return remaining_events(detector, start, end, proximity_of_rounds(), at_any_cost, execution);
 }
 
+std::optional<Events> Problem::find_events_among_kept(const Positions& from, const Positions& to,
+                                                      Execution& execution) {
+  if (round_detector_) return std::nullopt;
+  const ScopedTimer timer(execution.timings.detection);
+  std::optional<Events> events = detector_.find_among_kept(centred(from), centred(to), proximity(), execution);
+  if (events) excluded_.remove_from(*events);
+  return events;
+}
+
 std::optional<Events> Problem::remaining_events(Detector& detector, const Positions& start, const Positions& end,
                                                 Proximity proximity, bool at_any_cost, Execution& execution) const {
   std::optional<Events> events = at_any_cost ? detector.find(start, end, proximity, execution)

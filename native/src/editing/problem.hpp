@@ -76,6 +76,9 @@ class Problem {
   /// Events on the way from one surface to the other, and the earliest time of any. Nothing if the way is too far to
   /// be looked at in bounded time and memory; `at_any_cost`: never so.
   std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
+  /// Events among the pairs that the last search of all brought near each other: perhaps not all that there are.
+  /// Nothing if no pairs are kept.
+  std::optional<Events> find_events_among_kept(const Positions& from, const Positions& to, Execution& execution);
   std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
                                       Execution& execution);
   /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`.

@@ -33,14 +33,18 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
   outcome.at_any_cost = at_any_cost;
   RoundProgress& progress = rounds_toward(problem, accepted, goal);
   auto& [from, to, kept, p, accumulate, round] = progress;
+  bool searched = false;  // all pairs, from this start
   for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);
     outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
     if (round == options.max_rounds) return outcome;
-    std::optional<Events> events =
-        problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
+    std::optional<Events> events;
+    if (searched) events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
+    if (!events || events->empty())
+      events = problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
+    searched = true;
     outcome.too_far = !events;
     if (outcome.too_far) return outcome;
     outcome.clear = events->empty();

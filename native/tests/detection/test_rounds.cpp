@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "detection/event_bits.hpp"
 #include "detection/scenes.hpp"
 #include "stiv/detection/detector.hpp"
@@ -56,6 +58,14 @@ void compare_rounds(const MovingScene& scene, unsigned seed) {
   }
 }
 
+bool same_pair(const Event& a, const Event& b) { return a.kind == b.kind && a.vertices == b.vertices; }
+
+const Event* event_of_pair(const Events& events, const Event& wanted) {
+  const auto found =
+      std::find_if(events.begin(), events.end(), [&](const Event& event) { return same_pair(event, wanted); });
+  return found == events.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 TEST_CASE("rounds: a detector that keeps its pairs finds the same, bit by bit, as one that looks at all of them") {
@@ -67,6 +77,45 @@ TEST_CASE("rounds: a detector that keeps its pairs finds the same, bit by bit, a
     scene.end.bottomRows(162).rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.9);  // the others fall on it and through
     compare_rounds(scene, seed);
   }
+}
+
+TEST_CASE("rounds: events among the pairs kept are those of a whole search, of these pairs, whatever came before") {
+  const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
+  std::mt19937 random(4);
+  Detector detector(scene.surface), grid(scene.surface, {.broad_phase = BroadPhase::hash_grid});
+  std::size_t found = 0, missed = 0;
+  for (const Positions& first : ends_of_rounds(scene, random)) {
+    Detector fresh(scene.surface);
+    const Events before = found_by(detector, scene.start, first, 1);
+    found_by(fresh, scene.start, first, 2);
+    found_by(grid, scene.start, first, 1);
+    for (const Positions& end : ends_of_rounds(scene, random)) {
+      Execution execution(1), threads(2);
+      const std::optional<Events> kept = detector.find_among_kept(scene.start, end, proximity, execution);
+      REQUIRE(kept.has_value());
+      CHECK(same_bits(*kept, *fresh.find_among_kept(scene.start, end, proximity, threads)));
+      CHECK(same_bits(*kept, *grid.find_among_kept(scene.start, end, proximity, execution)));
+      const Events all = expected(scene, scene.start, end);
+      for (const Event& event : *kept) {
+        const Event* const same = event_of_pair(all, event);
+        REQUIRE(same != nullptr);
+        CHECK(same_bits({event}, {*same}));
+      }
+      for (const Event& event : all)
+        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(*kept, event) != nullptr);
+      found += kept->size();
+      missed += all.size() - kept->size();
+    }
+  }
+  CHECK(found > 100);
+  CHECK(missed > 0);
+}
+
+TEST_CASE("rounds: nothing is kept before the first search") {
+  const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
+  Execution execution(1);
+  Detector detector(scene.surface);
+  CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
 }
 
 TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {

@@ -47,6 +47,12 @@ class Detector {
   std::optional<Events> find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
                                            Execution& execution);
 
+  /// The events of a step among the few pairs that the last complete search looked at closely, and no others: for
+  /// rounds of an edit whose answers are looked at again anyway. Depends on that step and this one alone. Nothing if
+  /// there was no complete search, or one that looked at very many.
+  std::optional<Events> find_among_kept(const Positions& start, const Positions& end, Proximity proximity,
+                                        Execution& execution);
+
   /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
   double earliest_time(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
 
