@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -11,8 +13,22 @@ inline double squared_norm(const SparseField& field) {
   return sum;
 }
 
-/// Product of two sparse fields; both are ascending.
+/// Product of a sparse field and one without a gap, as a metric that couples all controls makes them.
+inline double dot_with_run(const SparseField& a, const SparseField& run) {
+  double sum = 0;
+  const Index first = run.index.front();
+  const auto begin = std::lower_bound(a.index.begin(), a.index.end(), first);
+  for (auto k = static_cast<std::size_t>(begin - a.index.begin()); k < a.index.size(); ++k) {
+    if (a.index[k] > run.index.back()) break;
+    sum += a.value[k].dot(run.value[static_cast<std::size_t>(a.index[k] - first)]);
+  }
+  return sum;
+}
+
+/// Product of two sparse fields; both are ascending. Products are added in the order of their indices either way.
 inline double dot(const SparseField& a, const SparseField& b) {
+  const std::size_t size = b.index.size();
+  if (size > 0 && static_cast<std::size_t>(b.index.back() - b.index.front()) + 1 == size) return dot_with_run(a, b);
   double sum = 0;
   for (std::size_t i = 0, j = 0; i < a.index.size() && j < b.index.size();) {
     if (a.index[i] == b.index[j])
