@@ -167,6 +167,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("separation", &EditOptions::separation)
       .def_readwrite("pair_separations", &EditOptions::pair_separations)
       .def_readwrite("keep", &EditOptions::keep)
+      .def_readwrite("keep_between", &EditOptions::keep_between)
       .def_readwrite("smoothness", &EditOptions::smoothness)
       .def_readwrite("weights", &EditOptions::weights)
       .def_readwrite("exclude", &EditOptions::excluded)

@@ -64,7 +64,10 @@ class EditOptions:
     separation: float = 0.0  #: distance that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
     #: distance that two bodies keep, or a body from itself, instead of that: {("vase", "plant"): 0.01}; also by number
     pair_separations: Mapping[tuple[str | int, str | int], float] = field(default_factory=dict)
-    keep: float = 0.5  #: in (0, 1): fraction of its distance that a pair keeps in a step which starts nearer than that
+    #: in (0, 1): fraction of its distance that a pair of primitives keeps which begins the session nearer than that,
+    #: within a body (all that compression leaves of a mesh finer than the separation) ...
+    keep: float = 0.5
+    keep_between: float = 0.9  #: ... and between two bodies
     smoothness: float = 0.1  #: damping of the response: 0.1 smooth, 0.01 tight
     weights: ArrayLike | None = None  #: (m,) response of each control, 0 pins it; None: all 1
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession

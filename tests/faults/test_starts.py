@@ -37,9 +37,9 @@ def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
     assert {tuple(pair) for pair in np.asarray(raised.value.pairs).tolist()} <= found
 
 
-@pytest.mark.parametrize(("separation", "least_slide"), [(0.2, 0.2), (0.15, 0.2), (0.1, 0.29)])
+@pytest.mark.parametrize(("separation", "least_slide"), [(0.5, 0.0), (0.3, 0.1), (0.2, 0.2), (0.15, 0.2), (0.1, 0.29)])
 def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(separation, least_slide):
-    """Sheets 0.01 from each other, with squares of 0.5: the separation is far larger than the one alone."""
+    """With 0.5 all but no slide is possible: every vertex starts 0.5001 above the sides of the next squares."""
     vertices, triangles = sheets(0.01), np.vstack([FACES, ABOVE])
     editing = session(vertices, triangles, separation=separation)
     goal = vertices.copy()

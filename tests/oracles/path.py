@@ -41,6 +41,7 @@ def find_contacts(
     separation: float = 0.0,
     keep: float = 0.5,
     *,
+    reference: ArrayLike | None = None,
     loose_edges: ArrayLike = (),
     vertex_body: ArrayLike | None = None,
     meets: ArrayLike | None = None,
@@ -50,13 +51,15 @@ def find_contacts(
 
     triangles    (F, 3), loose_edges (L, 2); pairs that share a vertex are left out
     start, end   (N, 3)
-    separation   what is too near, for pairs that start farther away than separation / keep; for others, that fraction
-                 `keep` of their distance at the start
+    separation   what is too near, for pairs that are as far apart at the reference; for others, that fraction `keep`
+                 of their distance there; for pairs that start nearer, their distance at the start
+    reference    (N, 3), the start if not given
     vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
     recut_faces  vertices of faces that come in several cuts; pairs within one of them are left out
     """
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
     centre = (first.min(axis=0) + first.max(axis=0)) / 2 if len(first) else 0
+    before = (first if reference is None else np.asarray(reference, np.float64)) - centre
     first, last = first - centre, last - centre
     extent = max(np.abs(first).max(initial=0), np.abs(last).max(initial=0))
     guard = GUARD * extent
@@ -68,7 +71,7 @@ def find_contacts(
         kept = pairs[allowed[body[pairs[:, 0]], body[pairs[:, 3]]]]
         for face in recut_faces:
             kept = kept[~np.isin(kept, list(face)).all(axis=1)]
-        time = first_contacts(kind, first[kept], last[kept], separation, keep, guard)
+        time = first_contacts(kind, first[kept], last[kept], before[kept], separation, keep, guard)
         met = np.isfinite(time)
         kinds += [kind] * int(met.sum())
         vertices.append(kept[met])
@@ -83,14 +86,22 @@ def unique_edges(triangles: ArrayLike, loose_edges: ArrayLike = ()) -> Integers:
     return edges[edges[:, 0] != edges[:, 1]]
 
 
-def first_contacts(kind: str, start: Floats, end: Floats, separation: float, keep: float, guard: float) -> Floats:
+def first_contacts(
+    kind: str, start: Floats, end: Floats, reference: Floats, separation: float, keep: float, guard: float
+) -> Floats:
     """Return for pairs (M, 4, 3) the beginning of the first interval not proven free, inf where there is none."""
     time = np.full(len(start), np.inf)
     for begin in range(0, len(start), ROWS):
         part = slice(begin, begin + ROWS)
         first, last = _outline(kind, start[part]), _outline(kind, end[part])
-        time[part] = _march(first, last, guard + np.minimum(separation, keep * _distances(first)))
+        kept = kept_distances(_distances(_outline(kind, reference[part])), separation, keep)
+        time[part] = _march(first, last, guard + np.minimum(kept, _distances(first)))
     return time
+
+
+def kept_distances(distances: Floats, separation: float, keep: float) -> Floats:
+    """Return what pairs of these distances at the reference keep."""
+    return np.where(distances >= (1 - 2.0**-24) * separation, separation, keep * distances)
 
 
 def _pairs_in_reach(

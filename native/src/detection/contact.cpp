@@ -22,7 +22,7 @@ Vector3 contact_direction(const RelativeMotion<double>& motion, const Approach<d
 }  // namespace
 
 Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>& approach, double start_distance) {
-  Contact contact{approach.time, approach.witness.weights, contact_direction(motion, approach), start_distance};
+  Contact contact{approach.time, approach.witness.weights, contact_direction(motion, approach), start_distance, {}};
   Vector3 relative = Vector3::Zero();
   for (std::size_t k = 1; k < 4; ++k) relative += contact.weights[k] * motion.step[k];
   const double approach_speed = -contact.normal.dot(relative);
@@ -35,6 +35,12 @@ Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>&
   else if (approach_speed < 0)
     contact.normal.setZero();
   return contact;
+}
+
+Keeping keeping_of(EventKind kind, const PairMotion& motion, const Proximity& proximity, double start_distance) {
+  if (!motion.reference || *motion.reference == motion.start) return proximity.keeping(start_distance);
+  const PairMotion at_reference{*motion.reference, *motion.reference};
+  return proximity.keeping(witness(kind, RelativeMotion<double>(kind, at_reference).start).distance);
 }
 
 }  // namespace stiv

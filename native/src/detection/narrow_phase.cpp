@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/detection/narrow_phase.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "detection/contact.hpp"
@@ -54,13 +55,8 @@ bool starts_within(EventKind kind, const PairMotion& motion, const RelativeMotio
   return witness(kind, finer.start).distance <= DoubleDouble(separation) + 4 * finer.rounding;
 }
 
-}  // namespace
-
-std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) {
-  const RelativeMotion<double> relative(kind, motion);
-  if (relative.rests()) return std::nullopt;
-  const Witness at_start = witness(kind, relative.start);
-  const double threshold = proximity.threshold(at_start.distance);
+std::optional<Contact> contact_within(double threshold, const RelativeMotion<double>& relative,
+                                      const PairMotion& motion, const Witness& at_start, double latest) {
   double time = 0;
   if (at_start.distance <= threshold + 4 * relative.rounding) {
     time = parting_time(relative, at_start.distance, threshold);
@@ -71,6 +67,25 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
   if (approach) approach = refined(relative, motion, threshold, *approach);
   if (!approach || approach->time > latest) return std::nullopt;
   return contact_of(relative, *approach, at_start.distance);
+}
+
+}  // namespace
+
+std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) {
+  const RelativeMotion<double> relative(kind, motion);
+  if (relative.rests()) return std::nullopt;
+  const Witness at_start = witness(kind, relative.start);
+  const double largest = std::min(proximity.separation, at_start.distance);  // whatever the pair keeps
+  std::optional<Contact> contact;
+  if (proximity.is_apart(at_start.distance)) {
+    contact = contact_within(largest, relative, motion, at_start, latest);
+    if (!contact) return std::nullopt;  // the distance at the reference is asked only where it matters
+  }
+  const Keeping keeping = keeping_of(kind, motion, proximity, at_start.distance);
+  const double threshold = std::min(keeping.threshold, at_start.distance);
+  if (!contact || threshold < largest) contact = contact_within(threshold, relative, motion, at_start, latest);
+  if (contact) contact->keeping = keeping;
+  return contact;
 }
 
 double time_of_impact(EventKind kind, const PairMotion& motion, double separation) {

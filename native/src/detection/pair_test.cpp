@@ -17,6 +17,10 @@ PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
     motion.start[k] = step.start.row(v[k]);
     motion.end[k] = step.end.row(v[k]);
   }
+  const Positions* reference = step.proximity.reference;
+  if (reference == nullptr) return motion;
+  motion.reference.emplace();
+  for (std::size_t k = 0; k < 4; ++k) (*motion.reference)[k] = reference->row(v[k]);
   return motion;
 }
 
@@ -59,8 +63,7 @@ std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate,
   const Proximity proximity = step_.proximity.between(surface_.body_of(v[0]), surface_.body_of(v[3]));
   const std::optional<Contact> contact = contact_of(kind, motion_of(step_, v), proximity, latest);
   if (!contact) return std::nullopt;
-  return Event{
-      kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, proximity.separation};
+  return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->keeping};
 }
 
 }  // namespace stiv

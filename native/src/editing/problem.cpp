@@ -64,6 +64,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
   const Positions q = deformation_->surface(controls);
   surface_->check_positions(q);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
+  reference_ = centred(q);
   const MovingExtent extent = moving_extent(*surface_, *deformation_, q);
   diagonal_ = extent.diagonal;
   const double least = least_separation(extent, controls, options_.storage, rotation_rows_);
@@ -76,12 +77,14 @@ void Problem::set_proximity(const MovingExtent& extent, double least) {
   const std::vector<BodyPairSeparation>& pairs = options_.pair_separations;
   const bool touching = options_.volumes == VolumeKind::published && options_.separation == 0 && pairs.empty();
   options_.separation = touching ? least : separation_in_force(options_.separation, extent, least);
-  proximity_ = {options_.separation, options_.keep};
+  proximity_ = {options_.separation, options_.keep, nullptr, &reference_, options_.keep_between};
   if (!pairs.empty()) {
     body_separations_ = body_separations(*surface_, pairs, options_.separation, extent, least);
-    proximity_ = {body_separations_->largest(), options_.keep, &*body_separations_};
+    proximity_.separation = body_separations_->largest();
+    proximity_.by_bodies = &*body_separations_;
   }
-  proximity_of_rounds_ = touching ? Proximity{0, options_.keep} : proximity_;
+  proximity_of_rounds_ = proximity_;
+  if (touching) proximity_of_rounds_.separation = 0;
 }
 
 void Problem::check_controls(const Controls& controls, const char* what) const {

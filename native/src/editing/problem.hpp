@@ -103,6 +103,7 @@ class Problem {
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
   std::optional<BodySeparations> body_separations_;
+  Positions reference_;  ///< the surface at the start of the session, centred
   Proximity proximity_, proximity_of_rounds_;
   std::optional<RoundProgress> unfinished_rounds_;
 };

@@ -2,8 +2,8 @@
 #include "stiv/volumes/stiv.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "stiv/detection/proximity.hpp"
 #include "volumes/gathering.hpp"
 
 namespace stiv {
@@ -15,10 +15,23 @@ namespace {
 /// its neighbours and V could vanish while events remain. (mathematics.md, Eq. 2)
 constexpr double least_violation = 1e-3;
 
+/// What the response may push a pair beyond its threshold is a part of what it went below it, but no less than a part
+/// of the region's size, nor than what detection and rounding leave open. A separation that is small beside the mesh is
+/// passed by half of it; one that is large beside mesh and motion throws nothing back. (mathematics.md, "Separation")
+constexpr double ease_of_depth = 0.1, ease_of_size = 0.02, ease_of_threshold = 2e-3;
+
+/// The distance that the response aims for: that at the start, up to twice the threshold, if it is more.
+double target_distance(const Event& event, double at_end, double area) {
+  const auto& [threshold, most] = event.keeping;
+  const double ease =
+      std::max({ease_of_depth * (threshold - at_end), ease_of_size * std::sqrt(area), ease_of_threshold * threshold});
+  return std::max(std::min(event.start_distance, 2 * threshold), threshold + std::min(ease, most));
+}
+
 /// A_i (n . sum_k w_k q1_k - target), Eq. 2.
 double region_volume(const Event& event, const Positions& end, double area) {
-  const double target = Proximity::target(event.separation, event.start_distance);
-  const double approach = event.normal.dot(weighted_sum(event, end)) - target;
+  const double at_end = event.normal.dot(weighted_sum(event, end)), target = target_distance(event, at_end, area);
+  const double approach = at_end - target;
   return area * std::min(approach, -least_violation * target);
 }
 

@@ -71,6 +71,30 @@ TEST_CASE("narrow phase: a head-on vertex meets the face when the gap is used up
   CHECK(contact->weights == std::array<double, 4>{1, -0.5, -0.25, -0.25});
 }
 
+TEST_CASE("narrow phase: what a pair keeps is told by its distance at the reference") {
+  PairMotion motion;
+  motion.start = {Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+  motion.end = motion.start;
+  motion.end[0][2] = 0;
+  const auto from = [&](double start, double reference) {
+    motion.start[0][2] = start;
+    motion.reference = motion.start;
+    (*motion.reference)[0][2] = reference;
+    return first_contact(EventKind::vertex_face, motion, {0.4, 0.5});
+  };
+  CHECK(from(1, 0.8)->time == doctest::Approx(0.6).epsilon(1e-3));  // it keeps 0.4
+  CHECK(from(1, 0.8)->keeping.threshold == 0.4);
+  CHECK(from(1, 0.2)->time == doctest::Approx(0.9).epsilon(1e-3));  // half of 0.2, though it starts farther away
+  CHECK(from(1, 0.2)->keeping.threshold == doctest::Approx(0.1));
+  CHECK(from(0.15, 0.2)->time == doctest::Approx(1 / 3.0).epsilon(1e-2));
+  CHECK(from(0.1, 0.2)->time == 0);   // as near as it may
+  CHECK(from(0.05, 0.2)->time == 0);  // nearer: it comes no nearer
+  motion.end[0][2] = 0.1;
+  CHECK_FALSE(from(0.05, 0.2));  // but may part
+  motion.end[0][2] = 0.11;
+  CHECK_FALSE(from(1, 0.2));
+}
+
 TEST_CASE("narrow phase: the result does not depend on the scale") {
   MotionMaker make(3);
   for (int trial = 0; trial < 50; ++trial)

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "stiv/detection/proximity.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -23,7 +24,7 @@ struct Event {
   std::array<double, 4> weights{};   ///< VF (1, -a, -b, -c); EE (1-s, s, -(1-u), -u)
   Vector3 normal = Vector3::Zero();  ///< unit; normal . (relative displacement) <= 0; zero when none can be told
   double start_distance = 0;         ///< distance of the two primitives at the start of the step
-  double separation = 0;             ///< h that the two keep
+  Keeping keeping;                   ///< what the two keep
 };
 
 using Events = std::vector<Event>;

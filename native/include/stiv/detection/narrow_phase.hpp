@@ -13,6 +13,7 @@ namespace stiv {
 struct PairMotion {
   std::array<Vector3, 4> start;
   std::array<Vector3, 4> end;
+  std::optional<std::array<Vector3, 4>> reference = std::nullopt;  ///< as Proximity::reference; none: the start
 };
 
 /// What is known of a contact besides who meets.
@@ -21,11 +22,13 @@ struct Contact {
   std::array<double, 4> weights{};
   Vector3 normal = Vector3::Zero();
   double start_distance = 0;
+  Keeping keeping;
 };
 
-/// The first time at which the pair is within `proximity.threshold(d0)`, or nothing if it never is. Conservative: a
-/// contact is never missed and the time is never later than the true one; a report is at most 10 % of the threshold too
-/// wide. Distances are those of the clamped primitives (edges and vertices of a triangle included).
+/// The first time at which the pair is within `proximity.keeping(d).threshold`, d its distance at the reference, or
+/// nothing if it never is. A pair that starts nearer than that comes no nearer. Conservative: a contact is never missed
+/// and the time is never later than the true one; a report is at most 10 % of the threshold too wide. Distances are
+/// those of the clamped primitives (edges and vertices of a triangle included).
 ///
 /// A pair that touches at the start is a contact at 0 unless a plane shows that it parts or slides. A pair that moves
 /// as a whole (no displacement relative to its first vertex) is never a contact.

@@ -26,34 +26,40 @@ class BodySeparations {
   std::vector<double> values_;  // (bodies, bodies)
 };
 
+/// What a pair of primitives keeps.
+struct Keeping {
+  double threshold = 0;  ///< h_eff, the distance that it may not come within
+  double ease = 0;       ///< how far beyond that it may be pushed, so that what rounding takes is no new contact
+};
+
 /// From when on two primitives count as interfering. [DESIGN 3, "Events at a distance"]
 struct Proximity {
   double separation = 0;  ///< h >= 0, in the units of the positions; the largest one where they differ by bodies
-  double keep = 0.5;      ///< in (0, 1): pairs that start nearer than h keep this fraction of their distance instead
+  double keep = 0.5;      ///< in (0, 1): pairs nearer than h at the reference keep this fraction of that distance;
+                          ///< those within a body, where keep_between is set
   const BodySeparations* by_bodies = nullptr;  ///< null: h for all
+  /// Where pairs are measured that may be nearer than h, (N, 3), such as where a session began; it must outlive the
+  /// step. Null: at the start of the step.
+  const Positions* reference = nullptr;
+  double keep_between = 0;  ///< the fraction for pairs of different bodies; 0: the same
 
   /// That of a pair of these bodies.
   Proximity between(Index a, Index b) const {
-    return by_bodies == nullptr ? *this : Proximity{by_bodies->between(a, b), keep};
+    Proximity pair = *this;
+    if (by_bodies != nullptr) pair.separation = by_bodies->between(a, b);
+    if (a != b && keep_between > 0) pair.keep = keep_between;
+    return pair;
   }
 
-  /// h_eff for a pair at distance d0 at the start of the step: h, but keep d0 for those that start nearer than h.
-  double threshold(double start_distance) const {
-    return starts_apart(separation, start_distance) ? separation : keep * start_distance;
+  /// That of a pair at this distance at the reference: h, but if it is nearer there a fraction of that distance. It is
+  /// pushed no farther than it was, so that none jumps.
+  Keeping keeping(double reference_distance) const {
+    if (is_apart(reference_distance)) return {separation, separation / 2};
+    return {keep * reference_distance, (1 - keep) * reference_distance};
   }
 
-  /// The distance that the response aims for. Of pairs that start nearer than h it is their own, so that none jumps;
-  /// of others more than h, which would be met again at once by what rounding takes from it.
-  static double target(double separation, double start_distance) {
-    if (!starts_apart(separation, start_distance)) return start_distance;
-    return std::clamp(start_distance, 1.5 * separation, 2 * separation);
-  }
-
- private:
   /// What has come as near as h keeps it, even where rounding has taken a little.
-  static bool starts_apart(double separation, double start_distance) {
-    return start_distance >= (1 - 0x1p-24) * separation;
-  }
+  bool is_apart(double distance) const { return distance >= (1 - 0x1p-24) * separation; }
 };
 
 }  // namespace stiv

@@ -27,7 +27,9 @@ struct BodyPairSeparation {
 struct EditOptions {
   double separation = 0;  ///< h that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
   std::vector<BodyPairSeparation> pair_separations;  ///< of bodies, instead of h
-  double keep = 0.5;        ///< fraction of its distance that a pair keeps which starts nearer than h
+  /// Fraction of its distance that a pair of primitives keeps which begins the session nearer than h: within a body,
+  /// where it is also what compression leaves of a mesh finer than h, and between bodies.
+  double keep = 0.5, keep_between = 0.9;
   double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
   Eigen::VectorXd weights;  ///< (m) response of each control, 0 pins; empty: all 1
   /// Pairs of triangles that may intersect, at the start and later: their number that does never grows from one
