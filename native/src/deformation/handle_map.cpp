@@ -51,6 +51,35 @@ SymmetricMatrix drive_of(const HandleDefinition& definition, const HandlePartiti
   return matrix_of(entries, partition.free.size(), definition.handles.size());
 }
 
+/// Rows of a matrix that have an entry, ascending.
+std::vector<Index> rows_in_use(const SymmetricMatrix& matrix) {
+  std::vector<unsigned char> used(static_cast<std::size_t>(matrix.rows()), 0);
+  for (Index column = 0; column < matrix.outerSize(); ++column)
+    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry)
+      used[static_cast<std::size_t>(entry.row())] = 1;
+  std::vector<Index> rows;
+  for (Index row = 0; row < matrix.rows(); ++row)
+    if (used[static_cast<std::size_t>(row)] != 0) rows.push_back(row);
+  return rows;
+}
+
+SymmetricMatrix selected_rows(const SymmetricMatrix& matrix, const std::vector<Index>& rows) {
+  Triplets entries;
+  for (Index column = 0; column < matrix.outerSize(); ++column)
+    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry)
+      if (const auto found = std::lower_bound(rows.begin(), rows.end(), entry.row());
+          found != rows.end() && *found == entry.row())
+        entries.emplace_back(static_cast<Index>(found - rows.begin()), column, entry.value());
+  return matrix_of(entries, rows.size(), static_cast<std::size_t>(matrix.cols()));
+}
+
+/// The first `count` of the columns of an inverse that `rows` names from `first` on; zero beyond.
+ColumnBlock unit_columns(const std::vector<Index>& rows, Index first, Index count, Index size) {
+  ColumnBlock unit = ColumnBlock::Zero(size, ColumnBlock::ColsAtCompileTime);
+  for (Index k = 0; k < count; ++k) unit(rows[static_cast<std::size_t>(first + k)], k) = 1;
+  return unit;
+}
+
 }  // namespace
 
 HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, const SymmetricMatrix& stiffness,
@@ -61,7 +90,13 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
       hard_(definition.pull.size() == 0),
       drive_(drive_of(definition, partition_, stiffness)),
       factor_(std::make_unique<SparseFactor>(free_stiffness(definition, partition_, stiffness), "handles")) {
-  if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) keep_in_full();
+  if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) {
+    keep_in_full();
+    return;
+  }
+  const std::vector<Index> driven = rows_in_use(drive_);
+  if (static_cast<double>(driven.size()) * static_cast<double>(factor_->size()) <= limits_.entries)
+    keep_answers(driven);
 }
 
 /// M d by a solve.
@@ -97,6 +132,33 @@ void HandleMap::keep_in_full() {
   }
 }
 
+/// Few rows are driven where handles lie side by side: those along the border of the patch. M'g = D' K^-1 g asks for
+/// these rows alone, so with their part of K^-1 kept, a contact costs a few products.
+void HandleMap::keep_answers(const std::vector<Index>& driven) {
+  constexpr Index width = ColumnBlock::ColsAtCompileTime;
+  const auto count = static_cast<Index>(driven.size());
+  answers_.resize(factor_->size(), count);
+  for (Index first = 0; first < count; first += width) {
+    const Index some = std::min(width, count - first);
+    answers_.middleCols(first, some) =
+        factor_->solve(unit_columns(driven, first, some, factor_->size())).leftCols(some);
+  }
+  drive_of_answers_ = selected_rows(drive_, driven);
+}
+
+/// M'g from the part of K^-1 that is kept.
+Controls HandleMap::pulled_by_answers(const SparseField& g) const {
+  Positions driven = Positions::Zero(drive_of_answers_.rows(), 3), held = Positions::Zero(control_count(), 3);
+  for (std::size_t k = 0; k < g.index.size(); ++k) {
+    const auto vertex = static_cast<std::size_t>(g.index[k]);
+    if (const Index place = partition_.place[vertex]; place >= 0)
+      driven += answers_.row(place).transpose() * g.value[k].transpose();
+    else if (const Index control = partition_.control[vertex]; control >= 0)
+      held.row(control) += g.value[k];
+  }
+  return drive_of_answers_.transpose() * driven + held;
+}
+
 /// A product reads M once, in order; a solve reads L twice, and jumps: four times as dear an entry.
 bool HandleMap::product_is_cheaper() const {
   return is_full() && static_cast<double>(full_.size()) < 4.0 * factor_->entries();
@@ -118,6 +180,8 @@ SparseField HandleMap::pull_back(const SparseField& g) const {
   Controls sum = Controls::Zero(control_count(), 3);
   if (is_full()) {
     for (std::size_t k = 0; k < g.index.size(); ++k) sum += full_.row(g.index[k]).transpose() * g.value[k].transpose();
+  } else if (answers_.size() > 0) {
+    sum = pulled_by_answers(g);
   } else {
     Positions dense = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) dense.row(g.index[k]) = g.value[k];

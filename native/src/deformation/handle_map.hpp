@@ -11,14 +11,15 @@ namespace stiv {
 
 /// From where on a handle map, M (n, m), is only approximated or not kept.
 struct HandleMapLimits {
-  double entries = 256e6 / sizeof(double);  ///< of M, if it is kept in full
+  double entries = 256e6 / sizeof(double);  ///< of M, or of the part of K^-1 that M'g needs, if it is kept
   double products = 3e10;                   ///< multiplications for the whole of M'M: a few seconds
   Index probes = 128;                       ///< of M'M, if it is not made; a multiple of 16
 };
 
 /// How the vertices of a mesh follow its handles, u = M d: the displacements u, (n, 3), that minimise
 /// u'Ku + sum pull_k |u_h(k) - d_k|^2 for displacements d, (m, 3), of the handles, with the fixed vertices held. M is
-/// the same for x, y and z. Small ones are kept in full; for larger ones every product is a solve.
+/// the same for x, y and z. Small ones are kept in full; of larger ones the part of K^-1 that M'g reads is kept if that
+/// is smaller, and every other product is a solve.
 class HandleMap {
  public:
   /// @param stiffness K, (n, n), positive semi-definite, and definite once a vertex of each part is held
@@ -29,6 +30,7 @@ class HandleMap {
   Index control_count() const { return static_cast<Index>(handles_.size()); }
   Index vertex_count() const { return static_cast<Index>(partition_.place.size()); }
   const HandlePartition& partition() const { return partition_; }
+  bool keeps_answers() const { return answers_.size() > 0; }  ///< is M'g a few products although M is not kept?
 
   Positions follow(const Controls& d) const;          ///< M d
   SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
@@ -48,6 +50,8 @@ class HandleMap {
   template <class Block>
   Block pulled(const Block& g) const;
   void keep_in_full();
+  void keep_answers(const std::vector<Index>& driven);
+  Controls pulled_by_answers(const SparseField& g) const;
   ColumnBlock gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const;
   Eigen::MatrixXd gram(const WeightMatrix* surface_gram) const;
   bool product_is_cheaper() const;
@@ -60,6 +64,9 @@ class HandleMap {
   SymmetricMatrix drive_;  ///< (free, m): what a handle's displacement adds to the right side
   std::unique_ptr<const SparseFactor> factor_;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full_;  ///< M, or nothing
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
+      answers_;                       ///< (free, driven): columns of K^-1, or nothing
+  SymmetricMatrix drive_of_answers_;  ///< (driven, m): the rows of `drive_` that have entries
 };
 
 }  // namespace stiv

@@ -47,6 +47,27 @@ TEST_CASE("handle map: kept in full or solved for, it is the same") {
   }
 }
 
+TEST_CASE("handle map: of many handles side by side the part of the inverse at their border is enough") {
+  constexpr Index side = 17;
+  for (const bool hard : {false, true}) {
+    HandleDefinition definition = sheet_with_handles(side, hard, EdgeWeights::uniform);
+    definition.handles.clear();
+    for (Index i = 3; i < side - 3; ++i)
+      for (Index j = 3; j < side - 3; ++j) definition.handles.push_back(i * side + j);
+    const auto m = static_cast<Index>(definition.handles.size());
+    if (!hard) definition.pull = Eigen::VectorXd::LinSpaced(m, 0.2, 3);
+    const HandleMap solved = map_of(definition, {0, 0, 32});
+    const double entries = static_cast<double>(m) * solved.vertex_count();
+    const HandleMap kept = map_of(definition, {entries - 1, 0, 32});
+    CHECK(kept.keeps_answers());
+    CHECK_FALSE(solved.keeps_answers());
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      const SparseField g = random_field(kept.vertex_count(), 3, seed);
+      CHECK((dense(kept.pull_back(g), m) - dense(solved.pull_back(g), m)).norm() < 1e-10);
+    }
+  }
+}
+
 TEST_CASE("handle map: the answer to a load is the least of its energy") {
   const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
   const Surface mesh = checked_mesh(definition);
