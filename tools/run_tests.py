@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 2400  # seconds for one command
-WINDOW_SEQUENCES = 25  # of random events; `make test-window` plays more
+WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 PRINTING = threading.Lock()
 

@@ -93,9 +93,14 @@ def decide(guard: Guard, seen: Seen) -> tuple[Guard, Action]:
         return guard, Action.WRITE  # it came from the stack: accepted once, unless the guard was off then
     if seen.sculpting:
         return guard, Action.WRITE
-    if seen.step is not None and seen.step != guard.step:
+    if seen.step is not None and (seen.step != guard.step or _is_after_history(guard)):
         return guard, Action.REPLACE
     return _wait_for_quiet(guard, seen)
+
+
+def _is_after_history(guard: Guard) -> bool:
+    """A step that is not the one gone back to is new: the redo panel's may lie where the one before has been freed."""
+    return guard.history and guard.restored is not None
 
 
 def _wait_for_quiet(guard: Guard, seen: Seen) -> tuple[Guard, Action]:

@@ -42,6 +42,13 @@ def test_what_has_no_state_to_go_on_from_is_tested_and_not_written(guard: Guard,
     assert action(guard, seen) is Action.ACCEPT
 
 
+def test_a_step_that_lies_where_the_last_one_was_is_new_after_history_went_elsewhere() -> None:
+    """The redo panel takes the tool's step back and makes another, which may get the same address."""
+    other = (2, "0x3", "start")
+    assert action(WATCHING.went_through_history(other), replace(MOVED, step=BEFORE)) is Action.REPLACE
+    assert action(WATCHING.went_through_history(None), replace(MOVED, step=BEFORE)) is Action.WAIT
+
+
 def test_what_undo_restored_is_written_only_if_it_fails() -> None:
     guard = WATCHING.went_through_history(AFTER)
     assert action(guard, MOVED) is Action.WRITE

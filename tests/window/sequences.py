@@ -45,6 +45,8 @@ class Sequence:
 
     def play(self) -> Steps:
         """Begin, disturb, end, look."""
+        self.window.key("ESC")  # closes a message of the sequence before, which would swallow keys
+        yield from self.window.settle(2)
         build, active, mode = self.scene
         yield from prepared_quickly(self.window, build, active, mode)
         before = self.state()
