@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What deformations by handles cost on one thread: setting up, a surface, a constraint, the metric.
 
-A wavy sheet of 40,000 vertices under Laplacian editing with few, 500 and 3,000 handles, and one of 6,400 as rigid as
-possible. `python -m benchmarks.handle_solves [--json FILE]`
+A wavy sheet of 40,000 vertices under Laplacian editing with few, 500 and 3,000 handles, soft and hard, and one of 6,400
+as rigid as possible. `python -m benchmarks.handle_solves [--json FILE]`
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import time
 from collections.abc import Callable
@@ -78,6 +79,7 @@ def main() -> None:
         ("laplacian", stiv.laplacian, 199, 50),
         ("laplacian", stiv.laplacian, 199, 500),
         ("laplacian", stiv.laplacian, 199, 3000),
+        ("hard", functools.partial(stiv.laplacian, pull=None), 199, 3000),
         ("arap", stiv.arap, 79, 200),
     ):
         r = measure(name, make, cells, handles)
