@@ -127,7 +127,8 @@ std::optional<Events> Problem::find_events_among_kept(const Positions& from, con
                                                       Execution& execution) {
   if (round_detector_) return std::nullopt;
   const ScopedTimer timer(execution.timings.detection);
-  std::optional<Events> events = detector_.find_among_kept(centred(from), centred(to), proximity(), execution);
+  std::optional<Events> events =
+      detector_.find_among_kept(centred(from), centred(to), proximity_of_rounds(), execution);
   if (events) excluded_.remove_from(*events);
   return events;
 }
