@@ -52,7 +52,7 @@ test-python: build/venv/stiv ## Run the Python tests that need no Blender
 test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blender on every Blender module
 	build/venv/bin/python tools/run_tests.py blender
 
-test-window: $(WHEEL) ## Drive the installed zip in a real window, longer than `make test` does; WINDOW_RELEASE=sid: in Blender 5.2
+test-window: $(WHEEL) ## Drive the installed zip in a real window (needs root and debootstrap); WINDOW_RELEASE=sid: in Blender 5.2
 	build/venv/bin/python tests/window/run.py --release $(WINDOW_RELEASE) --sequences $(WINDOW_SEQUENCES)
 
 lint: build/venv/lint ## Check format, style and types
