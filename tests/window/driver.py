@@ -15,6 +15,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 TICK = 0.05  # seconds between two steps of a scenario: Blender handles events and draws in between
+UNDO_STEPS = 256  # the most that Blender keeps: scenarios count their steps, which a full history would hide
 DRAW_LIMIT = 120.0  # seconds for the first picture; software rendering compiles its shaders first
 
 
@@ -34,6 +35,7 @@ class Driver:
         from sequences import SEQUENCES
         from simulation import Window
 
+        bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         usual = SCENARIOS | GRAMMAR | GUARD | GUARD_EDIT_MODE | GUARD_SWITCH | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES)[name] for name in names} or usual
