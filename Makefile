@@ -35,7 +35,7 @@ demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/de
 	build/venv-blender/bin/python blend_fixtures/demo.py --output build/demo
 
 test: build/stiv_tests build/stiv_tests_asan build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
-	build/venv/bin/python tools/run_tests.py native sanitizers threads python blender lint
+	build/venv/bin/python tools/run_tests.py native sanitizers threads window python blender lint
 
 test-native: build/stiv_tests ## Run the core's own tests
 	build/venv/bin/python tools/run_tests.py native

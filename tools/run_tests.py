@@ -24,21 +24,18 @@ BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 2400  # seconds for one command
 WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
+WINDOW_LIMIT = 1200  # seconds for all scenarios in the window
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 PRINTING = threading.Lock()
 
 
 @dataclass(frozen=True)
 class Job:
-    """One run of tests. Those that use every processor themselves, or measure what a user feels, run alone.
-
-    `last`: alone, and after all others.
-    """
+    """One run of tests. Those that use every processor themselves run alone."""
 
     title: str
     run: Callable[[], Counts]
     alone: bool = False
-    last: bool = False
 
 
 @dataclass(frozen=True)
@@ -96,7 +93,8 @@ def window(title: str) -> Counts:
     """The add-on in a real window; skipped with the reason where no folder for it can be set up."""
     report = REPORTS / "window.xml"
     report.unlink(missing_ok=True)
-    command = [sys.executable, "tests/window/run.py", "--report", report, "--sequences", str(WINDOW_SEQUENCES)]
+    options = ["--report", report, "--sequences", str(WINDOW_SEQUENCES), "--limit", str(WINDOW_LIMIT)]
+    command = [sys.executable, "tests/window/run.py", *options]
     return junit_counts.from_pytest(report, run(title, command))
 
 
@@ -117,7 +115,7 @@ def jobs(name: str) -> Iterator[Job]:
     elif name == "lint":
         yield Job(name, lambda: lint(name))
     elif name == "window":
-        yield Job(name, lambda: window(name), last=True)
+        yield Job(name, lambda: window(name))
     else:
         raise SystemExit(f"run_tests.py: unknown part {name!r}")
 
@@ -130,11 +128,11 @@ def timed(job: Job) -> Row:
 
 
 def run_all(todo: list[Job]) -> list[Row]:
-    """Run the jobs: those that need the machine one by one, then the others side by side, then the last."""
+    """Run the jobs: those that need the machine one by one, then the others side by side."""
     rows = [timed(job) for job in todo if job.alone]
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        rows += pool.map(timed, [job for job in todo if not job.alone and not job.last])
-    return rows + [timed(job) for job in todo if job.last]
+        rows += pool.map(timed, [job for job in todo if not job.alone])
+    return rows
 
 
 def print_row(row: Row) -> None:
