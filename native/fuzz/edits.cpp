@@ -12,15 +12,10 @@
 #include "stiv/error.hpp"
 
 using namespace stiv;
+using fuzz::Corners;
+using fuzz::corners;
 
 namespace {
-
-using Corners = std::array<Index, 3>;
-
-Corners corners(const Surface& surface, Index face) {
-  const auto row = surface.triangles().row(face);
-  return {row[0], row[1], row[2]};
-}
 
 /// May the two triangles interfere at all? As the surface says: bodies that do not meet are not tested.
 bool tested(const Surface& surface, const Corners& a, const Corners& b) {

@@ -7,15 +7,10 @@
 #include "stiv/acceptance/intersections.hpp"
 
 using namespace stiv;
+using fuzz::Corners;
+using fuzz::corners;
 
 namespace {
-
-using Corners = std::array<Index, 3>;
-
-Corners corners(const Surface& surface, Index face) {
-  const auto row = surface.triangles().row(face);
-  return {row[0], row[1], row[2]};
-}
 
 bool meet(const Corners& a, const Corners& b, const Positions& q) {
   const bool answer = triangles_intersect(a, b, q);

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "input.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv::fuzz {
+
+using Corners = std::array<Index, 3>;
+
+/// The vertices of a triangle.
+inline Corners corners(const Surface& surface, Index face) {
+  const auto row = surface.triangles().row(face);
+  return {row[0], row[1], row[2]};
+}
 
 /// A few vertices and triangles, corners repeated or shared at random, and a few loose edges.
 inline std::shared_ptr<const Surface> small_surface(Input& input) {
