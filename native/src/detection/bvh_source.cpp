@@ -109,7 +109,7 @@ class BvhSource final : public CandidateSource {
     for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
       Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
-      pairs.near.resize(std::max(pairs.near.size(), pairs.tasks.size()));
+      pairs.near.resize(pairs.tasks.size());
     }
     compared_ = near_ = 0;
     const Index faces = chunk_count(EventKind::vertex_face);
@@ -136,6 +136,8 @@ class BvhSource final : public CandidateSource {
       near_ += static_cast<std::int64_t>(near.size() - before);
       return few_enough();
     });
+    // A long session brings every task its largest step once: what that took is not kept for good.
+    if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
   }
 
   /// Calls `take(some)` with the pairs of a task, some at a time, until it returns false.
