@@ -4,13 +4,17 @@
     python tests/long/soak.py [--drags 10000] [--moves 2] [--seed 1]
 
 One session for each stage of the dressing, alive all along. Blocks of random drags alternate with one block that is
-always the same, from the same start: its results must be the same to the last bit, and the processor time that it
-takes tells whether edits become slower. Ends with 1 if something intersects, if a repeated block differs, if the
-memory in use grew by 1 % or more after the first tenth, or if the repeated block became slower by 10 % or more. Needs
-/proc.
+always the same, from the same start: its results must be the same to the last bit, the processor time that it takes
+tells whether edits become slower, and the bytes that are allocated after it, in the same state each time, tell
+whether something is kept that nobody needs. What the process has of the machine's memory can only be that or more: it
+is told after the first pass over all stages, after the first tenth, and at the end.
+
+Ends with 1 if something intersects, if a repeated block differs, if either memory grew by 1 % or more after the first
+tenth, or if the repeated block became slower by 10 % or more. Needs /proc and a C library with mallinfo2 (glibc 2.33).
 """
 
 import argparse
+import ctypes
 import hashlib
 import os
 import sys
@@ -42,13 +46,31 @@ class Scene:
 
 
 @dataclass
+class Memory:
+    """Bytes after so many drags: of the process in memory, and allocated."""
+
+    drags: int
+    resident: int
+    allocated: int
+
+
+class AllocatorState(ctypes.Structure):
+    """What mallinfo2 gives of the main thread's allocations, in the order of malloc.h; the sessions use one thread."""
+
+    _fields_ = (
+        *((name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks")),
+        *((name, ctypes.c_size_t) for name in ("hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")),
+    )
+
+
+@dataclass
 class Account:
     """What was seen."""
 
     drags: int = 0
     intersections: int = 0
     statuses: dict[str, int] = field(default_factory=dict)
-    memory: list[tuple[int, int]] = field(default_factory=list)  # drags so far, bytes in use
+    memory: list[Memory] = field(default_factory=list)  # after each repeated block
     repeated_seconds: list[float] = field(default_factory=list)
     repeated_results: set[str] = field(default_factory=set)
 
@@ -105,29 +127,43 @@ def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> t
     return time.process_time() - begin, ends.hexdigest()
 
 
-def memory_in_use() -> int:
-    """Bytes of this process that are in memory."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+def memory_after(drags: int) -> Memory:
+    """What is in use now."""
+    resident = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+    mallinfo2 = ctypes.CDLL(None).mallinfo2
+    mallinfo2.restype = AllocatorState
+    state = mallinfo2()
+    return Memory(drags, resident, state.uordblks + state.hblkhd)
 
 
 def run(drags: int, seed: int, moves: int) -> Account:
     """Blocks until there were so many drags."""
     account, all_scenes = Account(), scenes()
     while account.drags < drags:
+        block(all_scenes, seed, moves, account)
+        seed += 1
         seconds, ends = block(all_scenes, 0, moves, account)
         account.repeated_seconds.append(seconds)
         account.repeated_results.add(ends)
-        block(all_scenes, seed, moves, account)
-        seed += 1
-        account.memory.append((account.drags, memory_in_use()))
-        print(f"{account.drags} drags, {account.memory[-1][1] / 1e6:.1f} MB, {seconds:.2f} s", flush=True)
+        account.memory.append(memory_after(account.drags))
+        print(f"{told(account.memory[-1])}, {seconds:.2f} s", flush=True)
     return account
 
 
+def told(memory: Memory) -> str:
+    """A line of a report."""
+    return f"{memory.drags} drags: {memory.resident / 1e6:.2f} MB resident, {memory.allocated / 1e6:.2f} MB allocated"
+
+
 def growth_of_memory(account: Account) -> float:
-    """From what was in use after the first tenth to what is at the end."""
-    settled = next(used for drags, used in account.memory if 10 * drags >= account.drags)
-    return account.memory[-1][1] / settled - 1
+    """From what was in use after the first tenth to what is at the end, of the kind of memory that grew more."""
+    settled, end = account.memory[settled_by(account)], account.memory[-1]
+    return max(end.resident / settled.resident, end.allocated / settled.allocated) - 1
+
+
+def settled_by(account: Account) -> int:
+    """The number of the measurement after the first tenth."""
+    return next(number for number, memory in enumerate(account.memory) if 10 * memory.drags >= account.drags)
 
 
 def drift_of_time(account: Account) -> float:
@@ -147,6 +183,7 @@ def main() -> int:
     growth, drift = growth_of_memory(account), drift_of_time(account)
     counts = ", ".join(f"{count} {status}" for status, count in sorted(account.statuses.items()))
     print(f"{account.drags} drags of {chosen.moves} moves ({counts}), {account.intersections} intersections")
+    print(told(account.memory[0]), told(account.memory[settled_by(account)]), told(account.memory[-1]), sep="\n")
     print(f"memory {100 * growth:+.2f} %, time {100 * drift:+.1f} %, {len(account.repeated_results)} ends of one block")
     same = len(account.repeated_results) == 1
     return int(account.intersections > 0 or not same or growth >= MOST_GROWTH or drift >= MOST_DRIFT)
