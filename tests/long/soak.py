@@ -102,7 +102,19 @@ def random_goal(chance: np.random.Generator, scene: Scene) -> np.ndarray:
     if len(goal) == 2:
         return goal + np.array([shift, chance.normal(scale=0.05, size=3)])
     away = np.linalg.norm(goal - goal[chance.integers(len(goal))], axis=1)
-    return goal + np.exp(-((away / (chance.uniform(0.05, 0.5) * scene.diagonal)) ** 2))[:, None] * shift
+    falloff = chance.choice([all_follow, only_near_follow])
+    return goal + falloff(away / (chance.uniform(0.05, 0.5) * scene.diagonal))[:, None] * shift
+
+
+def all_follow(away: np.ndarray) -> np.ndarray:
+    """Share of a motion at a distance, in radii: everything moves, if ever so little."""
+    return np.exp(-(away**2))
+
+
+def only_near_follow(away: np.ndarray) -> np.ndarray:
+    """Share of a motion at a distance, in radii: as proportional editing has it, nothing beyond the radius."""
+    near = np.maximum(1 - away, 0)
+    return near * near * (3 - 2 * near)
 
 
 def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account) -> None:
