@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Presses Esc at random moments of drags of 75,592 faces in Blender, and tells how long each took to come back.
+
+    python tests/long/cancelling_in_blender.py [--times 200] [--seed 1]
+
+A ball's vertices are dragged in Edit Mode through a wall as the add-on does it, with its limit to the time of each
+solve, but without a window: the mouse moves for a second and rests for half of one. Esc is heard when the solve that
+runs, and its writing and testing, are done; then everything is restored. The delay is from the key to the end of that.
+Ends with 1 if the scene is not as it was, to the last bit, or if a drag took more than 100 ms of processor time to come
+back: other work on the machine adds to wall times. Needs Blender as a Python module, and the add-on as `stiv_addon`.
+"""
+
+import argparse
+import hashlib
+import os
+import sys
+import threading
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS.parent), str(TESTS / "faults"), str(TESTS / "blender")]
+
+import bpy  # noqa: E402
+import building  # noqa: E402
+import numpy as np  # noqa: E402
+from ball_above_wall import ball_above_wall  # noqa: E402
+from stiv_addon.modal.drag import Drag, Progress  # noqa: E402
+from stiv_addon.modal.events import Event  # noqa: E402
+from stiv_addon.modal.pointer import Pointer  # noqa: E402
+from stiv_addon.modal.request import Request  # noqa: E402
+from stiv_addon.modal.state import State  # noqa: E402
+from stiv_addon.settings import DRAG_BUDGET  # noqa: E402
+
+from stiv.blender import EditSettings, begin_nearby  # noqa: E402
+
+SHIFT = np.array([0.02, 0.01, -0.45])
+MOVES, RESTS = 1.0, 0.5  # seconds
+TICK = 1.0 / 60.0  # the add-on's timer
+MOST = 100.0  # milliseconds
+
+
+def make_scene() -> None:
+    """Ball and wall as two objects; the ball in Edit Mode with all its vertices selected."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    surface, positions, ball = ball_above_wall()
+    first = ball[0]
+    faces = np.asarray(surface.triangles)
+    building.add("Wall", building.mesh("Wall", positions[:first], faces[faces[:, 0] < first]))
+    ball = building.add("Ball", building.mesh("Ball", positions[first:], faces[faces[:, 0] >= first] - first))
+    building.edit_mode(ball)
+    bpy.ops.mesh.select_all(action="SELECT")
+
+
+def digest() -> str:
+    """Of everything in the scene that an edit might touch."""
+    return hashlib.sha256(repr(building.snapshot()).encode()).hexdigest()
+
+
+def new_drag(threads: int) -> Drag:
+    """A drag as the add-on begins it, toward SHIFT times a thousandth of the pointer's x."""
+    settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
+    return Drag(
+        lambda request: begin_nearby(bpy.context, settings, kind=request.kind),
+        lambda state: state.pointer.effective[0] / 1000,
+        lambda share, state: building.shift(*(share * SHIFT)),
+        State(Pointer.at((0.0, 0.0)), Request("move")),
+    )
+
+
+def clocks() -> tuple[float, float]:
+    """Seconds of wall and processor time."""
+    return time.perf_counter(), time.process_time()
+
+
+def cancelled_after(seconds: float, drag: Drag) -> SimpleNamespace:
+    """Drag until somebody presses Esc: milliseconds, wall and processor, until that was heard, and until it was done."""
+    pressed: list[tuple[float, float]] = []
+    timer = threading.Timer(seconds, lambda: pressed.append(clocks()))
+    begin = time.perf_counter()
+    timer.start()
+    while not pressed:
+        ticked = time.perf_counter()
+        drag.handle(Event("MOUSEMOVE", "NOTHING", (1000 * min(1.0, (ticked - begin) / MOVES), 0.0)))
+        drag.tick()
+        time.sleep(max(0.0, TICK - (time.perf_counter() - ticked)) if not pressed else 0.0)
+    heard = clocks()
+    drag.handle(Event("ESC"))
+    done = clocks()
+    if drag.progress is not Progress.CANCELLED or drag.error is not None:
+        raise SystemExit(f"the drag was not cancelled: {drag.error}")
+    since = [[1000 * (b - a) for a, b in zip(pressed[0], each, strict=True)] for each in (heard, done)]
+    return SimpleNamespace(heard=since[0], done=since[1])
+
+
+def main() -> int:
+    """Drags, presses Esc, compares, prints the delays."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--times", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=1)
+    chosen = parser.parse_args()
+    chance = np.random.default_rng(chosen.seed)
+    make_scene()
+    before, changed, delays = digest(), 0, []
+    for _ in range(chosen.times):
+        delays.append(cancelled_after(chance.uniform(0, MOVES + RESTS), new_drag(chosen.threads)))
+        changed += digest() != before
+    for name, column in (("wall", 0), ("processor", 1)):
+        heard = np.percentile([each.heard[column] for each in delays], [50, 95, 100])
+        done = np.percentile([each.done[column] for each in delays], [50, 95, 100])
+        print(
+            f"{name} time: heard after {heard[0]:.0f} ms (median), {heard[1]:.0f} (95 %), {heard[2]:.0f} (worst);",
+            end=" ",
+        )
+        print(f"restored after {done[0]:.0f} ms (median), {done[1]:.0f} (95 %), {done[2]:.0f} (worst)")
+    late = sum(each.done[1] > MOST for each in delays)
+    print(f"{len(delays)} drags cancelled, {changed} scenes changed, {late} later than {MOST:.0f} ms of processor time")
+    return int(changed > 0 or late > 0)
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    os._exit(code)  # Blender may hang when Python ends
