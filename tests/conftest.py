@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tests share: the add-on, which of them need Blender, and an end that no Blender module can spoil."""
+"""What all tests share: the add-on, which of them need Blender, no deadlines, and an end that Blender cannot spoil."""
 
 import importlib.util
 import os
@@ -8,6 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("untimed", deadline=None)  # what else runs on a machine fails no test
+settings.load_profile("untimed")
 
 ADDON = Path(__file__).resolve().parents[1] / "addon"
 
