@@ -26,14 +26,14 @@ import bpy  # noqa: E402
 import building  # noqa: E402
 import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
+
+from stiv.blender import EditSettings, begin_nearby  # noqa: E402
 from stiv_addon.modal.drag import Drag, Progress  # noqa: E402
 from stiv_addon.modal.events import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.request import Request  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
 from stiv_addon.settings import DRAG_BUDGET  # noqa: E402
-
-from stiv.blender import EditSettings, begin_nearby  # noqa: E402
 
 SHIFT = np.array([0.02, 0.01, -0.45])
 MOVES, RESTS = 1.0, 0.5  # seconds
@@ -75,7 +75,7 @@ def clocks() -> tuple[float, float]:
 
 
 def cancelled_after(seconds: float, drag: Drag) -> SimpleNamespace:
-    """Drag until somebody presses Esc: milliseconds, wall and processor, until that was heard, and until it was done."""
+    """Drag until somebody presses Esc: milliseconds, wall and processor, until it was heard, and until all was done."""
     pressed: list[tuple[float, float]] = []
     timer = threading.Timer(seconds, lambda: pressed.append(clocks()))
     begin = time.perf_counter()
