@@ -21,6 +21,9 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// lattice point, or for a rigid placement two rows, centre and rotation vector.
 using Controls = Positions;
 
+/// Controls, or some rows that follow each other out of more of them, looked at where they are.
+using ControlsView = Eigen::Ref<const Controls>;
+
 /// Corner indices of triangles, (F, 3).
 using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3, Eigen::RowMajor>;
 

@@ -19,7 +19,7 @@ class StoredMesh final : public HandleDeformation {
   Index control_count() const override { return mesh_->control_count(); }
   Index vertex_count() const override { return mesh_->vertex_count(); }
   Positions surface(const Controls& p) const override { return as_stored(mesh_->surface(p), storage_); }
-  SparseField pull_back(const Controls& p, const SparseField& g) const override { return mesh_->pull_back(p, g); }
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return mesh_->pull_back(p, g); }
   Positions push_forward(const Controls& p, const Controls& d) const override { return mesh_->push_forward(p, d); }
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return mesh_->metric(options); }
   std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const override {

@@ -51,7 +51,7 @@ class Arap final : public HandleDeformation {
   }
 
   /// J'g = M'(g + C H^-1 g): the transpose of the below.
-  SparseField pull_back(const Controls& p, const SparseField& g) const override {
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
     const auto at = minimum(p);
     Positions covector = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) = g.value[k];
@@ -92,7 +92,7 @@ class Arap final : public HandleDeformation {
   }
 
   /// Rounds ask for J where they have just asked for the surface, many times: the last minimum is kept.
-  std::shared_ptr<const Minimum> minimum(const Controls& p) const {
+  std::shared_ptr<const Minimum> minimum(const ControlsView& p) const {
     {
       const std::lock_guard lock(mutex_);
       if (last_ && last_->p == p) return last_;
@@ -103,7 +103,7 @@ class Arap final : public HandleDeformation {
     return found;
   }
 
-  Minimum find_minimum(const Controls& p) const {
+  Minimum find_minimum(const ControlsView& p) const {
     const Controls d = p - rest_controls_;
     const Positions start = map_.follow(d);
     Minimum at{p, start, cells_.fit(start)};

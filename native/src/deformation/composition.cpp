@@ -40,8 +40,8 @@ class Chain final : public HandleDeformation {
   Index vertex_count() const override { return outer_->vertex_count(); }
   Positions surface(const Controls& p) const override { return outer_->surface(inner_->surface(p)); }
 
-  SparseField pull_back(const Controls& p, const SparseField& g) const override {
-    return inner_->pull_back(p, outer_->pull_back({}, g));  // the outer Jacobian is the same everywhere
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
+    return inner_->pull_back(p, outer_->pull_back(Controls(), g));  // the outer Jacobian is the same everywhere
   }
 
   Positions push_forward(const Controls& p, const Controls& d) const override {

@@ -86,7 +86,8 @@ void append(SparseField& whole, const SparseField& piece, Index first) {
   whole.value.insert(whole.value.end(), piece.value.begin(), piece.value.end());
 }
 
-Controls rows_of_part(const Controls& p, const std::vector<Index>& starts, std::size_t part) {
+/// No copy: J and the metric are asked for at the same controls once for each of thousands of contacts.
+ControlsView rows_of_part(const ControlsView& p, const std::vector<Index>& starts, std::size_t part) {
   return p.middleRows(starts[part], starts[part + 1] - starts[part]);
 }
 
@@ -95,7 +96,7 @@ class BlockMetric final : public Metric {
   BlockMetric(std::vector<std::unique_ptr<Metric>> blocks, std::vector<Index> starts)
       : blocks_(std::move(blocks)), starts_(std::move(starts)), places_(control_places(starts_)) {}
 
-  SparseField apply_inverse(const Controls& p, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView& p, const SparseField& g) const override {
     const std::vector<SparseField> pieces = split(g, places_, blocks_.size());
     SparseField step;
     for (std::size_t part = 0; part < blocks_.size(); ++part)
@@ -134,7 +135,7 @@ class Concatenation final : public Deformation {
     return q;
   }
 
-  SparseField pull_back(const Controls& p, const SparseField& g) const override {
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
     const std::vector<SparseField> pieces = split(g, vertex_places_, parts_.size());
     SparseField pulled;
     for (std::size_t part = 0; part < parts_.size(); ++part)

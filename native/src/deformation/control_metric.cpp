@@ -13,7 +13,7 @@ class ControlMetric final : public Metric {
  public:
   ControlMetric(Eigen::VectorXd weights, bool local) : weights_(std::move(weights)), local_(local) {}
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     SparseField step;
     for (std::size_t k = 0; k < g.index.size(); ++k) {
       const double weight = weights_[g.index[k]];

@@ -14,7 +14,7 @@ class InverseMetric final : public Metric {
       : active_(std::move(active)),
         inverse_(damped.llt().solve(Eigen::MatrixXd::Identity(damped.rows(), damped.cols()))) {}
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
     ActiveColumns solution = ActiveColumns::Zero(inverse_.rows(), 3);
@@ -32,7 +32,7 @@ class FactoredMetric final : public Metric {
  public:
   FactoredMetric(const Eigen::MatrixXd& damped, ActiveControls active) : active_(std::move(active)), factor_(damped) {}
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
     return extend_from(active_, factor_.solve(dense_columns(active_, right)));

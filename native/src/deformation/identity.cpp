@@ -23,7 +23,7 @@ class Identity final : public Deformation {
     return p;
   }
 
-  SparseField pull_back(const Controls&, const SparseField& g) const override { return g; }
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override { return g; }
 
   Positions push_forward(const Controls&, const Controls& d) const override {
     check_control_rows(d, count_);

@@ -30,7 +30,7 @@ class Laplacian final : public HandleDeformation {
     return q;
   }
 
-  SparseField pull_back(const Controls&, const SparseField& g) const override { return map_.pull_back(g); }
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override { return map_.pull_back(g); }
 
   Positions push_forward(const Controls&, const Controls& d) const override {
     check_control_rows(d, control_count());

@@ -42,7 +42,7 @@ class Linear final : public LinearDeformation {
     return q;
   }
 
-  SparseField pull_back(const Controls&, const SparseField& g) const override {
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override {
     std::vector<Vector3> sum(static_cast<std::size_t>(matrix_.cols()), Vector3::Zero());
     std::vector<Index> touched;
     std::vector<unsigned char> seen(sum.size(), 0);

@@ -52,7 +52,7 @@ class SparseLinearMetric final : public Metric {
       throw InputError("the metric of the controls cannot be factored: weights are too large or too small");
   }
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
     return extend_from(active_, factor_.solve(dense_columns(active_, right)));

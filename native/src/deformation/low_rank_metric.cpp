@@ -79,7 +79,7 @@ class LowRankMetric final : public Metric {
     within_ = (spectrum_.values.array() + damping).inverse();
   }
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
     const ActiveColumns whole = dense_columns(active_, right);

@@ -16,7 +16,7 @@ class PlacementMetric final : public Metric {
   PlacementMetric(double centre_factor, PlacementBlock block, Eigen::Vector2d weights)
       : centre_factor_(centre_factor), block_(std::move(block)), weights_(std::move(weights)) {}
 
-  SparseField apply_inverse(const Controls& p, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView& p, const SparseField& g) const override {
     SparseField step;
     for (std::size_t k = 0; k < g.index.size(); ++k) {
       const Index row = g.index[k];

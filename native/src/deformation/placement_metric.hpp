@@ -9,7 +9,7 @@
 namespace stiv {
 
 /// The 3 x 3 block of J'J + damping that belongs to the second control row, at controls p.
-using PlacementBlock = std::function<Eigen::Matrix3d(const Controls& p)>;
+using PlacementBlock = std::function<Eigen::Matrix3d(const ControlsView& p)>;
 
 /// Metric of a placement with controls (2, 3): centre, and rotation or scale. Vertices are counted from their mean, so
 /// the 6 x 6 matrix J'J falls into two 3 x 3 blocks; that of the centre is n times the unit matrix.

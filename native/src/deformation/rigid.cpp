@@ -36,7 +36,7 @@ class Rigid final : public Deformation {
     return (from_centre_ * rotation_matrix(p.row(1)).transpose()).rowwise() + p.row(0);
   }
 
-  SparseField pull_back(const Controls& p, const SparseField& g) const override {
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
     if (g.index.empty()) return {};
     const Eigen::Matrix3d rotation = rotation_matrix(p.row(1));
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
@@ -58,7 +58,7 @@ class Rigid final : public Deformation {
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
     const Eigen::Matrix3d scatter = from_centre_.transpose() * from_centre_;
     const Eigen::Matrix3d inertia = scatter.trace() * Eigen::Matrix3d::Identity() - scatter;
-    const auto block = [inertia, smoothness = options.smoothness](const Controls& p) {
+    const auto block = [inertia, smoothness = options.smoothness](const ControlsView& p) {
       return rotation_block(inertia, p.row(1), smoothness);
     };
     return make_placement_metric(vertex_count(), block, options);

@@ -23,7 +23,7 @@ class Scaling final : public Deformation {
 
   Positions surface(const Controls& p) const override { return placed(p); }
 
-  SparseField pull_back(const Controls&, const SparseField& g) const override {
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override {
     if (g.index.empty()) return {};
     Vector3 force = Vector3::Zero(), stretch = Vector3::Zero();
     for (std::size_t k = 0; k < g.index.size(); ++k) {

@@ -15,7 +15,7 @@ class DiagonalMetric : public Metric {
  public:
   explicit DiagonalMetric(Eigen::VectorXd weights) : weights_(std::move(weights)) {}
 
-  SparseField apply_inverse(const Controls&, const SparseField& g) const override {
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     SparseField result;
     for (std::size_t k = 0; k < g.index.size(); ++k) {
       if (weights_[g.index[k]] == 0) continue;
@@ -36,7 +36,7 @@ class Copy : public Deformation {
   Index control_count() const override { return count_; }
   Index vertex_count() const override { return count_; }
   Positions surface(const Controls& p) const override { return p; }
-  SparseField pull_back(const Controls&, const SparseField& g) const override { return g; }
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override { return g; }
   Positions push_forward(const Controls&, const Controls& d) const override { return d; }
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
     return std::make_unique<DiagonalMetric>(options.weights);

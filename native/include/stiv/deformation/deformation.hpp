@@ -22,7 +22,7 @@ class Deformation {
   virtual Positions surface(const Controls& p) const = 0;
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.
-  virtual SparseField pull_back(const Controls& p, const SparseField& g) const = 0;
+  virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;
 
   /// J(p) d: the surface's velocity under a motion d of the controls, (m, 3) -> (n, 3). For tests and linearisation.
   virtual Positions push_forward(const Controls& p, const Controls& d) const = 0;

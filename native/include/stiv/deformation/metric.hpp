@@ -28,7 +28,7 @@ class Metric {
   virtual ~Metric() = default;
 
   /// M(p)^-1 g, a covector over controls to a displacement of controls. Rows of pinned controls are absent from it.
-  virtual SparseField apply_inverse(const Controls& p, const SparseField& g) const = 0;
+  virtual SparseField apply_inverse(const ControlsView& p, const SparseField& g) const = 0;
 
   /// Does a step move no other controls than those of the covector, or than those of the same body? Then contacts can
   /// be answered one by one without stiffening the whole.
