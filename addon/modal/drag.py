@@ -150,7 +150,8 @@ class Drag:
         self.transform = wanted
         self.note = refusal
         self._pending = self._may_gain()
-        self._write()
+        if self.result.status != "budget" or len(self.result.path) > 0:  # else what is shown is what is accepted
+            self._write()
 
     def _may_gain(self) -> bool:
         """Is it worth to solve for the same state once more? A solve goes only so far toward a goal that is far off.

@@ -66,4 +66,5 @@ class FakeEdit:
         self.goals.append(float(matrix))
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
-        return SimpleNamespace(status=status, blocking=(), energy=(float(matrix) - self.accepted) ** 2)
+        path = (self.accepted,) if self.furthest > 0 else ()
+        return SimpleNamespace(status=status, blocking=(), energy=(float(matrix) - self.accepted) ** 2, path=path)

@@ -88,6 +88,17 @@ def test_a_used_up_budget_is_continued_at_the_next_tick() -> None:
     assert edit.calls == ["drag", "write", "drag", "write"]
 
 
+def test_a_budget_that_ended_before_anything_was_accepted_writes_nothing() -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    assert edit.calls == ["drag"] and drag.result.status == "budget"
+    edit.furthest = 1.0
+    drag.tick()
+    assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5
+
+
 def test_what_is_left_at_the_confirmation_is_done_in_slices() -> None:
     edit = FakeEdit(statuses=["budget", "budget", "corrected"])
     drag = new_drag(edit)
