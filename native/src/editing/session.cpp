@@ -38,7 +38,9 @@ class EditSession::Implementation {
     problem_.check_controls(goal, "goal");
     Execution execution(problem_.options().threads);
     State state{controls, problem_.surface_at(controls, execution)};
-    if (!problem_.is_empty()) problem_.check_start(state.surface, execution);
+    const bool known = controls.rows() == checked_.rows() && controls == checked_;
+    if (!problem_.is_empty() && !known) problem_.check_start(state.surface, execution);
+    checked_ = controls;
     problem_.unfinished_rounds().reset();
     goal_ = {goal, problem_.surface_at(goal, execution)};
     accepted_ = std::move(state);
@@ -149,7 +151,8 @@ class EditSession::Implementation {
 
   Problem problem_;
   State accepted_;
-  State goal_;  ///< of the last call, as given
+  State goal_;        ///< of the last call, as given
+  Controls checked_;  ///< that were last restored: a drag that is cancelled goes back to them
   bool dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< made when first asked for
 };
