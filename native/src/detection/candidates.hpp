@@ -24,6 +24,7 @@ struct Step {
   const Positions& start;
   const Positions& end;
   Proximity proximity;
+  Vector3 motion = Vector3::Zero();  ///< of the frame that it is seen from, see common_motion
 };
 
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a

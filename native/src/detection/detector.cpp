@@ -8,6 +8,8 @@
 #include <tuple>
 
 #include "detection/candidates.hpp"
+#include "detection/close_pairs.hpp"
+#include "detection/common_motion.hpp"
 #include "detection/pair_test.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
@@ -22,7 +24,7 @@ enum class Extent {
   manageable  ///< all, or none if they are too many
 };
 
-/// Pairs of each kind that a search looked at closely.
+/// Pairs of each kind to be looked at again, see append_close.
 using ClosePairs = std::array<std::vector<Candidate>, 2>;
 constexpr std::size_t most_close_pairs = 1 << 20;
 
@@ -48,24 +50,6 @@ void lower(std::atomic<double>& minimum, double value) {
   double seen = minimum.load(std::memory_order_relaxed);
   while (value < seen && !minimum.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
   }
-}
-
-/// Does no plane across an axis keep the sides so far apart for the whole step that their boxes might be? Broad phases
-/// leave out some of the others, and which ones depends on where boxes were seen from: what is left does not.
-bool near_along_axes(const VertexStep* steps, EventKind kind, const std::array<Index, 4>& v, double separation) {
-  const std::size_t others = kind == EventKind::vertex_face ? 1 : 2;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double least_gap = never, least_gap_behind = never;
-    for (std::size_t i = 0; i < others; ++i)
-      for (std::size_t j = others; j < 4; ++j) {
-        const VertexStep &a = steps[v[i]], &b = steps[v[j]];
-        const double start = a.start[axis] - b.start[axis], end = a.end[axis] - b.end[axis];
-        least_gap = std::min({least_gap, start, end});
-        least_gap_behind = std::min({least_gap_behind, -start, -end});
-      }
-    if (std::max(least_gap, least_gap_behind) > 1.1 * separation) return false;
-  }
-  return true;
 }
 
 bool comes_before(const Event& a, const Event& b) {
@@ -142,16 +126,16 @@ class Detector::Implementation {
  private:
   /// Calls `decide(test, kind)(candidate, result)` for every candidate that needs the narrow phase.
   template <class Decide>
-  std::optional<std::vector<ChunkResult>> search(const Step& step, Extent extent, Execution& execution,
+  std::optional<std::vector<ChunkResult>> search(const Step& given, Extent extent, Execution& execution,
                                                  const Decide& decide) {
-    check_step(step);
+    check_step(given);
     const FloatingPointScope floating_point;
+    const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end, execution)};
     kept_.reset();
     source_->update(step, execution);
     ++execution.counters.detections;
     if (extent == Extent::manageable && !source_->manageable()) return std::nullopt;
     const PairTest test(*surface_, step, narrow_phase_, source_->vertex_steps());
-    const VertexStep* const steps = source_->vertex_steps().data();
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -160,9 +144,8 @@ class Detector::Implementation {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
       const auto decide_pair = decide(test, kind);
       source_->visit(kind, chunk < faces ? chunk : chunk - faces, [&](std::span<Candidate> candidates) {
-        for (const Candidate& candidate : decide_all(test, kind, candidates, decide_pair, result))
-          if (near_along_axes(steps, kind, vertices_of(*surface_, kind, candidate), step.proximity.separation))
-            result.close.push_back(candidate);
+        append_close(*surface_, kind, candidates, step, source_->vertex_steps(), result.close);
+        decide_all(test, kind, candidates, decide_pair, result);
       });
     });
     count(results, execution.counters);
@@ -170,15 +153,14 @@ class Detector::Implementation {
     return results;
   }
 
-  /// Calls `decide` for those that need the narrow phase, and returns them.
+  /// Calls `decide` for those that need the narrow phase.
   template <class Decide>
-  static std::span<Candidate> decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates,
-                                         const Decide& decide, ChunkResult& result) {
+  static void decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates, const Decide& decide,
+                         ChunkResult& result) {
     const std::span<Candidate> left = test.reduce(kind, candidates);
     result.candidates += static_cast<std::int64_t>(candidates.size());
     result.tested += static_cast<std::int64_t>(left.size());
     for (const Candidate& candidate : left) decide(candidate, result);
-    return left;
   }
 
   static constexpr auto all_events = [](const PairTest& test, EventKind kind) {
@@ -198,7 +180,7 @@ class Detector::Implementation {
     return events;
   }
 
-  /// Keeps the pairs looked at closely, of which the first chunks' are of a vertex and a face, unless they are too
+  /// Keeps the close pairs, of which the first chunks' are of a vertex and a face, unless they are too
   /// many.
   void keep(const std::vector<ChunkResult>& results, Index faces) {
     std::size_t sum = 0;

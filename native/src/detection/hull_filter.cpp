@@ -65,17 +65,18 @@ HWY_INLINE Mask separates(Point normal, const PairHulls& hulls, Lanes clearance)
   return hn::Gt(gap<kind>(normal, hulls), hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
 }
 
-/// The bound of rounding is four times that of the plane filter: it covers the frame's motion, and that other steps
-/// have somewhat larger coordinates than this one, so that what is dropped here, the plane filter would drop.
+/// Its bound of rounding is by default eight times that of the plane filter: it covers the frame's motion, and that
+/// other steps have somewhat larger coordinates than this one, so that what is dropped here, the plane filter would
+/// drop.
 template <EventKind kind>
-HWY_INLINE Mask hulls_apart(const PairHulls& hulls, double separation, double slack) {
+HWY_INLINE Mask hulls_apart(const PairHulls& hulls, const NearbySteps& steps) {
   Lanes reach = all(0), magnitude = all(0);
   for (std::size_t k = 0; k < 4; ++k) {
     reach = hn::Max(reach, largest_component(hulls.end[k] - hulls.start[k]));
     magnitude = hn::Max(magnitude, hn::Max(sum_norm(hulls.end[k]), sum_norm(hulls.start[k])));
   }
-  const Lanes clearance =
-      hn::Add(hn::Add(all(separation), hn::Mul(all(2 * slack), reach)), hn::Mul(all(0x1p-43), magnitude));
+  const Lanes clearance = hn::Add(hn::Add(all(steps.separation), hn::Mul(all(2 * steps.slack), reach)),
+                                  hn::Mul(all(steps.rounding), magnitude));
   const Point* const x = hulls.start + 1;
   const Mask by_normal = separates<kind>(normal_of<kind>(x), hulls, clearance);
   if (hn::AllTrue(Doubles(), by_normal)) return by_normal;
@@ -94,7 +95,7 @@ void find_hulls_apart_of_kind(const PairBlock& pairs, const VertexStep* vertices
   const Point motion{all(m[0]), all(m[1]), all(m[2])};
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < pairs.count; first += hn::Lanes(d)) {
-    const Mask mask = hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps.separation, steps.slack);
+    const Mask mask = hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps);
     hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) result[first + lane] = flags[lane] != 0;
   }

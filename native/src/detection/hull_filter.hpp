@@ -12,6 +12,7 @@ struct NearbySteps {
   Vector3 motion = Vector3::Zero();
   double separation = 0;
   double slack = 0;
+  double rounding = 0x1p-43;  ///< parts of the coordinates that are allowed for
 };
 
 /// 1 for each pair that a direction of the start (the normal, that between the middles, or across an edge) shows apart

@@ -37,24 +37,17 @@ float round_down(double value) {
 /// Where some vertices go.
 struct SweptVertices::Survey {
   Vector3 low = Vector3::Constant(never), high = -low;
-  Vector3 sum = Vector3::Zero();  ///< of the displacements
-  double sum_of_squares = 0;
   bool finite = true;
 
   void include(const Survey& other) {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
-    sum += other.sum;
-    sum_of_squares += other.sum_of_squares;
     finite = finite && other.finite;
   }
   void include(const double* from, const double* to) {
     for (Index k = 0; k < 3; ++k) {
       low[k] = std::min({low[k], from[k], to[k]});
       high[k] = std::max({high[k], from[k], to[k]});
-      const double displacement = to[k] - from[k];
-      sum[k] += displacement;
-      sum_of_squares += displacement * displacement;
       finite = finite && std::isfinite(from[k]) && std::isfinite(to[k]);
     }
   }
@@ -103,12 +96,11 @@ SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& e
   return whole;
 }
 
-/// The frame there is, if it serves. A frame that moves with the mean displacement makes the boxes of a common motion
-/// small, but is only chosen where it makes a great difference: in a frame at rest, what rests keeps its boxes.
+/// The frame there is, if it serves; with the motion of this step.
 SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& survey) const {
-  constexpr double serves = 4;
   Frame frame = frame_;
   frame.separation = step.proximity.separation;
+  frame.motion = step.motion;
   if (changed_.empty()) return frame;
   const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(changed_.size());
   const bool reaches =
@@ -120,18 +112,9 @@ SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& su
     high = high.cwiseMax(frame.centre + Vector3::Constant(frame.radius));
   }
   const double radius = (high / 2 - low / 2).maxCoeff();
-  if (!reaches || frame.radius > 2 * serves * radius) {
-    frame.centre = low / 2 + high / 2;
-    frame.radius = 2 * radius;
-  }
-  const auto squares_seen_from = [&](const Vector3& motion) {
-    return survey.sum_of_squares - 2 * motion.dot(survey.sum) + count * motion.squaredNorm();
-  };
-  const Vector3 mean = survey.sum / count;
-  const double least = serves * std::max(0.0, squares_seen_from(mean));
-  if (squares_seen_from(frame.motion) <= least) return frame;
-  frame.motion.setZero();
-  if (!(squares_seen_from(frame.motion) <= least) && mean.allFinite()) frame.motion = mean;
+  if (reaches && frame.radius <= 8 * radius) return frame;
+  frame.centre = low / 2 + high / 2;
+  frame.radius = 2 * radius;
   return frame;
 }
 
@@ -157,28 +140,18 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   return box;
 }
 
-/// Is the start that of the vertex's box, and the end, less a common motion, within the slack of the segment?
-bool SweptVertices::near_segment(const Step& step, const Vector3& common, Index vertex) const {
+/// Is the start that of the vertex's box, and the end, less the motion of the frame, within the slack of the segment?
+bool SweptVertices::near_segment(const Step& step, Index vertex) const {
   if (!same_bits(step.start, start_, vertex, 1)) return false;
   const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
-  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - common;
+  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - frame_.motion;
   const double length2 = motion.squaredNorm();
   const bool may_move = boxes_[at(vertex)].active() || start == end;
   if (!(length2 > 0) || !may_move) return false;
   const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
   const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
-  const double size = start.lpNorm<1>() + end.lpNorm<1>() + common.lpNorm<1>() + frame_.motion.lpNorm<1>();
+  const double size = start.lpNorm<1>() + end.lpNorm<1>() + frame_.motion.lpNorm<1>();
   return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
-}
-
-bool SweptVertices::all_near(const Step& step, const std::vector<Index>& vertices, const Vector3& common,
-                             const Execution& execution) const {
-  std::atomic<bool> near{true};
-  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
-    for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
-      if (!near_segment(step, common, vertices[at(k)])) near.store(false, std::memory_order_relaxed);
-  });
-  return near;
 }
 
 void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
@@ -192,17 +165,15 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
   });
 }
 
-/// Do the boxes hold the step? Not one with a number that is not finite. A motion common to all vertices makes no
-/// difference to any pair; in a frame that moves, there may be more or less of it.
+/// Do the boxes hold the step, as seen from a frame with its motion? Not one with a number that is not finite.
 bool SweptVertices::holds(const Step& step, const Execution& execution) const {
-  if (step.proximity.separation != frame_.separation) return false;
-  if (all_near(step, changed_, frame_.motion, execution)) return true;
-  if (frame_.motion.isZero(0)) return false;
-  Vector3 change = Vector3::Zero();
-  for (const Index vertex : changed_) change += Vector3(step.end.row(vertex)) - Vector3(end_.row(vertex));
-  std::vector<Index> all(boxes_.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all_near(step, all, frame_.motion + change / static_cast<double>(all.size()), execution);
+  if (step.proximity.separation != frame_.separation || step.motion != frame_.motion) return false;
+  std::atomic<bool> near{true};
+  execution.for_chunks(static_cast<Index>(changed_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
+      if (!near_segment(step, changed_[at(k)])) near.store(false, std::memory_order_relaxed);
+  });
+  return near;
 }
 
 /// What neither differs from its box now nor did so in the last step is there already. Holds if cancelled half way.

@@ -29,7 +29,8 @@ class SweptVertices {
   Change update(const Step& step, const Execution& execution, bool may_stay = true);
 
   /// Boxes grow by this part of the displacement of their vertex in the frame, its largest component.
-  static constexpr double slack = 1.0 / 32;
+  /// Little, for what responses change of a step is far more than boxes can be padded by.
+  static constexpr double slack = 1.0 / 1024;
   /// The displacement of the frame that boxes are seen from.
   const Vector3& motion() const { return frame_.motion; }
 
@@ -51,7 +52,7 @@ class SweptVertices {
   /// Where boxes are seen from. It stays the same from step to step where it can, so that boxes stay the same.
   struct Frame {
     Vector3 centre = Vector3::Zero();
-    Vector3 motion = Vector3::Zero();  ///< displacement in a step
+    Vector3 motion = Vector3::Zero();  ///< displacement in a step: that of the step
     double radius = -1;                ///< no coordinate is farther from the centre, at the start or at the end
     double separation = 0;
 
@@ -65,9 +66,7 @@ class SweptVertices {
   void take_steps(const Step& step, const Execution& execution);
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
-  bool near_segment(const Step& step, const Vector3& common, Index vertex) const;
-  bool all_near(const Step& step, const std::vector<Index>& vertices, const Vector3& common,
-                const Execution& execution) const;
+  bool near_segment(const Step& step, Index vertex) const;
   bool holds(const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 

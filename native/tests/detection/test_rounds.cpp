@@ -35,7 +35,7 @@ std::vector<Positions> ends_of_rounds(const MovingScene& scene, std::mt19937& ra
   for (Index vertex = 0; vertex < each.rows(); ++vertex)
     each.row(vertex) = scene.start.row(vertex) + unit(random) * motion.row(vertex);
   ends.push_back(each);
-  for (const double aside : {0.001, 0.02, 0.5})
+  for (const double aside : {0.0002, 0.001, 0.5})
     ends.push_back(scene.end + aside * Positions(motion.rowwise().reverse()));
   ends.push_back(scene.end.rowwise() + Eigen::RowVector3d(0.3, -0.2, 0.1));
   Positions part = scene.end;

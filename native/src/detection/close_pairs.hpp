@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "detection/candidates.hpp"
+
+namespace stiv {
+
+/// Appends the candidates that this step, or one that leads each vertex only a part of its way, may bring within the
+/// separation: where responses push back, those are the pairs that meet next. Ways are those less the step's
+/// common motion. Of what any broad phase hands out for the step, always the same.
+void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates, const Step& step,
+                  const VertexSteps& vertices, std::vector<Candidate>& close);
+
+}  // namespace stiv

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "detection/candidates.hpp"
+
+namespace stiv {
+
+/// The mean displacement of a step if what is left of the displacements without it is much smaller, else zero: seen
+/// from a frame that moves along, a common motion sweeps little; seen from one at rest, what rests stays what it was.
+/// Depends on the step alone, to the last bit. Not finite where the step is not.
+Vector3 common_motion(const Positions& start, const Positions& end, const Execution& execution);
+
+}  // namespace stiv
