@@ -8,6 +8,7 @@
 
 #include "deformation/checks.hpp"
 #include "deformation/linear_metric.hpp"
+#include "deformation/weighted_sums.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -15,17 +16,6 @@ namespace stiv {
 namespace {
 
 using Entry = WeightMatrix::InnerIterator;
-
-/// M x, row by row in the stored order, so that the result does not depend on how a library blocks its products.
-Positions multiply(const WeightMatrix& matrix, const Controls& x) {
-  Positions product(matrix.rows(), 3);
-  for (Index row = 0; row < matrix.rows(); ++row) {
-    Vector3 sum = Vector3::Zero();
-    for (Entry entry(matrix, row); entry; ++entry) sum += entry.value() * x.row(entry.col()).transpose();
-    product.row(row) = sum;
-  }
-  return product;
-}
 
 class Linear final : public LinearDeformation {
  public:
@@ -37,7 +27,7 @@ class Linear final : public LinearDeformation {
 
   Positions surface(const Controls& p) const override {
     check_control_rows(p, control_count());
-    Positions q = multiply(matrix_, p);
+    Positions q = weighted_sums(matrix_, p);
     if (offset_.rows() > 0) q += offset_;
     return q;
   }
@@ -62,7 +52,7 @@ class Linear final : public LinearDeformation {
 
   Positions push_forward(const Controls&, const Controls& d) const override {
     check_control_rows(d, control_count());
-    return multiply(matrix_, d);
+    return weighted_sums(matrix_, d);
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {

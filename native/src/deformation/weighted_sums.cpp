@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/weighted_sums.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "deformation/weighted_sums.cpp"
+#include "vector/foreach_target.hpp"  // first: it includes this file again
+
+#include "vector/dispatch.hpp"
+
+#ifndef STIV_WEIGHTED_SUMS_TYPES
+#define STIV_WEIGHTED_SUMS_TYPES
+
+namespace stiv {
+
+/// What the product reads and writes. Rows of `controls` are x, y, z, 0.
+struct WeightedSums {
+  const Index* starts;  ///< of the entries of each row
+  const Index* columns;
+  const double* weights;
+  const double* controls;
+  double* sums;  ///< (rows, 3)
+};
+
+}  // namespace stiv
+
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace stiv::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Coordinates = hn::CappedTag<double, 4>;  // all of a point, or two of them at a time
+using Some = hn::Vec<Coordinates>;
+
+HWY_INLINE Some with_entry(const WeightedSums& s, Index entry, std::size_t axis, Some sum) {
+  const Coordinates d;
+  const double* const control = s.controls + 4 * static_cast<std::ptrdiff_t>(s.columns[entry]) + axis;
+  return hn::Add(sum, hn::Mul(hn::Set(d, s.weights[entry]), hn::LoadU(d, control)));
+}
+
+/// Four sums side by side: an addition need not wait for the one before.
+HWY_INLINE void add_row(const WeightedSums& s, Index row, std::size_t axis) {
+  const Coordinates d;
+  const Index end = s.starts[row + 1];
+  Index entry = s.starts[row];
+  Some a = hn::Zero(d), b = a, c = a, e = a;
+  for (; entry + 4 <= end; entry += 4) {
+    a = with_entry(s, entry, axis, a);
+    b = with_entry(s, entry + 1, axis, b);
+    c = with_entry(s, entry + 2, axis, c);
+    e = with_entry(s, entry + 3, axis, e);
+  }
+  for (; entry < end; ++entry) a = with_entry(s, entry, axis, a);
+  HWY_ALIGN double values[4];
+  hn::Store(hn::Add(hn::Add(a, b), hn::Add(c, e)), d, values);
+  double* const sums = s.sums + 3 * static_cast<std::ptrdiff_t>(row);
+  for (std::size_t k = axis; k < 3 && k < axis + hn::Lanes(d); ++k) sums[k] = values[k - axis];
+}
+
+void add_rows(const WeightedSums& s, Index count) {
+  for (Index row = 0; row < count; ++row)
+    for (std::size_t axis = 0; axis < 3; axis += hn::Lanes(Coordinates())) add_row(s, row, axis);
+}
+
+}  // namespace stiv::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stiv {
+
+Positions weighted_sums(const WeightMatrix& matrix, const Controls& x) {
+  using Padded = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+  Padded controls = Padded::Zero(x.rows(), 4);
+  controls.leftCols<3>() = x;
+  Positions sums(matrix.rows(), 3);
+  const WeightedSums s{matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), controls.data(), sums.data()};
+  STIV_FOR_VECTOR_TARGET(add_rows)(s, static_cast<Index>(matrix.rows()));
+  return sums;
+}
+
+}  // namespace stiv
+#endif

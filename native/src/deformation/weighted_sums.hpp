@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stiv/deformation/linear.hpp"
+
+namespace stiv {
+
+/// M x, (rows, 3), in an order of additions that depends on the rows alone, none fused: the result is the same to the
+/// last bit whatever the width of the vectors.
+Positions weighted_sums(const WeightMatrix& matrix, const Controls& x);
+
+}  // namespace stiv
