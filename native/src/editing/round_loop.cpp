@@ -65,7 +65,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (!accumulate) kept = ConstraintSet();
     kept.add(std::move(rows));
     const Controls& from = accumulate ? goal : outcome.candidate.controls;
-    p = inequalities ? kept.project(from, execution) : kept.project_as_equations(from);
+    p = inequalities ? kept.project(from, execution) : kept.project_as_equations(from, execution);
     execution.note_gain();  // kept with the problem, see RoundProgress
   }
 }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/response/lcp.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace stiv {
 
 namespace {
+
+constexpr int sweeps_before_solve = 8;  // of the active rows as equations; then twice as many, and so on
 
 Eigen::VectorXd first_guess(const Eigen::VectorXd& start, Eigen::Index size) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
@@ -30,6 +34,26 @@ double sweep(const Eigen::MatrixXd& B, Eigen::VectorXd& x, Eigen::VectorXd& slac
   return largest_change;
 }
 
+/// Goes toward the solution as equations of the rows that carry a multiplier, until one of these is zero: sweeps alone
+/// take hundreds where rows nearly depend on each other. The energy that sweeps lower falls too, so both together
+/// converge. Does nothing where the rows do depend on each other. [Silcowitz, Niebe, Erleben 2010]
+void solve_active(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  constexpr double least_pivot = 1e-10;  // in parts of the largest
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index row = 0; row < x.size(); ++row)
+    if (x[row] > 0) active.push_back(row);
+  if (active.empty()) return;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(B(active, active));
+  const Eigen::VectorXd pivots = factor.vectorD();
+  if (!(pivots.minCoeff() > least_pivot * pivots.maxCoeff())) return;
+  const Eigen::VectorXd from = x(active), to = factor.solve(-b(active));
+  if (!to.allFinite()) return;
+  double part = 1;
+  for (Eigen::Index k = 0; k < to.size(); ++k)
+    if (to[k] < 0) part = std::min(part, from[k] / (from[k] - to[k]));
+  x(active) = (from + part * (to - from)).cwiseMax(0);
+}
+
 }  // namespace
 
 Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, const Eigen::VectorXd& start,
@@ -38,10 +62,15 @@ Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, co
   for (Eigen::Index row = 0; row < x.size(); ++row)
     if (!(B(row, row) > 0)) x[row] = 0;
   Eigen::VectorXd slack = B * x + b;
-  for (int k = 0; k < options.max_sweeps; ++k) {
+  int next_solve = sweeps_before_solve;
+  for (int k = 1; k <= options.max_sweeps; ++k) {
     if (options.execution != nullptr) options.execution->check();
     const double change = sweep(B, x, slack);
     if (change <= options.tolerance * (x.size() > 0 ? x.maxCoeff() : 0)) break;
+    if (k < next_solve) continue;
+    next_solve *= 2;
+    solve_active(B, b, x);
+    slack = B * x + b;
   }
   return x;
 }

@@ -2,6 +2,7 @@
 #include "stiv/response/resolver.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "response/row_projection.hpp"
 #include "response/sparse_fields.hpp"
@@ -14,6 +15,10 @@ namespace {
 /// In the metric J'J a row's squared length is at most that of the volume's gradient. A smaller part than this is what
 /// rounding leaves where free controls move all corners of the contacts alike, or move none.
 constexpr double least_squared_length = 1e-24;
+
+constexpr Index rows_per_chunk = 8;  // of the Gram matrix
+
+std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 
 }  // namespace
 
@@ -41,12 +46,16 @@ void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
   for (ControlConstraint& constraint : constraints) constraints_.push_back(std::move(constraint));
 }
 
-void ConstraintSet::complete_gram() {
-  const auto before = gram_.rows(), after = static_cast<Eigen::Index>(constraints_.size());
-  gram_.conservativeResize(after, after);
-  for (Eigen::Index row = before; row < after; ++row)
-    for (Eigen::Index column = 0; column <= row; ++column)
-      gram_(row, column) = gram_(column, row) = dot(constraints_[row].row, constraints_[column].step);
+void ConstraintSet::complete_gram(const Execution& execution) {
+  const auto before = static_cast<Index>(gram_.rows()), after = static_cast<Index>(constraints_.size());
+  Eigen::MatrixXd gram = std::exchange(gram_, Eigen::MatrixXd());  // made anew if interrupted
+  gram.conservativeResize(after, after);
+  execution.for_chunks(after - before, rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index row = before + begin; row < before + end; ++row)
+      for (Index column = 0; column <= row; ++column)
+        gram(row, column) = gram(column, row) = dot(constraints_[place(row)].row, constraints_[place(column)].step);
+  });
+  gram_ = std::move(gram);
 }
 
 void ConstraintSet::drop_inactive() {
@@ -70,13 +79,13 @@ Controls ConstraintSet::project(const Controls& from, const Execution& execution
   options.execution = &execution;
   if (sweep_cost(constraints_) < constraints_.size() * constraints_.size())
     return project_by_rows(constraints_, from, multipliers_, options);
-  complete_gram();
+  complete_gram(execution);
   multipliers_ = solve_lcp(gram_, excess_at(from), multipliers_, options);
   return moved_by_multipliers(from);
 }
 
-Controls ConstraintSet::project_as_equations(const Controls& from) {
-  complete_gram();
+Controls ConstraintSet::project_as_equations(const Controls& from, const Execution& execution) {
+  complete_gram(execution);
   // Rows that depend on each other are common: the least-squares solution of least length.
   multipliers_ = gram_.completeOrthogonalDecomposition().solve(-excess_at(from));
   return moved_by_multipliers(from);

@@ -146,7 +146,7 @@ TEST_CASE("resolver: constraints as equations are all met, also those that an in
   const DiagonalMetric metric(Eigen::VectorXd::Ones(2));
   ConstraintSet set;
   set.add(control_constraints(stivs, deformation, p, metric, p));
-  const Controls met = set.project_as_equations(p);
+  const Controls met = set.project_as_equations(p, Execution(1));
   CHECK((met.row(0).transpose() - Vector3(1, -0.5, 0)).norm() < 1e-14);
   CHECK(met.row(1).norm() == 0);
   CHECK((resolve(stivs, p, Eigen::VectorXd::Ones(2)).row(0).transpose() - Vector3(1, 0, 0)).norm() < 1e-9);

@@ -46,10 +46,10 @@ class ConstraintSet {
 
   /// The same with all constraints as equations, of which the least multipliers solve as many as can be solved.
   /// [P3.3; Harmon et al. 2008]
-  Controls project_as_equations(const Controls& from);
+  Controls project_as_equations(const Controls& from, const Execution& execution);
 
  private:
-  void complete_gram();
+  void complete_gram(const Execution& execution);
   Eigen::VectorXd excess_at(const Controls& p) const;
   Controls moved_by_multipliers(const Controls& from) const;
 
