@@ -13,7 +13,8 @@ import os
 import sys
 import tempfile
 import time
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
+from glob import glob
 from io import StringIO
 from pathlib import Path
 
@@ -29,11 +30,12 @@ WANTED = 1.7
 
 
 def children(parent: int) -> list[int]:
-    """Processes below one, of all generations."""
+    """Processes below one, of all generations; processes and threads may end while this looks."""
     found = []
-    for task in Path(f"/proc/{parent}/task").iterdir():
-        for child in map(int, (task / "children").read_text().split()):
-            found += [child, *children(child)]
+    for task in glob(f"/proc/{parent}/task/*/children"):
+        with suppress(OSError):
+            for child in map(int, Path(task).read_text().split()):
+                found += [child, *children(child)]
     return found
 
 
@@ -41,8 +43,9 @@ def processor_seconds() -> float:
     """User and system time of all processes below this one that are alive."""
     ticks = 0
     for pid in children(os.getpid()):
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        ticks += int(fields[11]) + int(fields[12])
+        with suppress(OSError):
+            fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+            ticks += int(fields[11]) + int(fields[12])
     return ticks / os.sysconf("SC_CLK_TCK")
 
 
