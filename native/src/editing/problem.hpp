@@ -24,9 +24,16 @@ struct State {
   Positions surface;
 };
 
+/// From where rounds project. [P3.2; mathematics.md, "The loop and its guarantee"]
+enum class Projection {
+  from_goal,       ///< with all constraints kept, from the goal again; after some rounds as below
+  from_last_round  ///< with those of the round alone, from where the last one came to: Algorithm 1
+};
+
 /// Where the rounds of a sub-edit stand, so that one that the time budget ended can be taken up again.
 struct RoundProgress {
   Controls accepted, goal;  ///< of the sub-edit
+  Projection projection = Projection::from_goal;
   ConstraintSet kept;
   Controls p;  ///< next candidate, before it is rounded
   bool accumulate = true;

@@ -16,23 +16,28 @@ namespace {
 constexpr double shortest_part = 0x1p-16;
 
 /// Those that the time budget ended, if they are of the same sub-edit; new ones else.
-RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal) {
-  std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
-  if (!rounds || rounds->accepted != accepted.controls || rounds->goal != goal)
-    rounds = RoundProgress{accepted.controls, goal, {}, goal};
-  return *rounds;
+RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
+  if (!has_begun_rounds(problem, accepted, goal, projection))
+    problem.unfinished_rounds() =
+        RoundProgress{accepted.controls, goal, projection, {}, goal, projection == Projection::from_goal};
+  return *problem.unfinished_rounds();
 }
 
 }  // namespace
 
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, bool at_any_cost,
-                        Execution& execution) {
+bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
+  const std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
+  return rounds && rounds->accepted == accepted.controls && rounds->goal == goal && rounds->projection == projection;
+}
+
+RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
+                        bool at_any_cost, Execution& execution) {
   const EditOptions& options = problem.options();
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
   outcome.at_any_cost = at_any_cost;
-  RoundProgress& progress = rounds_toward(problem, accepted, goal);
-  auto& [from, to, kept, p, accumulate, round] = progress;
+  RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
+  auto& [from, to, kind, kept, p, accumulate, round] = progress;
   bool searched = false;  // all pairs, from this start
   for (;; ++round) {
     execution.check();
@@ -70,15 +75,15 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
   }
 }
 
-RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal, double& part,
-                                     Execution& execution) {
+RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
+                                     Projection projection, double& part, Execution& execution) {
   for (part = std::min(1.0, 2 * part); part >= shortest_part; part /= 2) {
     const Controls aim = interpolate(accepted.controls, goal, part, problem.rotation_rows());
-    RoundOutcome outcome = run_rounds(problem, accepted, aim, false, execution);
+    RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, execution);
     if (!outcome.too_far) return outcome;
   }
-  return run_rounds(problem, accepted, interpolate(accepted.controls, goal, part, problem.rotation_rows()), true,
-                    execution);
+  return run_rounds(problem, accepted, interpolate(accepted.controls, goal, part, problem.rotation_rows()), projection,
+                    true, execution);
 }
 
 }  // namespace stiv

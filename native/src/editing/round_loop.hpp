@@ -22,12 +22,15 @@ struct RoundOutcome {
 /// all pairs only if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs.
 /// Candidates are rounded as they will be stored *before* they are looked at, so that the round without events is
 /// itself the check of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, bool at_any_cost,
-                        Execution& execution);
+RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
+                        bool at_any_cost, Execution& execution);
+
+/// Did a call that the time budget ended begin these rounds?
+bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection);
 
 /// The same toward `part` of the way to the goal: of twice the part given, or of half, a quarter and so on of that, the
 /// farthest that detection can look at in bounded time and memory, so that no motion, however far, exceeds them.
-RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal, double& part,
-                                     Execution& execution);
+RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
+                                     Projection projection, double& part, Execution& execution);
 
 }  // namespace stiv

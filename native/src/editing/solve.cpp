@@ -35,6 +35,32 @@ RoundOutcome straight_way(const Problem& problem, const Aim& aim, bool at_any_co
   return outcome;
 }
 
+/// Does the goal move controls that do not respond? What they hit must give way, which may raise the energy.
+bool moves_pinned_controls(const Problem& problem, const Controls& from, const Controls& to) {
+  const Eigen::VectorXd& weights = problem.options().weights;
+  for (Index k = 0; k < weights.size(); ++k)
+    if (weights[k] == 0 && from.row(k) != to.row(k)) return true;
+  return false;
+}
+
+/// The first answer of an edit. Constraints that are kept were linearised at other candidates, and may together lead
+/// far away, where the surface folds a lot on the way to the goal: one that raises the energy though nothing pinned
+/// pushes is compared with that of Algorithm 1, which keeps none. The better one is taken.
+RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& aim, double& part, Execution& execution) {
+  const auto energy_of = [&](const RoundOutcome& outcome) { return energy(outcome.candidate.surface, aim.surface); };
+  const auto rounds = [&](Projection projection) {
+    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, execution);
+  };
+  if (has_begun_rounds(problem, accepted, aim.controls, Projection::from_last_round))
+    return rounds(Projection::from_last_round);
+  RoundOutcome outcome = rounds(Projection::from_goal);
+  const bool strayed = outcome.clear && part == 1 && energy_of(outcome) > energy(accepted.surface, aim.surface) &&
+                       !moves_pinned_controls(problem, accepted.controls, aim.controls);
+  if (!strayed) return outcome;
+  RoundOutcome other = rounds(Projection::from_last_round);
+  return other.clear && energy_of(other) < energy_of(outcome) ? other : outcome;
+}
+
 }  // namespace
 
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
@@ -42,7 +68,10 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
   double before = energy(accepted.surface, aim.surface), part = 1;
   for (int sub_edit = 0, cuts = 0; sub_edit < most; ++sub_edit) {
     ++execution.counters.sub_edits;
-    RoundOutcome outcome = run_rounds_within_reach(problem, accepted, aim.controls, part, execution);
+    RoundOutcome outcome =
+        sub_edit == 0 && !aim.must_improve
+            ? first_answer(problem, accepted, aim, part, execution)
+            : run_rounds_within_reach(problem, accepted, aim.controls, Projection::from_goal, part, execution);
     // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
     const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
     const auto agreeable = [&](const State& state) {
