@@ -54,7 +54,9 @@ RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& ai
   if (has_begun_rounds(problem, accepted, aim.controls, Projection::from_last_round))
     return rounds(Projection::from_last_round);
   RoundOutcome outcome = rounds(Projection::from_goal);
-  const bool strayed = outcome.clear && part == 1 && energy_of(outcome) > energy(accepted.surface, aim.surface) &&
+  const bool kept = problem.options().accumulated_rounds > 0;
+  const bool strayed = kept && outcome.clear && part == 1 &&
+                       energy_of(outcome) > energy(accepted.surface, aim.surface) &&
                        !moves_pinned_controls(problem, accepted.controls, aim.controls);
   if (!strayed) return outcome;
   RoundOutcome other = rounds(Projection::from_last_round);
