@@ -18,7 +18,7 @@ constexpr int most_pulls_of_drag = 12;
 /// An answer is linearised where the goal's surface met, which may be far from where it ends; solving again from there
 /// lowers E further. While an edit has taken fewer rounds than this, it does so without being asked: unless the goal is
 /// no farther than a pull goes (a mouse move), where all is near, and there is little to gain before the next one.
-constexpr int rounds_of_cheap_edit = 12;
+constexpr int rounds_of_cheap_edit = 24;
 
 double farthest_way(const Positions& from, const Positions& to) { return (to - from).rowwise().norm().maxCoeff(); }
 
