@@ -140,17 +140,18 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   return box;
 }
 
-/// Is the start that of the vertex's box, and the end, less the motion of the frame, within the slack of the segment?
+/// Is the start that of the vertex's box, and the end, each less its step's common motion, within the slack of the
+/// segment?
 bool SweptVertices::near_segment(const Step& step, Index vertex) const {
   if (!same_bits(step.start, start_, vertex, 1)) return false;
   const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
-  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - frame_.motion;
+  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - step.motion;
   const double length2 = motion.squaredNorm();
   const bool may_move = boxes_[at(vertex)].active() || start == end;
   if (!(length2 > 0) || !may_move) return false;
   const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
   const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
-  const double size = start.lpNorm<1>() + end.lpNorm<1>() + frame_.motion.lpNorm<1>();
+  const double size = start.lpNorm<1>() + end.lpNorm<1>() + step.motion.lpNorm<1>() + frame_.motion.lpNorm<1>();
   return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
 }
 
@@ -167,11 +168,13 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
 
 /// Do the boxes hold the step, as seen from a frame with its motion? Not one with a number that is not finite.
 bool SweptVertices::holds(const Step& step, const Execution& execution) const {
-  if (step.proximity.separation != frame_.separation || step.motion != frame_.motion) return false;
+  if (step.proximity.separation != frame_.separation) return false;
+  const bool all = step.motion != frame_.motion;
+  const auto count = all ? surface_.vertex_count() : static_cast<Index>(changed_.size());
   std::atomic<bool> near{true};
-  execution.for_chunks(static_cast<Index>(changed_.size()), chunk_size, [&](Index begin, Index end, Index) {
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
-      if (!near_segment(step, changed_[at(k)])) near.store(false, std::memory_order_relaxed);
+      if (!near_segment(step, all ? k : changed_[at(k)])) near.store(false, std::memory_order_relaxed);
   });
   return near;
 }
