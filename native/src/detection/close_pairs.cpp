@@ -30,13 +30,14 @@ bool near_along_axes(const VertexStep* steps, EventKind kind, const std::array<I
 
 }  // namespace
 
-void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates, const Step& step,
-                  const VertexSteps& vertices, std::vector<Candidate>& close) {
+void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates,
+                  const VertexSteps& vertices, const Vector3& motion, double separation,
+                  std::vector<Candidate>& close) {
   PairBlock block;
   PairFlags apart;
   std::array<Candidate, PairBlock::capacity> some;
   // With less room for rounding than a source has, so that none can have left out what is close.
-  const NearbySteps same_step{step.motion, step.proximity.separation, 0, 0x1p-44};
+  const NearbySteps same_step{motion, separation, 0, 0x1p-44};
   const auto append_some = [&] {
     find_hulls_apart(kind, block, vertices, same_step, apart);
     for (std::size_t k = 0; k < block.count; ++k)
@@ -45,7 +46,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
   };
   for (const Candidate& candidate : candidates) {
     const std::array<Index, 4> v = vertices_of(surface, kind, candidate);
-    if (!near_along_axes(vertices.data(), kind, v, step.proximity.separation)) continue;
+    if (!near_along_axes(vertices.data(), kind, v, separation)) continue;
     some[block.count] = candidate;
     block.add(v);
     if (block.count == PairBlock::capacity) append_some();

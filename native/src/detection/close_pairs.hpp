@@ -8,10 +8,10 @@
 
 namespace stiv {
 
-/// Appends the candidates that this step, or one that leads each vertex only a part of its way, may bring within the
-/// separation: where responses push back, those are the pairs that meet next. Ways are those less the step's
-/// common motion. Of what any broad phase hands out for the step, always the same.
-void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates, const Step& step,
-                  const VertexSteps& vertices, std::vector<Candidate>& close);
+/// Appends the candidates that a step, or one that leads each vertex only a part of its way, may bring within the
+/// separation: where responses push back, those are the pairs that meet next. Ways are those less `motion`, the step's
+/// common one. Of what any broad phase hands out for the step, always the same.
+void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates,
+                  const VertexSteps& vertices, const Vector3& motion, double separation, std::vector<Candidate>& close);
 
 }  // namespace stiv

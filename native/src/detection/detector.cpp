@@ -26,14 +26,18 @@ enum class Extent {
 
 /// Pairs of each kind to be looked at again, see append_close.
 using ClosePairs = std::array<std::vector<Candidate>, 2>;
-constexpr std::size_t most_close_pairs = 1 << 20;
+
+/// What is needed of a search to tell its close pairs.
+struct LastSearch {
+  Vector3 motion;
+  double separation = 0;
+};
 
 std::size_t number(EventKind kind) { return static_cast<std::size_t>(kind); }
 
 /// What one chunk found.
 struct ChunkResult {
   Events events;
-  std::vector<Candidate> close;
   std::int64_t candidates = 0;
   std::int64_t tested = 0;
 };
@@ -88,19 +92,22 @@ class Detector::Implementation {
     check_step(step);
     surface_->check_positions(step.start);
     surface_->check_positions(step.end);
-    if (!kept_) return std::nullopt;
+    if (!last_ || !source_->manageable()) return std::nullopt;
     const FloatingPointScope floating_point;
+    const ClosePairs& kept = close_pairs(execution);
     kept_steps_.update(step.start, step.end, execution);
     const PairTest test(*surface_, step, narrow_phase_, kept_steps_);
     constexpr Index size = 1024;
-    const auto faces = Execution::chunk_count(kept_count(EventKind::vertex_face), size);
-    const auto chunks = faces + Execution::chunk_count(kept_count(EventKind::edge_edge), size);
+    const auto chunks_of = [&](EventKind kind) {
+      return Execution::chunk_count(static_cast<Index>(kept[number(kind)].size()), size);
+    };
+    const Index faces = chunks_of(EventKind::vertex_face), chunks = faces + chunks_of(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
     execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
+      const std::vector<Candidate>& pairs = kept[number(kind)];
       const Index begin = (chunk < faces ? chunk : chunk - faces) * size,
-                  end = std::min(begin + size, kept_count(kind));
-      const std::vector<Candidate>& pairs = (*kept_)[number(kind)];
+                  end = std::min(begin + size, static_cast<Index>(pairs.size()));
       std::vector<Candidate> some(pairs.begin() + begin, pairs.begin() + end);
       decide_all(test, kind, some, all_events(test, kind), results[static_cast<std::size_t>(chunk)]);
     });
@@ -131,6 +138,7 @@ class Detector::Implementation {
     check_step(given);
     const FloatingPointScope floating_point;
     const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end, execution)};
+    last_.reset();
     kept_.reset();
     source_->update(step, execution);
     ++execution.counters.detections;
@@ -143,13 +151,11 @@ class Detector::Implementation {
       ChunkResult& result = results[static_cast<std::size_t>(chunk)];
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
       const auto decide_pair = decide(test, kind);
-      source_->visit(kind, chunk < faces ? chunk : chunk - faces, [&](std::span<Candidate> candidates) {
-        append_close(*surface_, kind, candidates, step, source_->vertex_steps(), result.close);
-        decide_all(test, kind, candidates, decide_pair, result);
-      });
+      source_->visit(kind, chunk < faces ? chunk : chunk - faces,
+                     [&](std::span<Candidate> candidates) { decide_all(test, kind, candidates, decide_pair, result); });
     });
     count(results, execution.counters);
-    keep(results, faces);
+    last_ = LastSearch{step.motion, step.proximity.separation};
     return results;
   }
 
@@ -180,21 +186,27 @@ class Detector::Implementation {
     return events;
   }
 
-  /// Keeps the close pairs, of which the first chunks' are of a vertex and a face, unless they are too
-  /// many.
-  void keep(const std::vector<ChunkResult>& results, Index faces) {
-    std::size_t sum = 0;
-    for (const ChunkResult& result : results) sum += result.close.size();
-    if (sum > most_close_pairs) return;
-    kept_.emplace();
-    for (std::size_t chunk = 0; chunk < results.size(); ++chunk) {
+  /// Gathered from what the source still holds of the last search, when first asked for.
+  const ClosePairs& close_pairs(const Execution& execution) {
+    if (kept_) return *kept_;
+    const Index faces = source_->chunk_count(EventKind::vertex_face);
+    const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
+    std::vector<std::vector<Candidate>> parts(static_cast<std::size_t>(chunks));
+    execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
+      const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
+      std::vector<Candidate>& part = parts[static_cast<std::size_t>(chunk)];
+      source_->visit(kind, chunk < faces ? chunk : chunk - faces, [&](std::span<Candidate> candidates) {
+        append_close(*surface_, kind, candidates, source_->vertex_steps(), last_->motion, last_->separation, part);
+      });
+    });
+    ClosePairs pairs;
+    for (std::size_t chunk = 0; chunk < parts.size(); ++chunk) {
       const bool of_faces = static_cast<Index>(chunk) < faces;
-      std::vector<Candidate>& pairs = (*kept_)[number(of_faces ? EventKind::vertex_face : EventKind::edge_edge)];
-      pairs.insert(pairs.end(), results[chunk].close.begin(), results[chunk].close.end());
+      std::vector<Candidate>& of_kind = pairs[number(of_faces ? EventKind::vertex_face : EventKind::edge_edge)];
+      of_kind.insert(of_kind.end(), parts[chunk].begin(), parts[chunk].end());
     }
+    return kept_.emplace(std::move(pairs));
   }
-
-  Index kept_count(EventKind kind) const { return static_cast<Index>((*kept_)[number(kind)].size()); }
 
   /// What the numbers are is for the source to check.
   void check_step(const Step& step) const {
@@ -213,7 +225,8 @@ class Detector::Implementation {
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
-  std::optional<ClosePairs> kept_;  ///< of the last complete search
+  std::optional<LastSearch> last_;  ///< if it was complete
+  std::optional<ClosePairs> kept_;  ///< of that
   VertexSteps kept_steps_;
 };
 

@@ -47,9 +47,10 @@ class Detector {
   std::optional<Events> find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
                                            Execution& execution);
 
-  /// The events of a step among the few pairs that the last complete search looked at closely, and no others: for
-  /// rounds of an edit whose answers are looked at again anyway. Depends on that step and this one alone. Nothing if
-  /// there was no complete search, or one that looked at very many.
+  /// The events of a step among the few pairs that the step of the last search, or one that leads each vertex a part of
+  /// its way, may bring within the separation, and no others: for rounds of an edit whose answers are looked at again
+  /// anyway. Depends on that step and this one alone. Nothing if there was no complete search before, or if its step
+  /// was not manageable.
   std::optional<Events> find_among_kept(const Positions& start, const Positions& end, Proximity proximity,
                                         Execution& execution);
 
