@@ -96,6 +96,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
+	build/venv-blender/bin/python tests/long/cancelling_in_blender.py --times 200
 	build/venv/bin/python tests/long/soak.py --drags 10000
 	build/venv/bin/python tests/long/cluster_throughput.py
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
