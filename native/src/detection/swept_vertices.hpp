@@ -52,7 +52,7 @@ class SweptVertices {
   /// Where boxes are seen from. It stays the same from step to step where it can, so that boxes stay the same.
   struct Frame {
     Vector3 centre = Vector3::Zero();
-    Vector3 motion = Vector3::Zero();  ///< displacement in a step: that of the step
+    Vector3 motion = Vector3::Zero();  ///< displacement in a step, see common_motion
     double radius = -1;                ///< no coordinate is farther from the centre, at the start or at the end
     double separation = 0;
 

@@ -17,7 +17,8 @@ struct RoundOutcome {
 
 /// Rounds of detection and response from the goal on, until the step from the accepted state is without events: first
 /// with all constraints kept and projecting from the goal again, one a patch at first and one a contact where few are
-/// left (or from the start, where the metric is local), then Algorithm 1 from where that came to.
+/// left (or from the start, where the metric is local), then Algorithm 1 from where that came to; or that alone, see
+/// Projection.
 /// From the second round on, the pairs that the last search of all pairs brought near each other are asked first, and
 /// all pairs only if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs.
 /// Candidates are rounded as they will be stored *before* they are looked at, so that the round without events is
@@ -25,12 +26,12 @@ struct RoundOutcome {
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
                         bool at_any_cost, Execution& execution);
 
-/// Did a call that the time budget ended begin these rounds?
-bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection);
-
 /// The same toward `part` of the way to the goal: of twice the part given, or of half, a quarter and so on of that, the
 /// farthest that detection can look at in bounded time and memory, so that no motion, however far, exceeds them.
 RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
                                      Projection projection, double& part, Execution& execution);
+
+/// Did a call that the time budget ended begin these rounds?
+bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection);
 
 }  // namespace stiv
