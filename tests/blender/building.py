@@ -45,6 +45,12 @@ def add_grid(name: str, count: int, size: float = 1.0, location: Any = (0, 0, 0)
     return add(name, mesh(name, vertices, faces), location, **properties)
 
 
+def cube_above_floor(**properties: Any) -> Any:
+    """A cube of edge 2 whose lowest point is 1 above a floor at z = 0; the cube."""
+    add_grid("Floor", 4, 4.0)
+    return add_cube("Cübe A", (0.3, 0, 2), **properties)
+
+
 def add_lattice(name: str, resolution: Any, location: Any = (0, 0, 0), **properties: Any) -> Any:
     """A lattice at rest."""
     data = bpy.data.lattices.new(name)
