@@ -4,7 +4,7 @@
     python tests/long/cluster_throughput.py [--scenes 40] [--repeats 3]
 
 Prints scenes a second of wall time, the processor seconds that a scene costs (of all worker processes), and the ratio.
-Ends with 1 if the results differ by a byte, or the best ratio is below 1.7. Two workers need two idle processors; on a
+Ends with 1 if the results differ by a byte, or the median ratio is below 1.7. Two workers need two idle processors; on a
 busy machine they only compete better with what else runs. Needs /proc.
 """
 
@@ -17,6 +17,7 @@ from contextlib import redirect_stdout, suppress
 from glob import glob
 from io import StringIO
 from pathlib import Path
+from statistics import median
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS.parent), str(TESTS / "batch")]
@@ -90,7 +91,7 @@ def main() -> int:
         same = results(places[1]) == results(places[2])
     print(f"throughput of two workers: {', '.join(f'{ratio:.2f}' for ratio in ratios)} times that of one")
     print("the results are the same" if same else "THE RESULTS DIFFER")
-    return int(not same or max(ratios) < WANTED)
+    return int(not same or median(ratios) < WANTED)
 
 
 if __name__ == "__main__":
