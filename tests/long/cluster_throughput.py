@@ -4,8 +4,8 @@
     python tests/long/cluster_throughput.py [--scenes 40] [--repeats 3]
 
 Prints scenes a second of wall time, the processor seconds that a scene costs (of all worker processes), and the ratio.
-Ends with 1 if the results differ by a byte, or the median ratio is below 1.7. Two workers need two idle processors; on a
-busy machine they only compete better with what else runs. Needs /proc.
+Ends with 1 if the results differ by a byte, or the median ratio is below 1.7. Two workers need two idle processors; on
+a busy machine they only compete better with what else runs. Needs /proc.
 """
 
 import argparse
