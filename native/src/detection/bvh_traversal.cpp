@@ -153,7 +153,8 @@ void meet_blocks(const Traversal& t, Index block, Index other) {
 
 template <Index size_a, Index size_b>
 void descend(const Traversal& t, const Bvh::Task& root) {
-  // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps.
+  // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Left as it is: to clear so
+  // much for each task took longer than some tasks.
   std::array<Bvh::Task, 1536> stack;
   std::size_t top = 0;
   stack[top++] = root;

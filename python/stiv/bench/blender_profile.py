@@ -24,7 +24,7 @@ FILES = {
 def blender_profile(
     names: Sequence[str], frames_of: Callable[[Path], Sequence[Any]], report: Report
 ) -> list[dict[str, Any]]:
-    """One row a scene, one thread, processor time. Raises InputError where there are no .blend files.
+    """One row a scene, one thread, by the clock. Raises InputError where there are no .blend files.
 
     frames_of: opens a .blend and runs the script beside it; the `stiv.blender.frame_times.FrameTime` of each frame.
     """
@@ -40,7 +40,7 @@ def blender_profile(
             {
                 "scene": name,
                 "threads": 1,
-                "time": "processor",
+                "time": "clock",
                 "in_blender": True,
                 "stages": [frame.stage for frame in frames],
                 "seconds": [frame.seconds for frame in frames],
@@ -56,7 +56,7 @@ def blender_profile(
 def shares_with_blender(frames: Sequence[Any], total: float) -> dict[str, float]:
     """How all time divides: the parts of the pipeline, Blender's evaluation, the rest of writing, the rest of all.
 
-    The core's timings are by the clock; of a frame they are taken as shares of the processor time of solving.
+    The core's timings are taken as shares of the time of solving, which includes what calls the core.
     """
     parts = dict.fromkeys((*PARTS, "evaluation", "writing"), 0.0)
     for frame in frames:

@@ -27,7 +27,7 @@ from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
 
 @dataclass(frozen=True)
 class FrameTime:
-    """One frame; seconds of processor time.
+    """One frame; seconds of the clock: threads of Blender that wait count processor time too.
 
     Attributes:
         stage: operator and objects.
@@ -79,11 +79,11 @@ def _drag(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: lis
     edit = begin_nearby(bpy.context, settings_of(bpy.context.scene), step.operator)
     pivot = edit.controls.mean(axis=0)
     for repetition in range(1, step.repeat + 1):
-        clock[0], begin = 0.0, time.process_time()
+        clock[0], begin = 0.0, time.perf_counter()
         result = edit.drag(goal_matrix(step, repetition, pivot))
-        solved = time.process_time()
+        solved = time.perf_counter()
         passed = edit.write().passed
-        end = time.process_time()
+        end = time.perf_counter()
         touches = result.rounds > 0 or len(result.events) > 0
         yield FrameTime(
             _name(step), end - begin, clock[0], end - solved - clock[0], dict(result.timings), touches, passed
@@ -92,9 +92,9 @@ def _drag(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: lis
 
 def _reshape(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: list[float]) -> Iterator[FrameTime]:
     for _ in range(step.repeat):
-        clock[0], begin = 0.0, time.process_time()
+        clock[0], begin = 0.0, time.perf_counter()
         run_edit(step, 0)
-        end = time.process_time()
+        end = time.perf_counter()
         said = json.loads(bpy.context.window_manager.stiv_last_edit)
         timings = said.get("timings", {})
         yield FrameTime(
@@ -108,14 +108,14 @@ def _name(step: EditStep) -> str:
 
 @contextmanager
 def _evaluation_timed() -> Iterator[list[float]]:
-    """Within, adds the processor time of Blender's evaluations to the one number of the list, in seconds."""
+    """Within, adds the time of Blender's evaluations to the one number of the list, in seconds."""
     total, begun = [0.0], [0.0]
 
     def before(*_: Any) -> None:
-        begun[0] = time.process_time()
+        begun[0] = time.perf_counter()
 
     def after(*_: Any) -> None:
-        total[0] += time.process_time() - begun[0]
+        total[0] += time.perf_counter() - begun[0]
 
     handlers = bpy.app.handlers
     handlers.depsgraph_update_pre.append(before)

@@ -88,8 +88,8 @@ class Bvh {
 
   /// Two subtrees to be compared, a unit of work.
   struct Task {
-    Index level = 0, node = 0;              ///< of the tree asked
-    Index other_level = 0, other_node = 0;  ///< of the other tree
+    Index level, node;              ///< of the tree asked
+    Index other_level, other_node;  ///< of the other tree
   };
 
   /// Work for about so many turns, of the same trees always the same: together all pairs (i of this tree, j of `other`)
