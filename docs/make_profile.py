@@ -29,7 +29,7 @@ def draw(rows: list[dict], output: Path) -> None:
         for row in of:
             _draw_row(axis, row)
         axis.axhline(24, color="#888888", lw=0.8, ls=":")
-        axis.set_title(f"{name}: frames a second, {of[0]['time']} time, {of[0]['threads']} thread(s)", fontsize=9)
+        axis.set_title(f"{name}: frames a second, {of[0]['threads']} thread(s)", fontsize=9)
         axis.set_xlabel("edit", fontsize=8)
         axis.tick_params(labelsize=8)
         axis.yaxis.set_major_formatter(ticker.ScalarFormatter())
