@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/weighted_sums.hpp"
 
-#include <algorithm>
-#include <array>
-#include <vector>
+#include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "deformation/weighted_sums.cpp"
