@@ -9,8 +9,9 @@ Milliseconds, the least of the repeats, all measured in turn: processor time for
     broad      ipctk's LBVH: candidates only
     earliest   that, and the quicker of ipctk's narrow phases: the earliest time only
 
-`python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--models FOLDER] [--json FILE]`. ipctk comes with
-tools/requirements/bench.txt; without it its columns stay empty.
+`python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--vectors avx512 avx2 baseline] [--models FOLDER]
+[--json FILE]`. ipctk comes with tools/requirements/bench.txt; without it its columns stay empty. `--vectors` limits our
+vector code to that of older processors; the peer keeps its own.
 """
 
 from __future__ import annotations
@@ -19,9 +20,11 @@ import argparse
 import json
 from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 
 from blend_fixtures.scenes.detection_steps import STEPS, Step
+from stiv import _native
 
 from . import growth, models, table
 from .hits import count_hits
@@ -29,6 +32,7 @@ from .ipc_toolkit import load
 from .measurement import measure
 
 GROWTH = "growth"
+VECTOR_TARGETS = _native.VectorTarget.__members__
 
 
 def chosen(scenes: list[str], folder: Path | None) -> Iterator[Step]:
@@ -46,6 +50,8 @@ def parse() -> argparse.Namespace:
     names = [*STEPS, GROWTH]
     parser.add_argument("--scenes", nargs="*", choices=names, default=names, help="default: all")
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], help="default: 1 2")
+    best = _native.best_vector_target().name
+    parser.add_argument("--vectors", nargs="+", choices=[*VECTOR_TARGETS], default=[best], help=f"default: {best}")
     parser.add_argument("--repeats", type=int, default=7, help="default: 7")
     parser.add_argument("--models", type=Path, help="folder of .obj files to measure too")
     parser.add_argument("--count", action="store_true", help="tell which hits really meet, ours and the peer's: slow")
@@ -60,10 +66,12 @@ def main() -> None:
     rows = []
     print(table.HEADER)
     for step in chosen(arguments.scenes, arguments.models):
-        for threads in arguments.threads:
+        for threads, vectors in product(arguments.threads, arguments.vectors):
+            _native.limit_vector_target(VECTOR_TARGETS[vectors])
             figures = measure(step, threads, arguments.repeats, ipctk)
             rows.append(asdict(figures))
             print(table.line(figures), flush=True)
+        _native.limit_vector_target(_native.best_vector_target())
         if arguments.count and ipctk:
             hits = count_hits(step, ipctk)
             rows[-1]["pairs_that_meet"] = asdict(hits)

@@ -13,6 +13,7 @@ import numpy as np
 
 import stiv
 from blend_fixtures.scenes.detection_steps import Step
+from stiv import _native
 
 from .ipc_toolkit import NARROW_PHASES, Peer
 
@@ -26,6 +27,7 @@ class Figures:
     scene: str
     triangles: int
     threads: int
+    vectors: str  #: our vector code, see native/include/stiv/vector_target.hpp
     hits: int
     earliest: float  #: time of the first event, inf if there is none
     build: float  #: a new detector and its first find
@@ -81,6 +83,7 @@ def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) ->
         step.name,
         len(step.triangles),
         threads,
+        _native.vector_target().name,
         len(events),
         float(events.time.min(initial=np.inf)),
         least["build"],

@@ -6,7 +6,7 @@ from __future__ import annotations
 from .measurement import Figures
 
 HEADER = (
-    f"{'scene':18} {'triangles':>9} {'threads':>7} {'candidates':>10} {'hits':>7} |"
+    f"{'scene':18} {'triangles':>9} {'threads':>7} {'vectors':>8} {'candidates':>10} {'hits':>7} |"
     f" {'build':>8} {'first':>8} {'again':>8} |"
     f" {'broad':>8} {'earliest':>8} {'narrow phase':15} | {'earliest/first':>14} {'first/again':>11}"
 )
@@ -14,7 +14,7 @@ HEADER = (
 
 def line(figures: Figures) -> str:
     """One step; milliseconds."""
-    left = f"{figures.scene:18} {figures.triangles:9,} {figures.threads:7} "
+    left = f"{figures.scene:18} {figures.triangles:9,} {figures.threads:7} {figures.vectors:>8} "
     left += f"{'-' if figures.candidates is None else f'{figures.candidates:,}':>10} {figures.hits:7,} |"
     ours = f" {figures.build:8.1f} {figures.first:8.1f} {figures.again:8.1f} |"
     rounds = f"{figures.first / figures.again:11.1f}"

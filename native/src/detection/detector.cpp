@@ -137,7 +137,7 @@ class Detector::Implementation {
                                                  const Decide& decide) {
     check_step(given);
     const FloatingPointScope floating_point;
-    const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end, execution)};
+    const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end)};
     last_.reset();
     kept_.reset();
     source_->update(step, execution);

@@ -13,7 +13,7 @@ using Change = SweptVertices::Change;
 
 Change update(SweptVertices& swept, const Positions& start, const Positions& end, double separation = 0.01) {
   const Execution execution(2);
-  return swept.update({start, end, {separation, 0.5}, common_motion(start, end, execution)}, execution);
+  return swept.update({start, end, {separation, 0.5}, common_motion(start, end)}, execution);
 }
 
 }  // namespace
