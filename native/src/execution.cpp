@@ -12,6 +12,7 @@
 #endif
 
 #include "stiv/error.hpp"
+#include "usable_processors.hpp"
 
 namespace stiv {
 
@@ -36,8 +37,6 @@ constexpr std::uint32_t denormal_bits = 0;
 std::uint32_t read_control() { return 0; }
 void write_control(std::uint32_t) {}
 #endif
-
-int usable_processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 }  // namespace
 

@@ -37,7 +37,8 @@ struct Timings {
 /// One object a call; only `request_cancel` may be called from another thread.
 class Execution {
  public:
-  /// @param threads number of threads; 0: one for each processor that the process may use.
+  /// @param threads number of threads; 0: one for each processor that the process may use, no more than
+  /// the environment's STIV_THREADS.
   explicit Execution(int threads = 0);
 
   int threads() const { return threads_; }

@@ -27,9 +27,15 @@ class PoolError(RuntimeError):
 class Pool:
     """Runs commands on `size` workers until all are done."""
 
-    def __init__(self, size: int, blender: str = "", time_limit: float = 0.0, log: Path | None = None) -> None:
-        """Workers are started when there is work, and replaced when they die. `log` gets their standard error."""
+    def __init__(
+        self, size: int, blender: str = "", time_limit: float = 0.0, log: Path | None = None, threads: int = 1
+    ) -> None:
+        """Workers are started when there is work, and replaced when they die. `log` gets their standard error.
+
+        `threads`: of each worker, at most; STIV_THREADS in the environment goes before.
+        """
         self._size = size
+        self._threads = threads
         self._command = worker_command(blender)
         self._limit = time_limit
         self._log = log
@@ -85,7 +91,9 @@ class Pool:
         self._workers.clear()
 
     def _start(self) -> None:
-        worker = WorkerProcess(self._command, lambda of, reply: self._messages.put((of, reply)), self._log)
+        worker = WorkerProcess(
+            self._command, lambda of, reply: self._messages.put((of, reply)), self._log, self._threads
+        )
         self._workers[worker] = time.monotonic()
 
     def _next_message(self) -> Message:

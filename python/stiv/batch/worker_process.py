@@ -30,15 +30,19 @@ def worker_command(blender: str = "") -> list[str]:
 class WorkerProcess:
     """Attributes: `ready` once it has said so, and `number` of the entry that it is busy with, or None."""
 
-    def __init__(self, command: Sequence[str], listen: Listener, log: Path | None = None) -> None:
-        """Start it. `listen` is called from another thread with each reply, and with None at its end."""
+    def __init__(self, command: Sequence[str], listen: Listener, log: Path | None = None, threads: int = 1) -> None:
+        """Start it. `listen` is called from another thread with each reply, and with None at its end.
+
+        `threads`: what its edits take at most, unless the environment says so with STIV_THREADS.
+        """
         paths = [str(PACKAGES), *filter(None, [os.environ.get("PYTHONPATH")])]
         errors = subprocess.DEVNULL if log is None else log.open("ab")
         self.ready = False
         self.number: int | None = None
         self._process = subprocess.Popen(
             list(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, encoding="utf-8",
-            errors="replace", env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONIOENCODING": "utf-8"},
+            errors="replace", env={"STIV_THREADS": str(threads), **os.environ, "PYTHONIOENCODING": "utf-8",
+                                   "PYTHONPATH": os.pathsep.join(paths)},
         )  # fmt: skip
         if not isinstance(errors, int):
             errors.close()

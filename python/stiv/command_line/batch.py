@@ -103,8 +103,10 @@ def _line(record: Record) -> str:
 
 def _runner(arguments: argparse.Namespace, job: Job, state: Path) -> Callable[..., None]:
     if arguments.scheduler is None:
-        size = arguments.workers or os.cpu_count() or 1
-        pool = Pool(size, arguments.worker_blender, job.time_limit, state / "workers.log")
+        processors = _processors()
+        size = arguments.workers or processors
+        log = state / "workers.log"
+        pool = Pool(size, arguments.worker_blender, job.time_limit, log, threads=max(1, processors // size))
         return pool.run
     require_distributed()
 
@@ -114,6 +116,11 @@ def _runner(arguments: argparse.Namespace, job: Job, state: Path) -> Callable[..
         run_on_cluster(arguments.scheduler, names, commands, on_done, arguments.worker_blender, job.time_limit)
 
     return on_cluster
+
+
+def _processors() -> int:
+    """Those that this process may run on."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _part(text: str) -> tuple[int, int]:

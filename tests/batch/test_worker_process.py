@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A worker process: what its environment tells it."""
+
+import queue
+import sys
+
+import pytest
+
+import stiv
+from stiv.batch.worker import MARK
+from stiv.batch.worker_process import WorkerProcess
+
+TELL_THREADS = f"import os, json; print({MARK!r} + json.dumps({{'threads': os.environ['STIV_THREADS']}}))"
+
+
+def threads_told(threads):
+    replies = queue.Queue()
+    worker = WorkerProcess([sys.executable, "-c", TELL_THREADS], lambda of, reply: replies.put(reply), threads=threads)
+    try:
+        return replies.get(timeout=60)["threads"]
+    finally:
+        worker.kill()
+
+
+@pytest.mark.parametrize(("user", "threads", "told"), [(None, 3, "3"), ("5", 3, "5")])
+def test_a_worker_edits_with_its_share_of_threads_unless_the_user_says_another(monkeypatch, user, threads, told):
+    monkeypatch.delenv("STIV_THREADS", raising=False)
+    if user is not None:
+        monkeypatch.setenv("STIV_THREADS", user)
+    assert threads_told(threads) == told
+
+
+def test_a_wrong_number_of_threads_is_an_error_of_the_input(monkeypatch):
+    monkeypatch.setenv("STIV_THREADS", "all")
+    with pytest.raises(stiv.InputError, match="STIV_THREADS: expected a whole number"):
+        stiv.Detector([[0, 1, 2]]).find([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
