@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, Protocol
 
 from .events import Event
+from .pace import Pace
 from .pointer import Pointer
 from .request import Request
 from .state import Effect, Phase, State, step
@@ -27,8 +29,8 @@ class Edit(Protocol):
     def set_interference(self, on: bool) -> str:
         """Switch it; says why not, or where that led back to."""
 
-    def drag(self, motion: Any) -> Any:
-        """Solve for an absolute goal."""
+    def drag(self, motion: Any, *, time_budget: float) -> Any:
+        """Solve for an absolute goal in so many seconds; the same goal again takes up what these ended."""
 
     def settle(self) -> Any:
         """Solve again from the accepted state."""
@@ -50,6 +52,15 @@ class Progress(Enum):
     CANCELLED = "cancelled"
 
 
+@dataclass(frozen=True)
+class Aim:
+    """What a solve is for: the transform that a state asks for, and what an edit drags to for it."""
+
+    state: State
+    transform: Any
+    motion: Any
+
+
 class DragEnded(RuntimeError):  # noqa: N818 (it is no error of anybody)
     """Something outside the drag ended it."""
 
@@ -58,6 +69,8 @@ class Drag:
     """A drag from its start to a confirmation or a clean cancellation.
 
     Events only change the state; `tick` solves for the latest one, so that motions are never queued up behind a solve.
+    A solve has the time that is left of a frame. Where that ends before anything was accepted, the next tick goes on
+    with the same goal: one that is new at each tick would never be solved.
     No exception leaves this class: a refused value (ValueError) is told in `note` and the last accepted state stays
     until the user types on; anything else restores the scene and ends the drag with the exception in `error`.
     """
@@ -91,7 +104,14 @@ class Drag:
         self._measure = measure
         self._motion = motion
         self._pending = False
+        self._pace = Pace()
+        self._unfinished: Aim | None = None
         self._solved: tuple[State | None, float] = (None, 0.0)
+
+    @property
+    def at_rest(self) -> bool:
+        """Is there nothing to solve for until the next event?"""
+        return not self._pending or self.progress is not Progress.RUNNING
 
     def handle(self, event: Event) -> Effect:
         """Take one event; says what it asked for."""
@@ -139,29 +159,38 @@ class Drag:
     def _solve_pending(self) -> None:
         if not self._pending:
             return
-        self._pending = False
+        self._pending, begun = False, time.perf_counter()
         refusal = self._begin_again()
         try:
-            wanted = self._measure(self.state)
-            self.result = self.edit.drag(self._motion(wanted, self.state))
+            aim = self._unfinished or self._new_aim()
+            self._unfinished = None
+            self.result = self.edit.drag(aim.motion, time_budget=self._pace.budget)
         except ValueError as error:
             self.note = str(error)
             return
-        self.transform = wanted
+        self.transform = aim.transform
         self.note = refusal
-        self._pending = self._may_gain()
-        if self.result.status != "budget" or len(self.result.path) > 0:  # else what is shown is what is accepted
+        self._pending = self._may_gain(aim.state) or aim.state != self.state
+        solving = self.result.timings["total"]
+        if self.result.status == "budget" and len(self.result.path) == 0:  # what is shown is what is accepted
+            self._unfinished = aim
+        else:
             self._write()
+            self._pace.note(time.perf_counter() - begun - solving)
 
-    def _may_gain(self) -> bool:
+    def _new_aim(self) -> Aim:
+        transform = self._measure(self.state)
+        return Aim(self.state, transform, self._motion(transform, self.state))
+
+    def _may_gain(self, state: State) -> bool:
         """Is it worth to solve for the same state once more? A solve goes only so far toward a goal that is far off.
 
         While the mouse moves the next motion does that; where it rests, so that what is shown does not hang on how
         many motions there was time for.
         """
         solved, least = self._solved
-        self._solved = (self.state, self.result.energy)
-        gained = solved != self.state or self.result.energy < GAIN * least
+        self._solved = (state, self.result.energy)
+        gained = solved != state or self.result.energy < GAIN * least
         return self.result.status == "budget" or (self.result.status == "corrected" and gained)
 
     def _begin_again(self) -> str:
@@ -172,6 +201,7 @@ class Drag:
         request = self.state.request
         if request == replace(self._begun, interference=request.interference):
             return self._switch_interference() if request != self._begun else ""
+        self._unfinished = None
         self.edit.restore()
         try:
             self.edit = self._begin(self.state.request)
@@ -182,6 +212,7 @@ class Drag:
         return ""
 
     def _switch_interference(self) -> str:
+        self._unfinished = None
         reason = self.edit.set_interference(self.state.request.interference)
         self._begun = replace(self._begun, interference=self.edit.interference)
         self.state = replace(self.state, request=self._begun)
@@ -207,6 +238,7 @@ class Drag:
         self.progress = Progress.VALUE_GIVEN
 
     def _finish_dragged(self) -> None:
+        self._unfinished = None  # what counts is where the mouse was let go
         for _ in range(LAST_SLICES):
             self._solve_pending()
         if self.result is not None:

@@ -2,6 +2,7 @@
 #include "stiv/editing/session.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -79,9 +80,15 @@ class Session {
     return call(cancel, progress, [&](Execution& execution) { return session_.edit(to, execution); });
   }
 
-  py::dict drag(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress) {
+  py::dict drag(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress,
+                const std::optional<double>& time_budget) {
     const Controls to = controls_from(goal, "goal");
-    return call(cancel, progress, [&](Execution& execution) { return session_.drag(to, execution); });
+    if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
+      throw InputError("time_budget must be a positive number of seconds");
+    return call(cancel, progress, [&](Execution& execution) {
+      if (time_budget) execution.set_time_budget(*time_budget, true);
+      return session_.drag(to, execution);
+    });
   }
 
   py::dict settle(const CancelToken* cancel, const py::object& progress) {
@@ -105,6 +112,13 @@ class Session {
     return session_.surface();
   }
   double separation() const { return session_.separation(); }
+
+  bool is_step_free(const Positions& start, const Positions& end) {
+    const InUse in_use(in_use_);
+    const py::gil_scoped_release unlocked;
+    Execution execution(threads_);
+    return session_.is_step_free(start, end, execution);
+  }
 
   py::object least_distance(bool within) {
     const InUse in_use(in_use_);
@@ -200,9 +214,10 @@ void bind_editing(py::module_& module) {
   py::class_<Session>(module, "EditSession")
       .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<Deformation>, const DoubleArray&, const EditOptions&>())
       .def("edit", &Session::edit, py::arg("goal"), cancel, progress)
-      .def("drag", &Session::drag, py::arg("goal"), cancel, progress)
+      .def("drag", &Session::drag, py::arg("goal"), cancel, progress, py::arg("time_budget") = py::none())
       .def("settle", &Session::settle, cancel, progress)
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
+      .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))
       .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)

@@ -108,6 +108,14 @@ class EditSession:
         """
         return least_distance_of(self._session.least_distance(within), self._topology)
 
+    def is_step_free(self, start: ArrayLike, end: ArrayLike) -> bool:
+        """Tell whether the linear step between two surfaces, (N, 3) each, is free: its whole path and its end.
+
+        `start` must be free. As :meth:`stiv.StepCheck.is_free`, with the trees that edits use; the accepted surface
+        itself is not tested again. Not for sessions with excluded pairs.
+        """
+        return self._session.is_step_free(as_doubles(start, "start"), as_doubles(end, "end"))
+
     def edit(
         self, goal: ArrayLike, *, cancel: CancelToken | None = None, progress: Progress | None = None
     ) -> EditResult:
@@ -120,14 +128,23 @@ class EditSession:
         return result_of(self._session.edit(as_doubles(goal, "goal"), cancel, progress), self._topology)
 
     def drag(
-        self, goal: ArrayLike, *, cancel: CancelToken | None = None, progress: Progress | None = None
+        self,
+        goal: ArrayLike,
+        *,
+        cancel: CancelToken | None = None,
+        progress: Progress | None = None,
+        time_budget: float | None = None,
     ) -> EditResult:
         """One mouse move of a drag toward the absolute ``goal``, (m, 3).
 
         First the increment since the goal before, then a pull toward what is missing, so that goals deep inside an
         obstacle neither lose travel nor drag sideways, and the shape comes back with the mouse.
+
+        ``time_budget``, seconds, counts for this call instead of that of the options. What it ends with nothing
+        accepted is taken up by the next call with the same goal; another goal begins anew, with the whole increment.
         """
-        return result_of(self._session.drag(as_doubles(goal, "goal"), cancel, progress), self._topology)
+        values = self._session.drag(as_doubles(goal, "goal"), cancel, progress, time_budget)
+        return result_of(values, self._topology)
 
     def settle(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
         """Solve again toward the last goal until the energy no longer falls; it never grows."""

@@ -40,7 +40,8 @@ class FakeEdit:
         self.interference = on
         return ""
 
-    def drag(self, matrix: Any) -> Any:
+    def drag(self, matrix: Any, *, time_budget: float) -> Any:
+        assert time_budget > 0
         self._called("drag")
         return self._solve(matrix)
 
@@ -67,4 +68,5 @@ class FakeEdit:
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
         path = (self.accepted,) if self.furthest > 0 else ()
-        return SimpleNamespace(status=status, blocking=(), energy=(float(matrix) - self.accepted) ** 2, path=path)
+        energy, timings = (float(matrix) - self.accepted) ** 2, {"total": 0.0}
+        return SimpleNamespace(status=status, blocking=(), energy=energy, path=path, timings=timings)

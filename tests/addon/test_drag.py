@@ -99,6 +99,43 @@ def test_a_budget_that_ended_before_anything_was_accepted_writes_nothing() -> No
     assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5
 
 
+def test_a_goal_is_not_given_up_for_a_newer_one_before_anything_was_accepted() -> None:
+    edit = FakeEdit(statuses=["budget"] * 3, furthest=0.0)
+    drag = new_drag(edit)
+    for x in (50, 60, 70):
+        drag.handle(move_to(x))
+        drag.tick()
+    assert edit.goals == [0.5] * 3
+    edit.furthest = 1.0
+    drag.tick()
+    assert (edit.shown, drag.transform, drag.at_rest) == (0.5, 0.5, False)
+    drag.tick()
+    assert (edit.shown, drag.transform, drag.at_rest) == (0.7, 0.7, True)
+
+
+def test_a_goal_in_hand_is_left_for_where_the_mouse_was_let_go() -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    edit.furthest = 1.0
+    drag.handle(move_to(70))
+    drag.handle(Event("RET"))
+    assert edit.goals == [0.5, 0.7] and edit.shown == drag.transform == 0.7
+
+
+@pytest.mark.parametrize("key", ["I", "W", "R"])
+def test_a_goal_in_hand_is_left_for_another_request(key: str) -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    drag.handle(move_to(70))
+    drag.handle(Event(key))
+    drag.tick()
+    assert edit.goals == [0.5, 0.7]
+
+
 def test_what_is_left_at_the_confirmation_is_done_in_slices() -> None:
     edit = FakeEdit(statuses=["budget", "budget", "corrected"])
     drag = new_drag(edit)

@@ -56,6 +56,7 @@ class Execution {
   /// Stop after so many seconds from now, as if cancelled; with `after_gain` not before `note_gain` was called, so
   /// that calls that take up where the last one ended get on however short their time is.
   void set_time_budget(double seconds, bool after_gain = false);
+  bool has_time_budget() const { return deadline_.has_value(); }
   /// Something was done that the end of the budget does not lose. From the calling thread, outside for_chunks.
   void note_gain() noexcept { waits_for_gain_ = false; }
   bool budget_used_up() const;

@@ -59,7 +59,8 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
       metric_(metric_of(*deformation_, options_)),
       detector_(surface_, {.broad_phase = options_.broad_phase}),
       intersections_(surface_),
-      excluded_(surface_, options_.excluded) {
+      excluded_(surface_, options_.excluded),
+      no_separations_(surface_->bodies().size(), 0) {
   check_controls(controls, "controls");
   const Positions q = deformation_->surface(controls);
   surface_->check_positions(q);
@@ -161,6 +162,15 @@ bool Problem::is_free(const Positions& from, const Positions& to, Execution& exe
   const bool grown = found.faces.size() > most;
   found.faces = excluded_.others(found.faces);
   return !grown && found.empty();
+}
+
+bool Problem::is_step_free(const Positions& from, const Positions& to, Execution& execution) {
+  // Seen with the separation of edits, for which the boxes of what rests are at hand; but no pair needs to keep any.
+  Proximity touching;
+  touching.separation = proximity_.separation;
+  touching.by_bodies = &no_separations_;
+  return detector_.earliest_time(centred(from), centred(to), touching, execution) == never &&
+         intersections_.is_free(to, moved_vertices(from, to), execution);
 }
 
 }  // namespace stiv

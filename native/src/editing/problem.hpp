@@ -38,6 +38,7 @@ struct RoundProgress {
   Controls p;  ///< next candidate, before it is rounded
   bool accumulate = true;
   int round = 0;
+  bool searched = false;  ///< all pairs, from this start
 };
 
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
@@ -90,6 +91,8 @@ class Problem {
                                       Execution& execution);
   /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`.
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
+  /// Is a step free, its path and its end, however near things come? Its start is known to be; nothing is excluded.
+  bool is_step_free(const Positions& from, const Positions& to, Execution& execution);
 
  private:
   void set_proximity(const MovingExtent& extent, double least);
@@ -110,6 +113,7 @@ class Problem {
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
   std::optional<BodySeparations> body_separations_;
+  BodySeparations no_separations_;
   Positions reference_;  ///< the surface at the start of the session, centred
   Proximity proximity_, proximity_of_rounds_;
   std::optional<RoundProgress> unfinished_rounds_;

@@ -2,6 +2,7 @@
 #include "editing/round_loop.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "editing/measurement.hpp"
 #include "stiv/editing/goal.hpp"
@@ -23,6 +24,16 @@ RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Cont
   return *problem.unfinished_rounds();
 }
 
+/// The part of a way, of those that are tried from `part` on, whose rounds the time budget ended; else `part`.
+double begun_part(Problem& problem, const State& accepted, Projection projection, double part,
+                  const std::function<Controls(double)>& aim_at) {
+  const std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
+  if (!rounds || rounds->projection != projection || rounds->accepted != accepted.controls) return part;
+  for (double begun = part; begun >= shortest_part; begun /= 2)
+    if (rounds->goal == aim_at(begun)) return begun;
+  return part;
+}
+
 }  // namespace
 
 bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
@@ -37,8 +48,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
   RoundOutcome outcome;
   outcome.at_any_cost = at_any_cost;
   RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
-  auto& [from, to, kind, kept, p, accumulate, round] = progress;
-  bool searched = false;  // all pairs, from this start
+  auto& [from, to, kind, kept, p, accumulate, round, searched] = progress;
   for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
@@ -77,13 +87,16 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
 
 RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
                                      Projection projection, double& part, Execution& execution) {
-  for (part = std::min(1.0, 2 * part); part >= shortest_part; part /= 2) {
-    const Controls aim = interpolate(accepted.controls, goal, part, problem.rotation_rows());
+  const auto aim_at = [&](double share) {
+    return interpolate(accepted.controls, goal, share, problem.rotation_rows());
+  };
+  for (part = begun_part(problem, accepted, projection, std::min(1.0, 2 * part), aim_at); part >= shortest_part;
+       part /= 2) {
+    const Controls aim = aim_at(part);
     RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, execution);
     if (!outcome.too_far) return outcome;
   }
-  return run_rounds(problem, accepted, interpolate(accepted.controls, goal, part, problem.rotation_rows()), projection,
-                    true, execution);
+  return run_rounds(problem, accepted, aim_at(part), projection, true, execution);
 }
 
 }  // namespace stiv

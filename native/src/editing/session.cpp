@@ -43,6 +43,7 @@ class EditSession::Implementation {
     checked_ = controls;
     problem_.unfinished_rounds().reset();
     goal_ = {goal, problem_.surface_at(goal, execution)};
+    followed_ = goal_;
     accepted_ = std::move(state);
     dragging_ = goal != controls;
   }
@@ -59,10 +60,11 @@ class EditSession::Implementation {
   EditResult drag(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
       dragging_ = true;
+      const PullLimits limits{.distance = pull_limit(), .pulls = pulls_after(aim)};
       const Controls increment = incremented(aim.controls);
       if (problem_.stored(increment) != accepted_.controls)
         solve_in_turns(problem_, accepted_, {increment, aim.surface, false}, report, execution);
-      const PullLimits limits{.distance = pull_limit(), .pulls = pulls_after(aim)};
+      followed_ = {aim.controls, aim.surface};
       pull_until_settled(problem_, accepted_, aim, limits, report, execution);
     });
   }
@@ -74,6 +76,14 @@ class EditSession::Implementation {
       if (dragging_) limits.distance = pull_limit();
       pull_until_settled(problem_, accepted_, aim, limits, report, execution);
     });
+  }
+
+  bool is_step_free(const Positions& start, const Positions& end, Execution& execution) {
+    const FloatingPointScope floating_point;
+    problem_.surface().check_positions(start);
+    problem_.surface().check_positions(end);
+    if (start == end && end == accepted_.surface) return true;
+    return problem_.is_step_free(start, end, execution);
   }
 
   std::optional<NearestTriangles> least_distance(bool within) {
@@ -97,14 +107,14 @@ class EditSession::Implementation {
   /// Enough pulls to go back all the way that the increment came, and one more: a mouse that returns from deep inside
   /// a wall takes the shape off it, and the pull has to put it back.
   int pulls_after(const Aim& aim) const {
-    const double increment = farthest_way(goal_.surface, aim.surface);
+    const double increment = farthest_way(followed_.surface, aim.surface);
     return static_cast<int>(std::min<double>(most_pulls_of_drag, 1 + std::ceil(increment / pull_limit())));
   }
 
-  /// The accepted controls moved as the goal moved since the last call; the goal itself if nothing is missing so far.
+  /// The accepted controls moved as the goal did since they followed it; the goal itself if nothing is missing so far.
   Controls incremented(const Controls& goal) const {
-    if (accepted_.controls == problem_.stored(goal_.controls)) return goal;
-    return moved_alike(accepted_.controls, goal_.controls, goal, problem_.rotation_rows());
+    if (accepted_.controls == problem_.stored(followed_.controls)) return goal;
+    return moved_alike(accepted_.controls, followed_.controls, goal, problem_.rotation_rows());
   }
 
   /// Frame of every call: checks, the goal's surface, interruption, and the result. On anything but an end by itself or
@@ -113,31 +123,35 @@ class EditSession::Implementation {
   EditResult carry_out(const Controls& goal, Execution& execution, const Work& work) {
     const FloatingPointScope floating_point;
     problem_.check_controls(goal, "goal");
-    const State before = accepted_, goal_before = goal_;
+    const State before = accepted_, followed_before = followed_;
     SolveReport report;
     bool resumable = false;
     EditStatus status = EditStatus::unchanged;
     State target{goal, before.surface};
     {
       const ScopedTimer timer(execution.timings.total);
-      if (problem_.options().time_budget > 0) execution.set_time_budget(problem_.options().time_budget, true);
+      if (problem_.options().time_budget > 0 && !execution.has_time_budget())
+        execution.set_time_budget(problem_.options().time_budget, true);
       try {
         target.surface = problem_.surface_at(goal, execution);
         problem_.surface().check_positions(target.surface);
         if (!problem_.is_empty() && goal != accepted_.controls) work({goal, target.surface, false}, report);
         status = status_of(problem_, before, accepted_, goal, report);
-        goal_ = target;
+        goal_ = followed_ = target;
       } catch (const Interrupted&) {
         status = execution.cancel_requested() ? EditStatus::cancelled : EditStatus::budget;
         if (status == EditStatus::cancelled) {
           accepted_ = before;
+          followed_ = followed_before;
           report.path.clear();
         } else {
           goal_ = target;
+          if (!dragging_ || !report.path.empty()) followed_ = target;  // else what is left of the increment comes first
           resumable = true;
         }
       } catch (...) {
         accepted_ = before;
+        followed_ = followed_before;
         problem_.unfinished_rounds().reset();
         throw;
       }
@@ -151,7 +165,8 @@ class EditSession::Implementation {
 
   Problem problem_;
   State accepted_;
-  State goal_;        ///< of the last call, as given
+  State goal_;      ///< of the last call, as given
+  State followed_;  ///< the last one whose increment was made: before `goal_` where the time budget ended a drag early
   Controls checked_;  ///< that were last restored: a drag that is cancelled goes back to them
   bool dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< made when first asked for
@@ -173,6 +188,10 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution) {
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
 void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
+
+bool EditSession::is_step_free(const Positions& start, const Positions& end, Execution& execution) {
+  return implementation_->is_step_free(start, end, execution);
+}
 
 const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
 const Positions& EditSession::surface() const { return implementation_->accepted().surface; }

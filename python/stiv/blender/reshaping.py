@@ -146,7 +146,8 @@ class Reshaped:
     def verify(self, controls: Floats) -> Verification:
         """Write controls whose surface is free, and test what Blender makes of them."""
         self.show(controls)
-        verifier = Verifier(self.assembly, self.settings.threads)
+        steps = stiv.StepCheck(self.assembly.surface, self.settings.threads)
+        verifier = Verifier(self.assembly, steps.is_free, self.settings.threads)
         return verifier.verify(bpy.context, self.deformation.surface(controls))
 
     def restore(self) -> None:

@@ -91,7 +91,10 @@ class Showing:
         bpy.context.view_layer.update()
 
     def _new_verifier(self) -> Verifier:
-        return Verifier(self._solving.assembly, self._settings.threads, self._settings.excluded)
+        def is_step_free(start: Floats, end: Floats) -> bool:
+            return self._solving.session.is_step_free(start, end)
+
+        return Verifier(self._solving.assembly, is_step_free, self._settings.threads, self._settings.excluded)
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         places = self._solving.trail.places()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's own evaluation after writing, read back and tested."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import bpy
@@ -14,6 +15,8 @@ from stiv.blender.evaluated_scene import Placed, read_placed
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.participants import tolerance
 from stiv.blender.recutting import Cut, PresentCut, as_shown, fresh_cuts
+
+StepTest = Callable[[Floats, Floats], bool]
 
 
 @dataclass(frozen=True)
@@ -39,13 +42,18 @@ class Verification:
 
 
 class Verifier:
-    """Tests what Blender evaluates against accepted surfaces of an `assembly`; keeps its trees."""
+    """Tests what Blender evaluates against accepted surfaces of an `assembly`."""
 
-    def __init__(self, assembly: Assembly, threads: int = 0, excluded: Exclusions | None = None) -> None:
-        """For the meshes of an assembly; threads 0 for all. Excluded pairs may meet, no more of them than at first."""
+    def __init__(
+        self, assembly: Assembly, is_step_free: StepTest, threads: int = 0, excluded: Exclusions | None = None
+    ) -> None:
+        """For the meshes of an assembly; threads 0 for all. Excluded pairs may meet, no more of them than at first.
+
+        is_step_free: stiv.StepCheck.is_free of its surface, or the same of an EditSession.
+        """
         self.assembly = assembly
         self._threads = threads
-        self._steps = stiv.StepCheck(assembly.surface, threads)
+        self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
         self._most = len(self._excluded.triangles(assembly, assembly.positions, threads))
 
@@ -64,7 +72,7 @@ class Verifier:
             found = self._beside_excluded(shown)
             if found is not None:
                 return found
-        elif not self._steps.is_free(accepted, shown):
+        elif not self._is_step_free(accepted, shown):
             return self._failure(named_pairs(self.assembly, shown, self._threads))
         cuts = fresh_cuts(context, self.assembly)
         return self._verify_cuts(cuts, shown) if cuts else Verification(True)

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include "editing/small_scenes.hpp"
+#include "stiv/acceptance/intersections.hpp"
+#include "stiv/acceptance/step_check.hpp"
+#include "stiv/editing/session.hpp"
+
+using namespace stiv;
+using namespace stiv::tests;
+
+namespace {
+
+EditSession session_of(const Scene& scene) { return EditSession(scene.surface, scene.deformation, scene.controls); }
+
+Controls moved(const Controls& p, Index rows, const Vector3& offset) {
+  Controls goal = p;
+  goal.topRows(rows).rowwise() += offset.transpose();
+  return goal;
+}
+
+bool is_free(const Scene& scene, const Positions& q) {
+  Execution execution(1);
+  return IntersectionTest(scene.surface).find(q, execution).empty();
+}
+
+constexpr Index upper_sheet = 49;  // vertices of two_sheets' first body
+
+/// Drags to a goal until it ends by itself; how often anything was accepted on the way, and in how many calls.
+struct HurriedDrag {
+  EditResult result;
+  int calls = 0;
+};
+
+HurriedDrag drag_hurried(EditSession& session, const Controls& goal) {
+  HurriedDrag drag;
+  do {
+    Execution execution(1);
+    execution.set_time_budget(1e-9, true);
+    drag.result = session.drag(goal, execution);
+  } while (++drag.calls < 200 && drag.result.status == EditStatus::budget && drag.result.path.empty());
+  return drag;
+}
+
+}  // namespace
+
+TEST_CASE("session: a drag that its time ended goes on with its increment, and accepts what it would have at once") {
+  const Scene scene = two_sheets();
+  EditSession hurried = session_of(scene), unhurried = session_of(scene);
+  Execution execution(1);
+  const Controls first = moved(scene.controls, upper_sheet, Vector3(0.01, 0, -0.6));
+  unhurried.drag(first, execution);
+  hurried.drag(first, execution);
+  REQUIRE(hurried.controls() == unhurried.controls());
+  // Beside the goal by now, so that the increment is another way than the one to the goal.
+  const Controls second = moved(scene.controls, upper_sheet, Vector3(0.05, 0.02, -0.7));
+  const HurriedDrag drag = drag_hurried(hurried, second);
+  CHECK(drag.calls > 1);
+  CHECK(is_free(scene, hurried.surface()));
+  const EditResult at_once = unhurried.drag(second, execution);
+  REQUIRE(!at_once.path.empty());
+  REQUIRE(!drag.result.path.empty());
+  CHECK(drag.result.path.front() == at_once.path.front());
+}
+
+TEST_CASE("session: a drag whose time ended before anything was accepted leaves the next one its whole increment") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene), other = session_of(scene);
+  Execution execution(1), hurry(1);
+  const Controls first = moved(scene.controls, upper_sheet, Vector3(0.01, 0, -0.6));
+  session.drag(first, execution);
+  other.drag(first, execution);
+  hurry.set_time_budget(1e-9, true);
+  const EditResult ended = session.drag(moved(scene.controls, upper_sheet, Vector3(0.02, 0, -0.9)), hurry);
+  REQUIRE(ended.status == EditStatus::budget);
+  REQUIRE(ended.path.empty());
+  const Controls back = moved(scene.controls, upper_sheet, Vector3(0.03, 0, -0.5));
+  CHECK(session.drag(back, execution).controls == other.drag(back, execution).controls);
+}
+
+TEST_CASE("session: a step between surfaces is tested as the kept check does it") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene);
+  for (const double depth : {0.0, -1e-9, -0.2, -2.0}) {
+    const Positions end = scene.deformation->surface(moved(scene.controls, upper_sheet, Vector3(0, 0, depth)));
+    Execution execution(1);
+    Detector detector(scene.surface);
+    IntersectionTest intersections(scene.surface);
+    const bool expected = is_step_free(detector, intersections, session.surface(), end, {}, execution);
+    CHECK(session.is_step_free(session.surface(), end, execution) == expected);
+    CHECK(expected == (depth > -0.3));
+  }
+}
