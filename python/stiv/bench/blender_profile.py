@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
+from stiv.bench.dragged_profile import DragsOf, dragged_rows
 from stiv.bench.running import Report
 from stiv.bench.scene_library import CHECKOUT
 from stiv.bench.table1 import PARTS
@@ -22,10 +23,16 @@ FILES = {
 
 
 def blender_profile(
-    names: Sequence[str], frames_of: Callable[[Path], Sequence[Any]], report: Report
+    names: Sequence[str],
+    frames_of: Callable[[Path], Sequence[Any]],
+    drags_of: DragsOf,
+    threads: Sequence[int],
+    report: Report,
 ) -> list[dict[str, Any]]:
-    """One row a scene, one thread, by the clock. Raises InputError where there are no .blend files.
+    """One row a scene, by the clock. Raises InputError where there are no .blend files.
 
+    Frames are those of one thread, each solved to its end; "dragged" are the same drags as a user sees them, for each
+    number of threads (see `dragged_rows`).
     frames_of: opens a .blend and runs the script beside it; the `stiv.blender.frame_times.FrameTime` of each frame.
     """
     rows = []
@@ -35,6 +42,8 @@ def blender_profile(
             raise InputError(f"bench profile --in-blender: there is no {path.name}; run it in a source checkout")
         frames = frames_of(path)
         report(name)
+        dragged, failed = dragged_rows(path, drags_of, threads)
+        report(f"{name}, as dragged")
         total = sum(frame.seconds for frame in frames)
         rows.append(
             {
@@ -47,7 +56,8 @@ def blender_profile(
                 "evaluation": [frame.evaluation for frame in frames],
                 "touches": [frame.touches for frame in frames],
                 "shares": shares_with_blender(frames, total),
-                "intersections": sum(not frame.passed for frame in frames),
+                "intersections": sum(not frame.passed for frame in frames) + failed,
+                "dragged": dragged,
             }
         )
     return rows

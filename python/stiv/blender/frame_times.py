@@ -61,8 +61,10 @@ def frame_times(script: EditScript, settings_of: Callable[[Any], EditSettings]) 
     return frames
 
 
-def goal_matrix(step: EditStep, repetition: int, pivot: Floats) -> Floats:
-    """The absolute transform (4, 4) of a drag after so many repetitions of a move or a scaling about `pivot` (3,)."""
+def goal_matrix(step: EditStep, repetition: float, pivot: Floats) -> Floats:
+    """The absolute transform (4, 4) of a drag after so many repetitions of a move or a scaling about `pivot` (3,),
+    of which the last may be a part.
+    """
     matrix = np.eye(4)
     value = np.array(step.values["value"])
     if step.operator == "move":
@@ -86,7 +88,7 @@ def _drag(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: lis
         end = time.perf_counter()
         touches = result.rounds > 0 or len(result.events) > 0
         yield FrameTime(
-            _name(step), end - begin, clock[0], end - solved - clock[0], dict(result.timings), touches, passed
+            name_of(step), end - begin, clock[0], end - solved - clock[0], dict(result.timings), touches, passed
         )
 
 
@@ -98,11 +100,12 @@ def _reshape(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: 
         said = json.loads(bpy.context.window_manager.stiv_last_edit)
         timings = said.get("timings", {})
         yield FrameTime(
-            _name(step), end - begin, clock[0], 0.0, timings, said["rounds"] > 0, not said.get("pairs_left", 0)
+            name_of(step), end - begin, clock[0], 0.0, timings, said["rounds"] > 0, not said.get("pairs_left", 0)
         )
 
 
-def _name(step: EditStep) -> str:
+def name_of(step: EditStep) -> str:
+    """Operator, mode and objects of a step."""
     return f"{step.operator} {step.mode.lower()} {', '.join(step.objects)}"
 
 

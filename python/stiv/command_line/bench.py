@@ -8,25 +8,23 @@ import os
 import platform
 import shlex
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
 from stiv.bench.blender_profile import blender_profile
 from stiv.bench.cloth import cloth, cloth_text
+from stiv.bench.dragged_profile import dragged_text
 from stiv.bench.models import models, models_text
 from stiv.bench.profile import profile, profile_text
 from stiv.bench.race import race, race_text
 from stiv.bench.running import Report
 from stiv.bench.scaling import scaling, scaling_text
 from stiv.bench.table1 import KINDS, PUBLISHED, shares_text, table1, table_text
-from stiv.command_line.blender_module import addon_registered, require_blender
+from stiv.command_line.bench_in_blender import drags_in_blender, frames_in_blender
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.output_files import require_folder, write_json
-from stiv.command_line.quiet import quiet_blender
-from stiv.edit_scripts import read_edit_script
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -41,7 +39,8 @@ examples:
   stiv bench table1                          the paper's Table 1, its method and ours beside its figures
   stiv bench table1 --scenes knot tree --threads 1 --json table1.json
   stiv bench profile --scenes plant dressing frames a second, edit by edit
-  stiv bench profile --in-blender             the same as drags in Blender, its own evaluation included
+  stiv bench profile --in-blender             the same as drags in Blender, its own evaluation included: each frame
+                                             solved to its end, and as a user sees them, with the add-on's time limit
   stiv bench race                            against stopping at the first contact, and our loop on ipctk (needs ipctk)
   stiv bench cloth                           against Blender's own cloth simulation, where it applies
   stiv bench --models FOLDER                 Figures 9 and 1 with the bunny, the teapot and the ogre of a folder
@@ -127,20 +126,10 @@ def _table(arguments: argparse.Namespace, report: Report) -> _Result:
 
 def _profile(arguments: argparse.Namespace, report: Report) -> _Result:
     if arguments.in_blender:
-        rows = blender_profile(arguments.scenes, _frames_in_blender, report)
-    else:
-        rows = profile(arguments.scenes, arguments.threads, report)
+        rows = blender_profile(arguments.scenes, frames_in_blender, drags_in_blender, arguments.threads, report)
+        return rows, profile_text(rows) + "\n\n" + dragged_text(rows)
+    rows = profile(arguments.scenes, arguments.threads, report)
     return rows, profile_text(rows)
-
-
-def _frames_in_blender(path: Path) -> Sequence[Any]:
-    files, times = (require_blender(f"stiv.blender.{name}", path) for name in ("blend_files", "frame_times"))
-    with quiet_blender(), addon_registered(path):
-        files.open_blend(path)
-        of_scene = require_blender("stiv_addon.settings", path).edit_settings
-        script = read_edit_script(path.with_suffix(".edits.json"))
-        found: Sequence[Any] = times.frame_times(script, lambda scene: replace(of_scene(scene), threads=1))
-        return found
 
 
 def _race(arguments: argparse.Namespace, report: Report) -> _Result:

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames as dragged: how long each tick of a drag in Blender holds the interface, and how old what it shows is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+DragsOf = Callable[[Path, int], Sequence[Any]]
+TICK_VALUES = ("at", "seconds", "solving", "shown", "behind", "touches")
+
+
+def dragged_rows(path: Path, drags_of: DragsOf, threads: Sequence[int]) -> tuple[list[dict[str, Any]], int]:
+    """A row for each number of threads, by the clock, and how many states that were shown did not pass.
+
+    drags_of: opens a .blend and drags the script beside it with so many threads; its
+    `stiv.blender.dragged_frames.DraggedStage`.
+    """
+    rows, failed = [], 0
+    for count in threads:
+        stages = drags_of(path, count)
+        failed += sum(not tick.passed for stage in stages for tick in stage.ticks)
+        rows.append({"threads": count, "stages": [_stage(stage) for stage in stages]})
+    return rows, failed
+
+
+def _stage(stage: Any) -> dict[str, Any]:
+    values = {name: getattr(stage, name) for name in ("name", "beginning", "moving", "settling", "confirming")}
+    return {**values, "ticks": {name: [getattr(tick, name) for tick in stage.ticks] for name in TICK_VALUES}}
+
+
+def dragged_text(rows: Sequence[dict[str, Any]]) -> str:
+    """A line a scene and number of threads, milliseconds: ticks, new pictures while the mouse moves, the rest of all.
+
+    "ticks", "apart" and "behind" each as worst / 95 % / median: how long a tick holds the interface, how far apart in
+    time new states are shown while the mouse moves, and how long ago it was where they are.
+    """
+    head = f"{'as dragged':10} {'threads':>7} {'ticks':>17} {'apart':>17} {'behind':>17} {'settling':>8} {'begin':>6}"
+    return "\n".join([head, *(_line(row["scene"], part) for row in rows for part in row["dragged"])])
+
+
+def _line(scene: str, part: dict[str, Any]) -> str:
+    stages = part["stages"]
+    seconds = np.concatenate([stage["ticks"]["seconds"] for stage in stages])
+    apart = np.concatenate([shown_apart(stage) for stage in stages])
+    behind = np.concatenate([_while_moving(stage, "behind") for stage in stages])
+    settling = 1000 * max(stage["settling"] for stage in stages)
+    begin = 1000 * max(stage["beginning"] for stage in stages)
+    figures = " ".join(f"{_percentiles(values):>17}" for values in (seconds, apart, behind))
+    return f"{scene:10} {part['threads']:7d} {figures} {settling:8.0f} {begin:6.0f}"
+
+
+def shown_apart(stage: dict[str, Any]) -> Any:
+    """Seconds between two states that were shown one after the other while the mouse moved."""
+    return np.diff(_while_moving(stage, "at"), prepend=0.0)
+
+
+def _while_moving(stage: dict[str, Any], name: str) -> Any:
+    ticks = {key: np.array(values) for key, values in stage["ticks"].items()}
+    rows = ticks["shown"].astype(bool) & (ticks["at"] <= stage["moving"])
+    return ticks[name][rows] if rows.any() else np.array([stage["moving"] + stage["settling"]])
+
+
+def _percentiles(seconds: Any) -> str:
+    worst, most, median = 1000 * np.percentile(seconds, [100, 95, 50])
+    return f"{worst:.0f} / {most:.0f} / {median:.0f}"

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a user sees of a drag: an edit script dragged as the add-on does it, while the mouse moves on by the clock.
+
+A step that repeats is one drag. The mouse is where the script's repetitions say at each moment, SPEED of them a second,
+then it rests until nothing is left to solve for, and the drag is confirmed. A tick comes every TICK seconds, or as soon
+as the last one is over. There is no window: Blender's evaluation is in the time, its drawing is not.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import bpy
+
+import stiv
+from stiv.blender.arrays import Floats
+from stiv.blender.frame_times import goal_matrix, name_of
+from stiv.blender.nearby import begin_nearby
+from stiv.blender.replaying import prepare, run_edit
+from stiv.blender.settings import EditSettings
+from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
+
+SPEED = 24.0  # repetitions a second: each would be a frame of its own in a film
+TICK = 1.0 / 60.0  # seconds, of the add-on's timer
+PATIENCE = 60.0  # seconds that a drag may go on solving once the mouse rests
+
+
+class Drag(Protocol):
+    """What is needed of the add-on's drag; see `new_drag` of `dragged_stages`."""
+
+    @property
+    def result(self) -> Any:
+        """Of the last solve, a stiv.EditResult, or None."""
+
+    @property
+    def report(self) -> Any:
+        """Of the last writing, a WriteReport, or None."""
+
+    @property
+    def error(self) -> Exception | None:
+        """What ended it."""
+
+    @property
+    def at_rest(self) -> bool:
+        """Is nothing left to solve for?"""
+
+    def point(self, where: float) -> None:
+        """The mouse moved there."""
+
+    def tick(self) -> None:
+        """A timer event."""
+
+    def confirm(self) -> None:
+        """Enter."""
+
+
+NewDrag = Callable[[str, Callable[[], Any], Callable[[float], Floats]], Drag]
+
+
+@dataclass(frozen=True)
+class Tick:
+    """One timer event that solved; seconds of the clock.
+
+    Attributes:
+        at: since the drag began, at its end.
+        seconds: that it held the interface.
+        solving: of these, the core's.
+        shown: whether an accepted state was written, evaluated, read back and tested in it.
+        behind: with `shown`: how long ago the mouse was where the state's goal is.
+        touches: something interfered.
+        passed: what Blender shows passed the exact test.
+    """
+
+    at: float
+    seconds: float
+    solving: float
+    shown: bool
+    behind: float
+    touches: bool
+    passed: bool
+
+
+@dataclass(frozen=True)
+class DraggedStage:
+    """One drag; seconds of the clock.
+
+    Attributes:
+        name: operator and objects.
+        beginning: to read the scene and build what solves.
+        moving: that the mouse moved.
+        ticks: all that solved, in order.
+        settling: from the mouse's rest to the end of the last of them.
+        confirming: what Enter took.
+    """
+
+    name: str
+    beginning: float
+    moving: float
+    ticks: Sequence[Tick]
+    settling: float
+    confirming: float
+
+
+def dragged_stages(
+    script: EditScript, settings_of: Callable[[Any], EditSettings], new_drag: NewDrag
+) -> list[DraggedStage]:
+    """Drags a script through the open scene; steps that reshape are run between, and not timed.
+
+    settings_of: a scene's, as of a drag of the add-on. new_drag: the add-on's drag of a kind, with what begins an edit
+    of the scene and the goal of a place of the mouse. Raises InputError as `replay`.
+    """
+    stages = []
+    for number, step in enumerate(script.steps):
+        prepare(step, script, number)
+        if step.operator not in TRANSFORMS:
+            for _ in range(step.repeat):
+                run_edit(step, number)
+        elif step.operator == "rotate":
+            raise stiv.InputError("rotate: frame times are of scripts that move, scale and reshape")
+        else:
+            stages.append(_Dragging(step, settings_of, new_drag).stage())
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return stages
+
+
+@dataclass
+class _Dragging:
+    step: EditStep
+    settings_of: Callable[[Any], EditSettings]
+    new_drag: NewDrag
+    ticks: list[Tick] = field(default_factory=list)
+    solved_for: float = 0.0
+
+    def stage(self) -> DraggedStage:
+        begun = time.perf_counter()
+        drag = self.new_drag(self.step.operator, self._begin, self._goal)
+        beginning, moving = time.perf_counter() - begun, self.step.repeat / SPEED
+        self._start = time.perf_counter()
+        while self._now() < moving:
+            drag.point(min(self._now() * SPEED, self.step.repeat))
+            self._tick(drag)
+        drag.point(float(self.step.repeat))
+        while not drag.at_rest and self._now() < moving + PATIENCE:
+            self._tick(drag)
+        settling = max(self._now() - moving, 0.0)
+        confirmed = time.perf_counter()
+        drag.confirm()
+        if drag.error is not None:
+            raise drag.error
+        return DraggedStage(
+            name_of(self.step), beginning, moving, self.ticks, settling, time.perf_counter() - confirmed
+        )
+
+    def _now(self) -> float:
+        return time.perf_counter() - self._start
+
+    def _begin(self) -> Any:
+        edit = begin_nearby(bpy.context, self.settings_of(bpy.context.scene), self.step.operator)
+        self._pivot = edit.controls.mean(axis=0)
+        return edit
+
+    def _goal(self, where: float) -> Floats:
+        self.solved_for = where
+        return goal_matrix(self.step, where, self._pivot)
+
+    def _tick(self, drag: Drag) -> None:
+        if drag.at_rest:
+            time.sleep(TICK)
+            return
+        report, begun = drag.report, self._now()
+        drag.tick()
+        ended = self._now()
+        shown = drag.report is not report
+        behind = ended - self.solved_for / SPEED if shown else 0.0
+        result = drag.result
+        touches = result.rounds > 0 or len(result.events) > 0
+        passed = not shown or drag.report.passed
+        self.ticks.append(Tick(ended, ended - begun, result.timings["total"], shown, behind, touches, passed))
+        time.sleep(max(0.0, TICK - (ended - begun)))

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `stiv bench profile --in-blender` measures: the frames of a script, and its drags as the add-on has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from stiv.command_line.blender_module import addon_registered, require_blender
+from stiv.command_line.quiet import quiet_blender
+from stiv.edit_scripts import EditScript, read_edit_script
+
+PIXELS = 1000.0  # of the pointer's x for one repetition of a script
+
+
+def frames_in_blender(path: Path) -> Sequence[Any]:
+    """The `FrameTime` of each edit of the script beside a .blend, each solved to its end, one thread."""
+    with _opened(path) as script:
+        of_scene = require_blender("stiv_addon.settings", path).edit_settings
+        times = require_blender("stiv.blender.frame_times", path)
+        frames: Sequence[Any] = times.frame_times(script, lambda scene: replace(of_scene(scene), threads=1))
+        return frames
+
+
+def drags_in_blender(path: Path, threads: int) -> Sequence[Any]:
+    """The `DraggedStage` of each drag of the same script, with the add-on's limit to the time of each solve."""
+    with _opened(path) as script:
+        settings, modal = require_blender("stiv_addon.settings", path), _modal(path)
+
+        def settings_of(scene: Any) -> Any:
+            return replace(settings.edit_settings(scene, time_budget=settings.DRAG_BUDGET), threads=threads)
+
+        dragged = require_blender("stiv.blender.dragged_frames", path)
+        stages: Sequence[Any] = dragged.dragged_stages(
+            script, settings_of, lambda kind, begin, goal_of: ScriptedDrag.begun(modal, kind, begin, goal_of)
+        )
+        return stages
+
+
+@dataclass(frozen=True)
+class ScriptedDrag:
+    """The add-on's drag without a window: the pointer's x is where the mouse is on its way."""
+
+    drag: Any
+    event: Any
+
+    @classmethod
+    def begun(
+        cls, modal: dict[str, ModuleType], kind: str, begin: Callable[[], Any], goal_of: Callable[[float], Any]
+    ) -> ScriptedDrag:
+        """A drag of a kind; `modal` are the modules of the add-on by their names."""
+        state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["request"].Request(kind))
+        drag = modal["drag"].Drag(
+            lambda request: begin(),
+            lambda state: state.pointer.effective[0] / PIXELS,
+            lambda where, state: goal_of(where),
+            state,
+        )
+        return cls(drag, modal["events"].Event)
+
+    def point(self, where: float) -> None:
+        """The mouse moved there."""
+        self.drag.handle(self.event("MOUSEMOVE", "NOTHING", (PIXELS * where, 0.0)))
+
+    def tick(self) -> None:
+        """A timer event."""
+        self.drag.tick()
+
+    def confirm(self) -> None:
+        """Enter."""
+        self.drag.handle(self.event("RET"))
+
+    @property
+    def at_rest(self) -> bool:
+        """Is nothing left to solve for?"""
+        return bool(self.drag.at_rest)
+
+    @property
+    def result(self) -> Any:
+        """Of the last solve."""
+        return self.drag.result
+
+    @property
+    def report(self) -> Any:
+        """Of the last writing."""
+        return self.drag.report
+
+    @property
+    def error(self) -> Exception | None:
+        """What ended it."""
+        error: Exception | None = self.drag.error
+        return error
+
+
+def _modal(path: Path) -> dict[str, ModuleType]:
+    return {
+        name: require_blender(f"stiv_addon.modal.{name}", path)
+        for name in ("drag", "events", "pointer", "request", "state")
+    }
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[EditScript]:
+    """A .blend open, with the add-on's operators; the script beside it."""
+    with quiet_blender(), addon_registered(path):
+        require_blender("stiv.blender.blend_files", path).open_blend(path)
+        yield read_edit_script(path.with_suffix(".edits.json"))

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames as dragged: a script is dragged to its end, every tick is told, and what they came to is free."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import pytest
+
+import stiv
+from stiv.bench.dragged_profile import dragged_rows, dragged_text, shown_apart
+from stiv.blender.blend_files import open_blend
+from stiv.blender.checking import find_pairs, read_surface
+from stiv.command_line.bench_in_blender import drags_in_blender
+from stiv.edit_scripts import EditScript, EditStep, read_edit_script
+
+FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
+BLEND = FIXTURES / "sphere_along_wall.blend"
+
+
+def test_every_drag_of_a_script_is_told_tick_by_tick():
+    open_blend(BLEND)
+    before = read_surface(bpy.context).positions
+    (row,), failed = dragged_rows(BLEND, drags_in_blender, [1])
+    script = read_edit_script(BLEND.with_suffix(".edits.json"))
+    assert failed == 0 and row["threads"] == 1 and len(row["stages"]) == len(script.steps)
+    assert abs(read_surface(bpy.context).positions - before).max() > 0.05
+    assert find_pairs(read_surface(bpy.context)) == ()
+    for stage in row["stages"]:
+        ticks = stage["ticks"]
+        assert len({len(values) for values in ticks.values()}) == 1 and any(ticks["shown"])
+        assert sorted(ticks["at"]) == ticks["at"]
+        assert all(0 <= solving <= whole for solving, whole in zip(ticks["solving"], ticks["seconds"], strict=True))
+        assert all(behind >= whole for behind, whole, shown in zip(
+            ticks["behind"], ticks["seconds"], ticks["shown"], strict=True) if shown)  # fmt: skip
+        assert (shown_apart(stage) > 0).all()
+    assert dragged_text([{"scene": "sphere", "dragged": [row]}]).splitlines()[1].startswith("sphere")
+
+
+@pytest.mark.usefixtures("registered")
+def test_turning_is_refused():
+    from stiv.blender.dragged_frames import dragged_stages
+    from stiv_addon.settings import edit_settings
+
+    open_blend(BLEND)
+    name = next(ob.name for ob in bpy.context.scene.objects if ob.type == "MESH")
+    turned = EditStep("rotate", "OBJECT", (name,), {"angle": 1.0, "axis": (0, 0, 1)})
+    with pytest.raises(stiv.InputError, match="rotate"):
+        dragged_stages(EditScript((turned,)), lambda scene: replace(edit_settings(scene), threads=1), None)
