@@ -59,9 +59,11 @@ class EditSession:
 
     A start that already intersects is refused, unless the pairs that do are excluded (`EditOptions.exclude`). Then,
     from one accepted state to the next, the number of excluded pairs that intersect never grows, and no other pair
-    ever intersects. It says nothing of how deep an excluded pair goes; but the neighbours of its triangles are
-    guarded, so that it cannot go on through them. Two bodies that stand in each other for good are better told to the
-    surface, as `ignored`: with exclusion they can hardly be moved against each other, as other triangles would meet.
+    ever intersects; and two closed bodies never have more volume in common than at the start of the session. How deep
+    excluded pairs of open surfaces, or of one body, go is not watched; but the neighbours of their triangles are
+    guarded, so that they cannot go on through these. Two bodies that stand in each other for good are better told to
+    the surface, as `ignored`: with exclusion they can hardly be moved against each other, as other triangles would
+    meet.
 
     Args:
         surface: triangles, (F, 3) integers, or a :class:`stiv.Surface`.

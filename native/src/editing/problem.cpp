@@ -70,6 +70,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
   diagonal_ = extent.diagonal;
   const double least = least_separation(extent, controls, options_.storage, rotation_rows_);
   set_proximity(extent, least);
+  if (!excluded_.empty()) depth_.emplace(surface_, options_.excluded, least);
   if (options_.narrow_phase != NarrowPhase::conservative)
     round_detector_.emplace(surface_, DetectorOptions{options_.broad_phase, options_.narrow_phase});
 }
@@ -103,6 +104,7 @@ void Problem::check_controls(const Controls& controls, const char* what) const {
 void Problem::check_start(const Positions& q, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
   StartIntersections found = find_static_pairs(intersections_, q, execution);
+  if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (found.empty()) return;
   const std::string message = describe(*surface_, found);
@@ -158,10 +160,10 @@ bool Problem::is_free(const Positions& from, const Positions& to, Execution& exe
   const ScopedTimer timer(execution.timings.acceptance);
   if (excluded_.empty()) return intersections_.is_free(to, moved_vertices(from, to), execution);
   StaticPairs found = find_static_pairs(intersections_, to, execution);
-  const std::size_t most = intersections_.find(from, execution).size();
-  const bool grown = found.faces.size() > most;
+  const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
-  return !grown && found.empty();
+  if (!found.empty() || all.size() > intersections_.find(from, execution).size()) return false;
+  return !depth_->is_deeper(to, all);
 }
 
 bool Problem::is_step_free(const Positions& from, const Positions& to, Execution& execution) {

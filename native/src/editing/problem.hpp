@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "editing/depth_watch.hpp"
 #include "editing/excluded_pairs.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/deformation.hpp"
@@ -72,6 +73,7 @@ class Problem {
 
   /// @throws InputError naming object and control if shape or values do not fit; `what` is "controls" or "goal"
   void check_controls(const Controls& controls, const char* what) const;
+  /// The first one that is checked is the start of the session.
   /// @throws StartIntersectsError
   void check_start(const Positions& q, Execution& execution);
 
@@ -89,7 +91,8 @@ class Problem {
   std::optional<Events> find_events_among_kept(const Positions& from, const Positions& to, Execution& execution);
   std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
                                       Execution& execution);
-  /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`.
+  /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`,
+  /// and no deeper than at the start of the session.
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
   /// Is a step free, its path and its end, however near things come? Its start is known to be; nothing is excluded.
   bool is_step_free(const Positions& from, const Positions& to, Execution& execution);
@@ -110,6 +113,7 @@ class Problem {
   std::optional<Detector> round_detector_;  ///< of the rounds, where it is another one
   IntersectionTest intersections_;
   ExcludedPairs excluded_;
+  std::optional<DepthWatch> depth_;  ///< of excluded pairs, if there are any
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;
   std::optional<BodySeparations> body_separations_;
