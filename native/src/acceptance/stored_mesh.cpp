@@ -20,6 +20,10 @@ class StoredMesh final : public HandleDeformation {
   Index vertex_count() const override { return mesh_->vertex_count(); }
   Positions surface(const Controls& p) const override { return as_stored(mesh_->surface(p), storage_); }
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return mesh_->pull_back(p, g); }
+  std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    return mesh_->pull_back_all(p, g, execution);
+  }
   Positions push_forward(const Controls& p, const Controls& d) const override { return mesh_->push_forward(p, d); }
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return mesh_->metric(options); }
   std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const override {

@@ -44,6 +44,11 @@ class Chain final : public HandleDeformation {
     return inner_->pull_back(p, outer_->pull_back(Controls(), g));  // the outer Jacobian is the same everywhere
   }
 
+  std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    return inner_->pull_back_all(p, outer_->pull_back_all(Controls(), g, execution), execution);
+  }
+
   Positions push_forward(const Controls& p, const Controls& d) const override {
     return outer_->push_forward({}, inner_->push_forward(p, d));
   }

@@ -145,6 +145,28 @@ class Concatenation final : public Deformation {
     return pulled;
   }
 
+  std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    std::vector<std::vector<std::size_t>> whose(parts_.size());  // of each part's covectors
+    std::vector<std::vector<SparseField>> of_parts(parts_.size());
+    for (std::size_t k = 0; k < g.size(); ++k) {
+      std::vector<SparseField> pieces = split(g[k], vertex_places_, parts_.size());
+      for (std::size_t part = 0; part < parts_.size(); ++part) {
+        if (pieces[part].index.empty()) continue;
+        whose[part].push_back(k);
+        of_parts[part].push_back(std::move(pieces[part]));
+      }
+    }
+    std::vector<SparseField> pulled(g.size());
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      if (whose[part].empty()) continue;
+      const std::vector<SparseField> pieces =
+          parts_[part].deformation->pull_back_all(rows_of_part(p, control_starts_, part), of_parts[part], execution);
+      for (std::size_t k = 0; k < pieces.size(); ++k) append(pulled[whose[part][k]], pieces[k], control_starts_[part]);
+    }
+    return pulled;
+  }
+
   Positions push_forward(const Controls& p, const Controls& d) const override {
     check_control_rows(p, control_count());
     check_control_rows(d, control_count());

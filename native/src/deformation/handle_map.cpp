@@ -80,6 +80,44 @@ ColumnBlock unit_columns(const std::vector<Index>& rows, Index first, Index coun
   return unit;
 }
 
+/// The direction that all values of a field have, but for rounding; or the three axes if they have none in common.
+std::vector<Vector3> directions_of(const SparseField& field) {
+  constexpr double rounding = 1e-14;
+  Vector3 largest = Vector3::Zero();
+  for (const Vector3& value : field.value)
+    if (value.squaredNorm() > largest.squaredNorm()) largest = value;
+  const Vector3 direction = largest.stableNormalized();
+  const bool is_common = std::all_of(field.value.begin(), field.value.end(), [&](const Vector3& value) {
+    return (value - direction.dot(value) * direction).norm() <= rounding * largest.norm();
+  });
+  if (is_common) return {direction};
+  return {Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+}
+
+/// A field with a row for each of `count`, all zero.
+SparseField whole_field(Index count) {
+  SparseField field;
+  for (Index k = 0; k < count; ++k) field.index.push_back(k);
+  field.value.assign(static_cast<std::size_t>(count), Vector3::Zero());
+  return field;
+}
+
+/// Begins of runs of fields that need no more columns together than a block has, and the end of the last.
+std::vector<std::size_t> runs_of(const std::vector<SparseField>& fields) {
+  std::vector<std::size_t> begins{0};
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const std::size_t columns = directions_of(fields[k]).size();
+    if (used + columns > static_cast<std::size_t>(ColumnBlock::ColsAtCompileTime)) {
+      begins.push_back(k);
+      used = 0;
+    }
+    used += columns;
+  }
+  begins.push_back(fields.size());
+  return begins;
+}
+
 }  // namespace
 
 HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, const SymmetricMatrix& stiffness,
@@ -176,23 +214,64 @@ Positions HandleMap::follow(const Controls& d) const {
   return u;
 }
 
+/// M'g of some fields by one solve, a column for each of their directions.
+template <class Block>
+void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseField* covectors) const {
+  Block right = Block::Zero(vertex_count(), Block::ColsAtCompileTime);
+  std::vector<std::vector<Vector3>> directions;
+  Index column = 0;
+  for (std::size_t field = 0; field < count; ++field)
+    for (const Vector3& direction : directions.emplace_back(directions_of(g[field]))) {
+      for (std::size_t k = 0; k < g[field].index.size(); ++k)
+        right(g[field].index[k], column) = direction.dot(g[field].value[k]);
+      ++column;
+    }
+  const Block left = pulled(right);
+  column = 0;
+  for (std::size_t field = 0; field < count; ++field) {
+    covectors[field] = whole_field(control_count());
+    for (const Vector3& direction : directions[field]) {
+      for (Index k = 0; k < control_count(); ++k)
+        covectors[field].value[static_cast<std::size_t>(k)] += left(k, column) * direction;
+      ++column;
+    }
+  }
+}
+
 SparseField HandleMap::pull_back(const SparseField& g) const {
+  SparseField covector = whole_field(control_count());
+  if (!is_full() && !keeps_answers()) {
+    pull_by_solve<Positions>(&g, 1, &covector);
+    return covector;
+  }
   Controls sum = Controls::Zero(control_count(), 3);
-  if (is_full()) {
+  if (is_full())
     for (std::size_t k = 0; k < g.index.size(); ++k) sum += full_.row(g.index[k]).transpose() * g.value[k].transpose();
-  } else if (answers_.size() > 0) {
+  else
     sum = pulled_by_answers(g);
-  } else {
-    Positions dense = Positions::Zero(vertex_count(), 3);
-    for (std::size_t k = 0; k < g.index.size(); ++k) dense.row(g.index[k]) = g.value[k];
-    sum = pulled(dense);
-  }
-  SparseField covector;
-  for (Index k = 0; k < control_count(); ++k) {
-    covector.index.push_back(k);
-    covector.value.push_back(sum.row(k));
-  }
+  for (Index k = 0; k < control_count(); ++k) covector.value[static_cast<std::size_t>(k)] = sum.row(k);
   return covector;
+}
+
+std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const {
+  std::vector<SparseField> covectors(g.size());
+  if (is_full() || keeps_answers()) {
+    constexpr Index products_per_chunk = 16;
+    execution.for_chunks(static_cast<Index>(g.size()), products_per_chunk, [&](Index begin, Index end, Index) {
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+        covectors[k] = pull_back(g[k]);
+    });
+    return covectors;
+  }
+  const std::vector<std::size_t> runs = runs_of(g);
+  execution.for_chunks(static_cast<Index>(runs.size()) - 1, 1, [&](Index run, Index, Index) {
+    const std::size_t begin = runs[static_cast<std::size_t>(run)], end = runs[static_cast<std::size_t>(run) + 1];
+    if (end - begin == 1)
+      covectors[begin] = pull_back(g[begin]);
+    else
+      pull_by_solve<ColumnBlock>(&g[begin], end - begin, &covectors[begin]);
+  });
+  return covectors;
 }
 
 Positions HandleMap::answer(const Positions& right) const {

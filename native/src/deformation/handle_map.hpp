@@ -6,6 +6,7 @@
 
 #include "deformation/handle_partition.hpp"
 #include "deformation/sparse_factor.hpp"
+#include "stiv/execution.hpp"
 
 namespace stiv {
 
@@ -35,6 +36,10 @@ class HandleMap {
   Positions follow(const Controls& d) const;          ///< M d
   SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
 
+  /// The same for many: where each is a solve, as many as a block has columns share a pass over the factor. A contact's
+  /// covector has one direction at all of its vertices, and so takes one column instead of three.
+  std::vector<SparseField> pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const;
+
   /// The displacements that meet (K + pulls) u = right with handles and fixed vertices held: right (n, 3), of which
   /// only the rows of free vertices count. For what else than handles moves a mesh.
   Positions answer(const Positions& right) const;
@@ -49,6 +54,8 @@ class HandleMap {
   Block solved(const Block& d) const;
   template <class Block>
   Block pulled(const Block& g) const;
+  template <class Block>
+  void pull_by_solve(const SparseField* g, std::size_t count, SparseField* covectors) const;
   void keep_in_full();
   void keep_answers(const std::vector<Index>& driven);
   Controls pulled_by_answers(const SparseField& g) const;

@@ -32,6 +32,11 @@ class Laplacian final : public HandleDeformation {
 
   SparseField pull_back(const ControlsView&, const SparseField& g) const override { return map_.pull_back(g); }
 
+  std::vector<SparseField> pull_back_all(const ControlsView&, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    return map_.pull_back_all(g, execution);
+  }
+
   Positions push_forward(const Controls&, const Controls& d) const override {
     check_control_rows(d, control_count());
     return map_.follow(d);

@@ -16,7 +16,7 @@ namespace {
 /// rounding leaves where free controls move all corners of the contacts alike, or move none.
 constexpr double least_squared_length = 1e-24;
 
-constexpr Index rows_per_chunk = 8;  // of the Gram matrix
+constexpr Index rows_per_chunk = 8;  // of the Gram matrix, and of steps
 
 std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 
@@ -25,18 +25,23 @@ std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
                                                    const Controls& p, const Metric& metric, const Controls& metric_at,
                                                    const Execution* execution) {
+  const Execution alone(1);
+  const Execution& shared = execution != nullptr ? *execution : alone;
+  std::vector<SparseField> gradients;
+  for (const Stiv& stiv : stivs) gradients.push_back(stiv.gradient);
+  std::vector<SparseField> rows = deformation.pull_back_all(p, gradients, shared), steps(rows.size());
+  shared.for_chunks(static_cast<Index>(rows.size()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) steps[place(k)] = metric.apply_inverse(metric_at, rows[place(k)]);
+  });
   std::vector<ControlConstraint> constraints;
-  for (const Stiv& stiv : stivs) {
-    if (execution != nullptr) execution->check();
-    ControlConstraint constraint;
-    constraint.row = deformation.pull_back(p, stiv.gradient);
-    constraint.step = metric.apply_inverse(metric_at, constraint.row);
+  for (std::size_t k = 0; k < stivs.size(); ++k) {
+    ControlConstraint constraint{std::move(rows[k]), std::move(steps[k]), 0};
     const double squared_length = dot(constraint.row, constraint.step);
-    if (!(squared_length > least_squared_length * squared_norm(stiv.gradient))) continue;
+    if (!(squared_length > least_squared_length * squared_norm(gradients[k]))) continue;
     const double normalise = 1 / std::sqrt(squared_length);
     scale(constraint.row, normalise);
     scale(constraint.step, normalise);
-    constraint.bound = dot(constraint.row, p) - normalise * stiv.volume;
+    constraint.bound = dot(constraint.row, p) - normalise * stivs[k].volume;
     constraints.push_back(std::move(constraint));
   }
   return constraints;

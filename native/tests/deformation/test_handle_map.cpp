@@ -68,6 +68,33 @@ TEST_CASE("handle map: of many handles side by side the part of the inverse at t
   }
 }
 
+TEST_CASE("handle map: many covectors at once have the bits that each has alone, with any number of threads") {
+  for (const bool hard : {false, true}) {
+    const HandleDefinition definition = sheet_with_handles(9, hard, EdgeWeights::uniform);
+    std::vector<SparseField> fields;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      fields.push_back(
+          random_field(static_cast<Index>(definition.rest.rows()), 1 + static_cast<Index>(seed % 5), seed));
+      const Vector3 direction = Vector3(1, 2, -2) / 3;  // of a contact: one for all of its vertices
+      if (seed % 3 != 0)
+        for (Vector3& value : fields.back().value) value = value[0] * direction;
+    }
+    fields.emplace_back();
+    for (const HandleMapLimits& limits : {HandleMapLimits{}, HandleMapLimits{0, 0, 32}}) {
+      const HandleMap map = map_of(definition, limits);
+      for (const int threads : {1, 2}) {
+        const auto all = map.pull_back_all(fields, Execution(threads));
+        REQUIRE(all.size() == fields.size());
+        for (std::size_t k = 0; k < fields.size(); ++k) {
+          const SparseField alone = map.pull_back(fields[k]);
+          CHECK(all[k].index == alone.index);
+          CHECK(all[k].value == alone.value);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("handle map: the answer to a load is the least of its energy") {
   const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
   const Surface mesh = checked_mesh(definition);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stiv/deformation/metric.hpp"
+#include "stiv/execution.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -23,6 +24,12 @@ class Deformation {
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.
   virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;
+
+  /// The same for many covectors, as a round asks for them: each result has the bits that it has alone, but what is
+  /// dear for one, such as a pass over a factor, may serve several, and threads share the work.
+  /// @throws Interrupted
+  virtual std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                                 const Execution& execution) const;
 
   /// J(p) d: the surface's velocity under a motion d of the controls, (m, 3) -> (n, 3). For tests and linearisation.
   virtual Positions push_forward(const Controls& p, const Controls& d) const = 0;

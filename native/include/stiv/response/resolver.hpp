@@ -25,7 +25,8 @@ struct ControlConstraint {
 /// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control can change are left
 /// out. (mathematics.md, Eq. 5)
 /// @param metric_at controls at which the metric is taken; the same for constraints that are solved together
-/// @param execution asked between two STIVs whether to go on: there may be one for each of thousands of contacts
+/// @param execution shares the work, and is asked whether to go on: there may be a STIV for each of thousands of
+/// contacts; null: one thread
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
                                                    const Controls& p, const Metric& metric, const Controls& metric_at,
                                                    const Execution* execution = nullptr);
