@@ -24,7 +24,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: docs test-long peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -78,6 +78,12 @@ fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, static test, 
 	cmake --build --preset fuzz
 	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
 	build/venv/bin/python -W ignore tests/long/file_fuzzing.py --seconds $(FUZZ_SECONDS) --findings build/fuzz
+
+test-arm64: build/debian $(OPENSUBDIV) ## Compile the core and its own tests for arm64, and run them in an emulator (minutes)
+	tools/install_debian_packages.sh tools/debian_packages_arm64.txt
+	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset arm64 --target stiv_tests
+	ctest --preset arm64 --output-on-failure --parallel 2
 
 coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection and acceptance need 95 %
 	tools/install_debian_packages.sh tools/debian_packages_coverage.txt
