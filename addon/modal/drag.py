@@ -69,8 +69,8 @@ class Drag:
     """A drag from its start to a confirmation or a clean cancellation.
 
     Events only change the state; `tick` solves for the latest one, so that motions are never queued up behind a solve.
-    A solve has the time that is left of a frame. Where that ends before anything was accepted, the next tick goes on
-    with the same goal: one that is new at each tick would never be solved.
+    A solve has the time of a frame. Where that ends before anything was accepted, the next tick goes on with the same
+    goal: one that is new at each tick would never be solved. What there is no time left to show, the next tick shows.
     No exception leaves this class: a refused value (ValueError) is told in `note` and the last accepted state stays
     until the user types on; anything else restores the scene and ends the drag with the exception in `error`.
     """
@@ -106,12 +106,13 @@ class Drag:
         self._pending = False
         self._pace = Pace()
         self._unfinished: Aim | None = None
+        self._unshown = False
         self._solved: tuple[State | None, float] = (None, 0.0)
 
     @property
     def at_rest(self) -> bool:
         """Is there nothing to solve for until the next event?"""
-        return not self._pending or self.progress is not Progress.RUNNING
+        return not (self._pending or self._unshown) or self.progress is not Progress.RUNNING
 
     def handle(self, event: Event) -> Effect:
         """Take one event; says what it asked for."""
@@ -130,8 +131,8 @@ class Drag:
         self._pending = True
 
     def tick(self) -> Progress:
-        """Solve for the latest goal, if it is not yet reached."""
-        return self._guarded(self._solve_pending)
+        """Solve for the latest goal, if it is not yet reached, or show what the last tick came to."""
+        return self._guarded(self._advance)
 
     def abort(self, reason: Exception) -> Progress:
         """Restore and end, whatever the state."""
@@ -156,10 +157,18 @@ class Drag:
             self.progress = Progress.CANCELLED
         return effect
 
-    def _solve_pending(self) -> None:
+    def _advance(self) -> None:
+        begun = time.perf_counter()
+        if not self._unshown:
+            self._unshown = self._solve()
+        if self._unshown and self._pace.has_time_to_show(time.perf_counter() - begun):
+            self._show()
+
+    def _solve(self) -> bool:
+        """Solve for the latest goal, or go on with the one in hand; says whether there is anything to show."""
         if not self._pending:
-            return
-        self._pending, begun = False, time.perf_counter()
+            return False
+        self._pending = False
         refusal = self._begin_again()
         try:
             aim = self._unfinished or self._new_aim()
@@ -167,16 +176,19 @@ class Drag:
             self.result = self.edit.drag(aim.motion, time_budget=self._pace.budget)
         except ValueError as error:
             self.note = str(error)
-            return
+            return False
         self.transform = aim.transform
         self.note = refusal
         self._pending = self._may_gain(aim.state) or aim.state != self.state
-        solving = self.result.timings["total"]
-        if self.result.status == "budget" and len(self.result.path) == 0:  # what is shown is what is accepted
-            self._unfinished = aim
-        else:
-            self._write()
-            self._pace.note(time.perf_counter() - begun - solving)
+        nothing_accepted = self.result.status == "budget" and len(self.result.path) == 0
+        self._unfinished = aim if nothing_accepted else None
+        return not nothing_accepted
+
+    def _show(self) -> None:
+        begun = time.perf_counter()
+        self._unshown = False
+        self._write()
+        self._pace.note(time.perf_counter() - begun)
 
     def _new_aim(self) -> Aim:
         transform = self._measure(self.state)
@@ -240,7 +252,8 @@ class Drag:
     def _finish_dragged(self) -> None:
         self._unfinished = None  # what counts is where the mouse was let go
         for _ in range(LAST_SLICES):
-            self._solve_pending()
+            if self._solve():
+                self._show()
         if self.result is not None:
             settled = self.edit.settle()
             self.result = settled if settled.status != "unchanged" else self.result

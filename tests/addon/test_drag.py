@@ -8,6 +8,7 @@ from test_state import EVENTS
 from stiv_addon.modal.drag import LAST_SLICES, Drag, Progress
 from stiv_addon.modal.events import Event
 from stiv_addon.modal.expression import evaluate
+from stiv_addon.modal.pace import Pace
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect, State
@@ -111,6 +112,20 @@ def test_a_goal_is_not_given_up_for_a_newer_one_before_anything_was_accepted() -
     assert (edit.shown, drag.transform, drag.at_rest) == (0.5, 0.5, False)
     drag.tick()
     assert (edit.shown, drag.transform, drag.at_rest) == (0.7, 0.7, True)
+
+
+def test_what_a_tick_has_no_time_to_show_is_shown_by_the_next_before_anything_is_solved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    answers = iter([False, True, False, True])
+    monkeypatch.setattr(Pace, "has_time_to_show", lambda self, spent: next(answers))
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    for x in (50, 60, 70, 80):
+        drag.handle(move_to(x))
+        drag.tick()
+    assert edit.calls == ["drag", "write", "drag", "write"]
+    assert edit.goals == [0.5, 0.7] and not drag.at_rest
 
 
 def test_a_goal_in_hand_is_left_for_where_the_mouse_was_let_go() -> None:

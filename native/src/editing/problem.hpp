@@ -39,7 +39,9 @@ struct RoundProgress {
   Controls p;  ///< next candidate, before it is rounded
   bool accumulate = true;
   int round = 0;
-  bool searched = false;  ///< all pairs, from this start
+  bool searched = false;                       ///< all pairs, from this start
+  std::optional<Events> found = std::nullopt;  ///< on the way to the candidate, and not yet responded to
+  bool constrained = false;                    ///< their constraints are among those kept
 };
 
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)

@@ -34,6 +34,28 @@ double begun_part(Problem& problem, const State& accepted, Projection projection
   return part;
 }
 
+/// Adds the constraints of the outcome's events to those kept; false if nothing that is free to move can help.
+bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& areas, RoundOutcome& outcome,
+               RoundProgress& progress, Execution& execution) {
+  const EditOptions& options = problem.options();
+  ConstraintSet& kept = progress.kept;
+  ++execution.counters.rounds;
+  if (kept.size() > most_constraints(problem) / 2) kept.drop_inactive();
+  const Measurement measured = measure(problem, {outcome.events, accepted.surface, outcome.candidate.surface, areas},
+                                       progress.round, kept.size(), execution);
+  outcome.patches = measured.patches;
+  const ScopedTimer timer(execution.timings.response);
+  std::vector<ControlConstraint> rows =
+      control_constraints(measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(),
+                          accepted.controls, &execution);
+  if (rows.empty()) return false;
+  progress.accumulate = progress.accumulate && options.solver == ConstraintSolver::lcp &&
+                        (progress.round < options.accumulated_rounds || measured.each_contact);
+  if (!progress.accumulate) kept = ConstraintSet();
+  kept.add(std::move(rows));
+  return true;
+}
+
 }  // namespace
 
 bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
@@ -44,44 +66,40 @@ bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& g
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
                         bool at_any_cost, Execution& execution) {
   const EditOptions& options = problem.options();
+  const bool is_lcp = options.solver == ConstraintSolver::lcp;
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
   outcome.at_any_cost = at_any_cost;
   RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
-  auto& [from, to, kind, kept, p, accumulate, round, searched] = progress;
+  auto& [from, to, kind, kept, p, accumulate, round, searched, found, constrained] = progress;
   for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);
     outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
     if (round == options.max_rounds) return outcome;
-    std::optional<Events> events;
-    if (searched) events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
-    if (!events || events->empty())
-      events = problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
-    searched = true;
-    outcome.too_far = !events;
-    if (outcome.too_far) return outcome;
-    outcome.clear = events->empty();
+    if (!found) {
+      std::optional<Events> events;
+      if (searched) events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
+      if (!events || events->empty())
+        events = problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
+      searched = true;
+      outcome.too_far = !events;
+      if (outcome.too_far) return outcome;
+      found = std::move(events);  // only now: a search that is interrupted has found nothing out
+      execution.note_gain();      // kept with the problem, see RoundProgress
+    }
+    outcome.clear = found->empty();
     if (outcome.clear) return outcome;
-    outcome.events = std::move(*events);
-    ++execution.counters.rounds;
-    if (kept.size() > most_constraints(problem) / 2) kept.drop_inactive();
-    const Measurement measured = measure(problem, {outcome.events, accepted.surface, outcome.candidate.surface, areas},
-                                         round, kept.size(), execution);
-    outcome.patches = measured.patches;
+    outcome.events = *found;
+    if (!constrained && !constrain(problem, accepted, areas, outcome, progress, execution)) return outcome;
+    constrained = true;  // what ends here is not to add them twice
     const ScopedTimer timer(execution.timings.response);
-    std::vector<ControlConstraint> rows =
-        control_constraints(measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(),
-                            accepted.controls, &execution);
-    if (rows.empty()) return outcome;  // nothing that is free to move can help
-    const bool inequalities = options.solver == ConstraintSolver::lcp;
-    accumulate = accumulate && inequalities && (round < options.accumulated_rounds || measured.each_contact);
-    if (!accumulate) kept = ConstraintSet();
-    kept.add(std::move(rows));
     const Controls& from = accumulate ? goal : outcome.candidate.controls;
-    p = inequalities ? kept.project(from, execution) : kept.project_as_equations(from, execution);
-    execution.note_gain();  // kept with the problem, see RoundProgress
+    p = is_lcp ? kept.project(from, execution) : kept.project_as_equations(from, execution);
+    constrained = false;
+    found.reset();
+    execution.note_gain();
   }
 }
 
@@ -95,6 +113,8 @@ RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, co
     const Controls aim = aim_at(part);
     RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, execution);
     if (!outcome.too_far) return outcome;
+    rounds_toward(problem, accepted, aim_at(part / 2), projection);
+    execution.note_gain();  // a call that ends here is taken up with the half
   }
   return run_rounds(problem, accepted, aim_at(part), projection, true, execution);
 }

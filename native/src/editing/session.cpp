@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "editing/pull.hpp"
 #include "editing/report.hpp"
@@ -14,11 +15,18 @@ namespace stiv {
 namespace {
 
 constexpr int most_pulls_of_drag = 12;
+constexpr double least_stride = 0.25;  // pulls
 
 /// An answer is linearised where the goal's surface met, which may be far from where it ends; solving again from there
 /// lowers E further. While an edit has taken fewer rounds than this, it does so without being asked: unless the goal is
 /// no farther than a pull goes (a mouse move), where all is near, and there is little to gain before the next one.
 constexpr int rounds_of_cheap_edit = 24;
+
+/// How far a goal counts as followed when the time of a call ends.
+enum class Following {
+  whole,  ///< if anything was accepted
+  own     ///< as far as the work itself says
+};
 
 double farthest_way(const Positions& from, const Positions& to) { return (to - from).rowwise().norm().maxCoeff(); }
 
@@ -44,12 +52,13 @@ class EditSession::Implementation {
     problem_.unfinished_rounds().reset();
     goal_ = {goal, problem_.surface_at(goal, execution)};
     followed_ = goal_;
+    stride_ = std::numeric_limits<double>::infinity();
     accepted_ = std::move(state);
     dragging_ = goal != controls;
   }
 
   EditResult edit(const Controls& goal, Execution& execution) {
-    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+    return carry_out(goal, execution, Following::whole, [&](const Aim& aim, SolveReport& report) {
       dragging_ = false;
       const bool is_short = farthest_way(accepted_.surface, aim.surface) <= pull_limit();
       solve_in_turns(problem_, accepted_, aim, report, execution);
@@ -58,20 +67,17 @@ class EditSession::Implementation {
   }
 
   EditResult drag(const Controls& goal, Execution& execution) {
-    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+    return carry_out(goal, execution, Following::own, [&](const Aim& aim, SolveReport& report) {
       dragging_ = true;
       const PullLimits limits{.distance = pull_limit(), .pulls = pulls_after(aim)};
-      const Controls increment = incremented(aim.controls);
-      if (problem_.stored(increment) != accepted_.controls)
-        solve_in_turns(problem_, accepted_, {increment, aim.surface, false}, report, execution);
-      followed_ = {aim.controls, aim.surface};
+      follow(aim, report, execution);
       pull_until_settled(problem_, accepted_, aim, limits, report, execution);
     });
   }
 
   EditResult settle(Execution& execution) {
     const Controls goal = goal_.controls;
-    return carry_out(goal, execution, [&](const Aim& aim, SolveReport& report) {
+    return carry_out(goal, execution, Following::whole, [&](const Aim& aim, SolveReport& report) {
       PullLimits limits;
       if (dragging_) limits.distance = pull_limit();
       pull_until_settled(problem_, accepted_, aim, limits, report, execution);
@@ -102,6 +108,33 @@ class EditSession::Implementation {
     report.blocked = false;
   }
 
+  /// The increment since the goal that was followed last. Where the time of calls is limited, in strides: half as long
+  /// after one that took several calls, so that they come to accept something in each, and twice as long after others.
+  void follow(const Aim& aim, SolveReport& report, Execution& execution) {
+    for (bool arrives = false; !arrives;) {
+      const double way = farthest_way(followed_.surface, aim.surface);
+      arrives = way <= stride_ || !execution.has_time_budget();
+      State next{aim.controls, aim.surface};
+      if (!arrives) {
+        next.controls = interpolate(followed_.controls, aim.controls, stride_ / way, problem_.rotation_rows());
+        next.surface = problem_.surface_at(next.controls, execution);
+      }
+      const std::size_t accepted_before = report.path.size();
+      try {
+        const Controls increment = incremented(next.controls);
+        if (problem_.stored(increment) != accepted_.controls)
+          solve_in_turns(problem_, accepted_, {increment, aim.surface, false}, report, execution);
+      } catch (const Interrupted&) {
+        if (report.path.size() > accepted_before) followed_ = next;  // else what is left of it comes first
+        stride_is_long_ = true;
+        throw;
+      }
+      followed_ = next;
+      stride_ = stride_is_long_ ? std::max(std::min(stride_, way) / 2, least_stride * pull_limit()) : 2 * stride_;
+      stride_is_long_ = false;
+    }
+  }
+
   double pull_limit() const { return problem_.options().pull_limit * problem_.diagonal(); }
 
   /// Enough pulls to go back all the way that the increment came, and one more: a mouse that returns from deep inside
@@ -120,7 +153,7 @@ class EditSession::Implementation {
   /// Frame of every call: checks, the goal's surface, interruption, and the result. On anything but an end by itself or
   /// by the time budget, session and goal are as they were before.
   template <class Work>
-  EditResult carry_out(const Controls& goal, Execution& execution, const Work& work) {
+  EditResult carry_out(const Controls& goal, Execution& execution, Following following, const Work& work) {
     const FloatingPointScope floating_point;
     problem_.check_controls(goal, "goal");
     const State before = accepted_, followed_before = followed_;
@@ -146,7 +179,8 @@ class EditSession::Implementation {
           report.path.clear();
         } else {
           goal_ = target;
-          if (!dragging_ || !report.path.empty()) followed_ = target;  // else what is left of the increment comes first
+          const bool accepted_some = !dragging_ || !report.path.empty();
+          if (following == Following::whole && accepted_some) followed_ = target;
           resumable = true;
         }
       } catch (...) {
@@ -168,6 +202,8 @@ class EditSession::Implementation {
   State goal_;      ///< of the last call, as given
   State followed_;  ///< the last one whose increment was made: before `goal_` where the time budget ended a drag early
   Controls checked_;  ///< that were last restored: a drag that is cancelled goes back to them
+  double stride_ = std::numeric_limits<double>::infinity();  ///< of the surface, see `follow`
+  bool stride_is_long_ = false;                              ///< it took several calls so far
   bool dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< made when first asked for
 };

@@ -91,3 +91,23 @@ TEST_CASE("session: a step between surfaces is tested as the kept check does it"
     CHECK(expected == (depth > -0.3));
   }
 }
+
+TEST_CASE("session: hurried drags accept something on the way into contact, and come all the way back from it") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene);
+  int accepted = 0;
+  for (int step = 1; step <= 8; ++step) {
+    const HurriedDrag drag = drag_hurried(session, moved(scene.controls, upper_sheet, Vector3(0.02, 0, -0.15) * step));
+    CHECK(is_free(scene, session.surface()));
+    accepted += drag.result.path.empty() ? 0 : 1;
+  }
+  CHECK(accepted > 4);
+  EditResult result;
+  for (int call = 0; call < 500 && (call == 0 || result.status != EditStatus::reached); ++call) {
+    Execution execution(1);
+    execution.set_time_budget(1e-9, true);
+    result = session.drag(scene.controls, execution);
+  }
+  CHECK(result.status == EditStatus::reached);
+  CHECK((session.controls() - scene.controls).cwiseAbs().maxCoeff() < 1e-6);
+}
