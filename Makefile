@@ -96,13 +96,14 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long forms: all under the thread sanitizer, killed batches, random edits and every path they take, cancelled edits, soak, memory
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long forms: all under the thread sanitizer, killed batches, random edits and every path they take, cancelled edits, random events in a window, soak, memory
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	build/venv-blender/bin/python tests/long/cancelling_in_blender.py --times 200
+	build/venv/bin/python tests/window/run.py --sequences 500 --limit 7200 random_sequences
 	build/venv/bin/python tests/long/soak.py --drags 10000
 	build/venv/bin/python tests/long/cluster_throughput.py
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
@@ -175,14 +176,9 @@ build/stiv_thread_tests: $(NATIVE_SOURCES) $(OPENSUBDIV)
 	cmake --build --preset tsan --target stiv_thread_tests
 	touch $@
 
-build/venv-blender-%/ready: $(WHEEL) tools/requirements/test.txt
+# Each finds the package where a user's Blender would: in what it unpacked when the zip was installed.
+build/venv-blender-%/ready: $(EXTENSION) tools/requirements/test.txt tools/install_extension.py
 	tools/make_venv.sh $(PYTHON) $(@D) bpy==$* -r tools/requirements/test.txt
-	tools/install_wheel.sh $(@D)
-	touch $@
-
-# The oldest finds the package where a user's Blender would: in what it unpacked when the zip was installed.
-$(ZIP_VENV)/ready: $(EXTENSION) tools/requirements/test.txt tools/install_extension.py
-	tools/make_venv.sh $(PYTHON) $(@D) bpy==$(firstword $(BLENDERS)) -r tools/requirements/test.txt
 	$(@D)/bin/python tools/install_extension.py "$$(cat $(EXTENSION))"
 	touch $@
 

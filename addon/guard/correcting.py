@@ -32,6 +32,12 @@ def read(context: Any) -> Any:
     return read_state(context)
 
 
+def take_strokes(context: Any) -> None:
+    """Let Blender evaluate what was sculpted, which it only draws: what others read of it is as before the strokes."""
+    context.object.update_tag(refresh={"DATA"})
+    context.view_layer.update()
+
+
 def differs(accepted: Any, present: Any) -> bool:
     """Are any controls other than accepted?"""
     from stiv.blender import compare

@@ -119,6 +119,8 @@ def _see(context: Any) -> Seen:
 
 def _act(context: Any, window: Any, action: Action, seen: Seen) -> None:
     watch = _watch
+    if seen.sculpting:
+        correcting.take_strokes(context)
     if action is Action.ACCEPT:
         outcome = correcting.test(context)
     else:
@@ -173,8 +175,14 @@ def _noted() -> None:
 
 @persistent
 def _on_update(scene: Any, graph: Any) -> None:
-    if is_on(bpy.context) and any(each.is_updated_geometry or each.is_updated_transform for each in graph.updates):
+    if is_on(bpy.context) and any(_may_move_surfaces(each) for each in graph.updates):
         _noted()
+
+
+def _may_move_surfaces(update: Any) -> bool:
+    """A stroke of Sculpt Mode tells of no more than that the object is to be drawn anew."""
+    moved = update.is_updated_geometry or update.is_updated_transform
+    return bool(moved or (update.is_updated_shading and bpy.context.mode == "SCULPT"))
 
 
 @persistent

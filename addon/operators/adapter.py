@@ -64,6 +64,14 @@ class TransformOperator(NeedsNativeModule, Choices):
         tell(self, outcome_text(result), write_failure(report))
         return {"FINISHED"}
 
+    def draw(self, context: bpy.types.Context) -> None:
+        """The redo panel: the transform's own values first, as in Blender's, then what a drag may have chosen."""
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
+        described = self.properties.bl_rna.properties
+        for name in (*type(self).__annotations__, *Choices.__annotations__):
+            if name in described and not described[name].is_hidden:
+                self.layout.prop(self, name)
+
     def _repeated(self, edit: Any, outcome: outcomes.Outcome | None) -> tuple[Any, Any] | None:
         """Result and report of a drag's outcome taken up again; None where it is not that start, or no longer free."""
         if outcome is None or outcome.start != edit.start_digest or not edit.take_up(outcome.controls):

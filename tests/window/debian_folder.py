@@ -15,6 +15,10 @@ STAMP = "stiv-packages-installed"
 ENVIRONMENT = ("PATH=/usr/bin:/bin:/usr/sbin:/sbin", "HOME=/root", "LC_ALL=C.UTF-8", "DEBIAN_FRONTEND=noninteractive")
 
 
+class UnknownPackagesError(Exception):
+    """The release has no package of a name that is asked for."""
+
+
 def obstacle() -> str:
     """Why no folder can be set up here, empty if it can."""
     if os.geteuid() != 0:
@@ -25,7 +29,10 @@ def obstacle() -> str:
 
 
 def prepare(folder: Path, release: str) -> None:
-    """Fill the folder once; later calls only look whether the list of packages is still the same."""
+    """Fill the folder once; later calls only look whether the list of packages is still the same.
+
+    Raises SubprocessError where the archive cannot be reached, UnknownPackagesError where it can and lacks a package.
+    """
     stamp, wanted = folder / STAMP, PACKAGES.read_text()
     if stamp.is_file() and stamp.read_text() == wanted:
         return
@@ -40,11 +47,22 @@ def prepare(folder: Path, release: str) -> None:
     names = [line for line in wanted.splitlines() if line and not line.startswith("#")]
     print(f"its packages: {' '.join(names)} (about a minute)", flush=True)
     with system_mounts(folder):
-        # A mirror that lags behind will do; signatures are checked all the same.
-        run(folder, ["apt-get", "-qq", "-o", "Acquire::Check-Valid-Until=false", "update"])
+        # A mirror that lags behind will do; signatures are checked all the same. Without the option, a list that could
+        # not be fetched is no error.
+        options = ["-o", "Acquire::Check-Valid-Until=false", "-o", "APT::Update::Error-Mode=any"]
+        run(folder, ["apt-get", "-qq", *options, "update"])
+        check_known(folder, names)
         run(folder, ["apt-get", "-qq", "install", "--no-install-recommends", *names], quiet=True)
         run(folder, ["apt-get", "clean"])
     stamp.write_text(wanted)
+
+
+def check_known(folder: Path, names: Sequence[str]) -> None:
+    """Nothing is fetched for this. Raises UnknownPackagesError with what apt says."""
+    command = in_folder(folder, ["apt-get", "-qq", "--simulate", "install", "--no-install-recommends", *names])
+    done = subprocess.run(command, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode:
+        raise UnknownPackagesError(f"{PACKAGES.name}: {done.stderr.strip()}")
 
 
 def bootstrap(release: str, folder: Path) -> None:
@@ -73,5 +91,9 @@ def system_mounts(folder: Path) -> Iterator[None]:
 def run(folder: Path, command: Sequence[str], *, quiet: bool = False, timeout: float | None = None) -> None:
     """Run a command inside the folder. Raises CalledProcessError or TimeoutExpired."""
     output = subprocess.DEVNULL if quiet else None
-    full = ["chroot", str(folder), "env", "-i", *ENVIRONMENT, *command]
-    subprocess.run(full, check=True, stdout=output, timeout=timeout)
+    subprocess.run(in_folder(folder, command), check=True, stdout=output, timeout=timeout)
+
+
+def in_folder(folder: Path, command: Sequence[str]) -> list[str]:
+    """The command that runs another one inside the folder."""
+    return ["chroot", str(folder), "env", "-i", *ENVIRONMENT, *command]

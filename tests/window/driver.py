@@ -24,21 +24,31 @@ class Driver:
 
     def __init__(self, output: Path, names: list[str]):
         """Choose scenarios by name; none means all."""
+        from deforming_drags import DEFORMING_DRAGS
+        from disturbed_drags import DISTURBED_DRAGS
+        from drags import DRAGS
         from grammar import GRAMMAR
         from guard_edit_mode import GUARD_EDIT_MODE
         from guard_scenarios import GUARD
+        from guard_sculpting import GUARD_SCULPTING
         from guard_switch import GUARD_SWITCH
         from guide_pictures import PICTURES
         from languages import LANGUAGES
         from measuring import MEASURES
-        from scenarios import SCENARIOS
+        from proportional_editing import PROPORTIONAL_EDITING
+        from real_events import REAL_EVENTS
+        from redo_panel import REDO_PANEL
         from sequences import SEQUENCES
         from simulation import Window
+        from snapping_and_pivots import SNAPPING_AND_PIVOTS
 
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
-        usual = SCENARIOS | GRAMMAR | GUARD | GUARD_EDIT_MODE | GUARD_SWITCH | LANGUAGES | SEQUENCES | PICTURES
-        chosen = {name: (usual | MEASURES)[name] for name in names} or usual
+        guard = GUARD | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH
+        drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS
+        grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
+        usual = drags | grammar | guard | LANGUAGES | SEQUENCES | PICTURES
+        chosen = {name: (usual | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
         self.steps = self.play(chosen)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import scenes
 from guard_scenarios import at_rest, guarded, with_tool
-from scenarios import INTO_WALL, expect_free, expect_near
+from playing import INTO_WALL, expect_free, expect_near
 from scenes import WALL_FACE
 from simulation import Steps, Window
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import extension
 import scenes
-from scenarios import FURTHEST, INTO_WALL, NEAR, box_x, expect_free, expect_near, prepared
+from playing import FURTHEST, INTO_WALL, NEAR, box_x, expect_free, expect_near, prepared
 from simulation import Steps, Window
 
 BEYOND_WALL = (3.8, 0.0, 0.0)

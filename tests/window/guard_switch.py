@@ -7,7 +7,7 @@ import bpy
 import extension
 import scenes
 from guard_scenarios import at_rest, guarded, with_tool
-from scenarios import FURTHEST, INTO_WALL, NEAR, box_x, expect_near, prepared
+from playing import FURTHEST, INTO_WALL, NEAR, box_x, expect_near, prepared
 from scenes import WALL_FACE
 from simulation import Steps, Window
 
@@ -36,6 +36,7 @@ def open_tab(window: Window) -> Steps:
     window.area.spaces.active.show_region_ui = True
     yield from window.settle()
     next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
+    window.area.tag_redraw()  # else the picture still has the tab before
     yield from window.settle()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 import scenes
-from scenarios import click, expect_free, prepared, start
+from playing import click, expect_free, prepared, start
 from simulation import Steps, Window
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import extension
 import scenes
-from scenarios import INTO_WALL, click, prepared, start
+from playing import INTO_WALL, click, prepared, start
 from simulation import Steps, Window
 
 SAYS = {"de_DE": "Umschalt: genau", "ja_JP": "Shift: 精密"}  # for "Shift: precise"

@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 import numpy as np
 import scenes
-from scenarios import start
+from playing import start
 from simulation import Steps, Window
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -2,11 +2,13 @@
 """Drive the extension, installed from its zip, in a real window of Blender: in a Debian folder, on a display in memory.
 
 Usage: build/venv/bin/python tests/window/run.py [--release trixie|sid] [--folder DIR] [--zip ZIP] [--pictures DIR]
-                                                 [--report F] [--sequences N] [--limit SECONDS] [SCENARIO...]
+                                                 [--report F] [--sequences N] [--first N] [--limit SECONDS]
+                                                 [SCENARIO...]
 
 Sets everything up itself where it can (root, debootstrap, Debian's archive), otherwise says why it cannot and skips
-(exit code 0). Without --zip the extension is built for the Python of that release, out of build/wheel and build/native,
-which `make` fills. Exit code 1 when a scenario fails.
+(exit code 0); a package that the archive does not have is a failure. Without --zip the extension is built for the
+Python of that release, out of build/wheel and build/native, which `make` fills. Events are simulated by Blender itself,
+except for the scenario real_events, which has a Blender of its own. Exit code 1 when a scenario fails.
 """
 
 from __future__ import annotations
@@ -29,13 +31,18 @@ BLENDER = ("env", f"BLENDER_USER_RESOURCES={INSIDE}/user", "blender")
 SCREEN = (1280, 800)
 TIME_LIMIT = 1800.0  # seconds for all scenarios
 SEQUENCES = 200  # of random events
+REAL = "real_events"  # the scenario for which Blender must not simulate events: then it hears no others
 
 
 def main() -> int:
     """Set up, install, drive, report."""
     chosen = arguments()
     folder = (chosen.folder or ROOT / "build/window" / chosen.release).resolve()
-    why_not = debian_folder.obstacle() or set_up(folder, chosen.release)
+    try:
+        why_not = debian_folder.obstacle() or set_up(folder, chosen.release)
+    except debian_folder.UnknownPackagesError as error:
+        write_report(chosen.report, {"set-up": str(error)})
+        return report({"set-up": str(error)})
     if why_not:
         print(f"window tests skipped: {why_not}")
         write_report(chosen.report, {"window": None}, why_not)
@@ -44,9 +51,11 @@ def main() -> int:
     with debian_folder.system_mounts(folder):
         copy_sources(folder)
         install(folder, archive)
-        drive(folder, chosen)
-    keep_pictures(folder, chosen.pictures)
-    failures = read_failures(folder)
+        failures = {}
+        for simulated, scenarios in sessions(chosen.scenarios):
+            drive(folder, chosen, simulated, scenarios)
+            keep_pictures(folder, chosen.pictures)
+            failures |= read_failures(folder)
     write_report(chosen.report, failures)
     return report(failures)
 
@@ -69,6 +78,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--pictures", type=Path, default=ROOT / "build/window/pictures", help="where pictures go")
     parser.add_argument("--report", type=Path, default=ROOT / "build/test-reports/window.xml", help="JUnit file")
     parser.add_argument("--sequences", type=int, default=SEQUENCES, help="how many sequences of random events")
+    parser.add_argument("--first", type=int, default=0, help="the number of the first of them")
     parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="seconds for all scenarios")
     parser.add_argument("scenarios", nargs="*", help="names; all when none is given")
     return parser.parse_args()
@@ -102,7 +112,14 @@ def install(folder: Path, archive: Path) -> None:
     debian_folder.run(folder, [*extension, "install-file", "-r", "user_default", "--enable", inside], quiet=True)
 
 
-def drive(folder: Path, chosen: argparse.Namespace) -> None:
+def sessions(names: list[str]) -> list[tuple[bool, list[str]]]:
+    """Which runs of Blender there are to be: with simulated events or the display's, and their scenarios."""
+    simulated = [name for name in names if name != REAL]
+    both = [(True, simulated)] if simulated or not names else []
+    return both + ([(False, [REAL])] if REAL in names or not names else [])
+
+
+def drive(folder: Path, chosen: argparse.Namespace, simulated: bool, scenarios: list[str]) -> None:
     """Run Blender with the driver; it leaves results and pictures in the folder."""
     results = folder / INSIDE.relative_to("/") / "results"
     shutil.rmtree(results, ignore_errors=True)
@@ -110,9 +127,10 @@ def drive(folder: Path, chosen: argparse.Namespace) -> None:
     width, height = map(str, SCREEN)
     command = [
         "env", "LIBGL_ALWAYS_SOFTWARE=1", f"STIV_WINDOW_SEQUENCES={chosen.sequences}",
+        f"STIV_WINDOW_FIRST_SEQUENCE={chosen.first}",
         "xvfb-run", "-a", "-s", f"-screen 0 {width}x{height}x24",
-        *BLENDER, "--enable-event-simulate", "--window-geometry", "0", "0", width, height,
-        "--python", f"{INSIDE}/source/tests/window/driver.py", "--", f"{INSIDE}/results", *chosen.scenarios,
+        *BLENDER, *(["--enable-event-simulate"] if simulated else []), "--window-geometry", "0", "0", width, height,
+        "--python", f"{INSIDE}/source/tests/window/driver.py", "--", f"{INSIDE}/results", *scenarios,
     ]  # fmt: skip
     try:
         debian_folder.run(folder, command, timeout=chosen.limit)

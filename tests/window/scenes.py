@@ -111,9 +111,14 @@ def add_cage() -> Any:
     return cage
 
 
+def add_ball() -> Any:
+    """A sphere of triangles."""
+    return add_mesh("Ball", lambda content: bmesh.ops.create_icosphere(content, subdivisions=3, radius=HALF))
+
+
 def add_ball_in_lattice() -> tuple[Any, Any]:
     """A sphere and the lattice that deforms it."""
-    ball = add_mesh("Ball", lambda content: bmesh.ops.create_icosphere(content, subdivisions=3, radius=HALF))
+    ball = add_ball()
     data = bpy.data.lattices.new("Lattice")
     data.points_u = data.points_v = data.points_w = 4
     lattice = bpy.data.objects.new("Lattice", data)

@@ -12,10 +12,11 @@ from pathlib import Path
 
 import bpy
 import scenes
-from scenarios import prepared
+from playing import prepared
 from simulation import Steps, Window
 
 COUNT = int(os.environ.get("STIV_WINDOW_SEQUENCES", "200"))
+FIRST = int(os.environ.get("STIV_WINDOW_FIRST_SEQUENCE", "0"))
 EVENTS = 14  # of a sequence, at most
 PATIENCE = 20.0  # seconds until a drag has begun
 PAUSE = 0.004  # seconds between two of them
@@ -175,12 +176,27 @@ def prepared_quickly(window: Window, build: Callable[[], object], active: str, m
 
 
 def random_sequences(window: Window) -> Steps:
-    """COUNT sequences, each by its number."""
-    for number in range(COUNT):
+    """COUNT sequences, each by its number, which is told before it begins: it may take Blender down."""
+    failures = []
+    for number in range(FIRST, FIRST + COUNT):
+        print(f"sequence {number}", end=" ", flush=True)
+        begun = time.monotonic()
         try:
             yield from Sequence(window, number).play()
         except AssertionError as failure:
-            raise AssertionError(f"sequence {number}: {failure}") from failure
+            failures.append(f"sequence {number}: {failure}")
+            window.picture(f"failed_sequence_{number}")
+            yield from ended_by_force(window)
+        told = failures[-1] if failures and failures[-1].startswith(f"sequence {number}:") else "passed"
+        print(f"{told}, {time.monotonic() - begun:.1f} s", flush=True)
+    assert not failures, "\n".join(failures)
+
+
+def ended_by_force(window: Window) -> Steps:
+    """After a failure: no drag goes on into the next sequence."""
+    for _ in range(3):
+        window.key("ESC")
+        yield from window.settle()
 
 
 SEQUENCES = {"random_sequences": random_sequences}

@@ -30,6 +30,7 @@ class Window:
         """Watch the drawing of the 3D view; pictures go to `output`."""
         self.output = output
         self.mouse = (0, 0)
+        self.send: Callable[..., None] = self._simulate
         self._draws = 0
         self.drawn_at = 0.0
         self._watch_interface()
@@ -122,7 +123,11 @@ class Window:
 
     def event(self, kind: str, value: str, **modifiers: Any) -> None:
         """One event where the mouse is."""
-        self.handle.event_simulate(type=kind, value=value, x=self.mouse[0], y=self.mouse[1], **modifiers)
+        self.send(kind, value, self.mouse, **modifiers)
+
+    def _simulate(self, kind: str, value: str, mouse: tuple[int, int], **modifiers: Any) -> None:
+        """By Blender's own means, which must have been started for it."""
+        self.handle.event_simulate(type=kind, value=value, x=mouse[0], y=mouse[1], **modifiers)
 
     def key(self, kind: str, text: str = "", **modifiers: bool) -> None:
         """Press and release a key or button."""

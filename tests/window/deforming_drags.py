@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drags that deform: cages and lattices, in Edit Mode and as whole objects."""
+
+from __future__ import annotations
+
+import bpy
+import scenes
+from playing import INTO_WALL, click, expect_free, expect_near, prepared, start
+from scenes import WALL_FACE
+from simulation import Steps, Window
+
+
+def cage_in_edit_mode(window: Window) -> Steps:
+    """Vertices of a cage pushed into the wall: the smooth surface flattens against it."""
+    yield from prepared(window, scenes.add_cage, "Cage", "EDIT")
+    before = scenes.evaluated_extent("Cage")
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Cage"), WALL_FACE, 0.1, "the surface at the wall while dragging")
+    window.picture("cage_in_edit_mode")
+    yield from click(window)
+    assert bpy.context.mode == "EDIT_MESH"
+    assert scenes.evaluated_extent("Cage") < WALL_FACE
+    expect_free(window)
+    yield from window.undo()
+    expect_near(scenes.evaluated_extent("Cage"), before, 1e-6, "the surface after undo")
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    yield from click(window, "ESC")
+    assert scenes.evaluated_extent("Cage") == before
+
+
+def lattice_in_edit_mode(window: Window) -> Steps:
+    """Points of a lattice pushed into the wall take the ball with them, up to the wall."""
+    yield from prepared(window, scenes.add_ball_in_lattice, "Lattice", "EDIT")
+    before = scenes.evaluated_extent("Ball")
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Ball"), WALL_FACE, 0.1, "the ball at the wall while dragging")
+    window.picture("lattice_in_edit_mode")
+    yield from click(window)
+    assert bpy.context.mode == "EDIT_LATTICE"
+    assert scenes.evaluated_extent("Ball") < WALL_FACE
+    expect_free(window)
+    yield from window.undo()
+    assert scenes.evaluated_extent("Ball") == before
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    yield from click(window, "RIGHTMOUSE")
+    assert scenes.evaluated_extent("Ball") == before
+
+
+def lattice_in_object_mode(window: Window) -> Steps:
+    """The lattice object moved as a whole, responding by its points."""
+    yield from prepared(window, scenes.add_ball_in_lattice, "Lattice")
+    bpy.context.scene.stiv.object_response = "deform"
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Ball"), WALL_FACE, 0.1, "the ball at the wall while dragging")
+    yield from click(window)
+    expect_free(window)
+
+
+_ALL = (
+    cage_in_edit_mode,
+    lattice_in_edit_mode,
+    lattice_in_object_mode,
+)
+DEFORMING_DRAGS = {scenario.__name__: scenario for scenario in _ALL}

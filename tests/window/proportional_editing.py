@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Proportional editing in a drag: points of a strip and of a lattice."""
+
+from __future__ import annotations
+
+import bmesh
+import bpy
+import scenes
+from playing import CLOSE, INTO_WALL, click, expect_free, expect_near, prepared, start
+from simulation import Steps, Window
+
+
+def strip_y(at_x: float) -> float:
+    """How far the strip is moved along y at x."""
+    content = bmesh.from_edit_mesh(bpy.data.objects["Strip"].data)
+    return max(vertex.co.y for vertex in content.verts if abs(vertex.co.x - at_x) < 0.05) - 0.2
+
+
+def proportional(window: Window) -> Steps:
+    """O lets neighbours follow, the wheel and the page keys say how far, Shift+O how."""
+    yield from prepared(window, scenes.add_strip, "Strip", "EDIT")
+    content = bmesh.from_edit_mesh(bpy.context.object.data)
+    for vertex in content.verts:
+        vertex.select_set(vertex.co.x > 1.1)
+    content.select_flush_mode()
+    bmesh.update_edit_mesh(bpy.context.object.data)
+    yield from start(window)
+    window.key("Y")
+    yield from window.glide(window.pixel((0.0, 0.5, 0.0)))
+    expect_near(strip_y(1.2), 0.5, CLOSE, "the end of the strip")
+    expect_near(strip_y(0.6), 0.0, 1e-6, "a neighbour without proportional editing")
+    window.key("O")
+    yield from window.settle()
+    before = strip_y(0.6)
+    assert 0.05 < before < 0.45, before
+    window.picture("proportional")
+    for _ in range(4):
+        window.key("WHEELDOWNMOUSE")
+        yield
+    window.key("PAGE_UP")
+    yield from window.settle()
+    larger = strip_y(0.6)
+    assert larger > before + 0.05, (before, larger)
+    for _ in range(6):
+        window.key("O", shift=True)  # smooth, ... constant
+        yield
+    yield from window.settle()
+    expect_near(strip_y(0.6), strip_y(1.2), 1e-5, "a neighbour with the constant falloff")
+    yield from click(window)
+    expect_near(strip_y(0.6), 0.5, CLOSE, "a neighbour after confirming")
+    expect_free(window)
+    yield from window.undo()
+    expect_near(max(abs(strip_y(0.6)), abs(strip_y(1.2))), 0.0, 1e-6, "the strip after undo")
+
+
+def proportional_lattice(window: Window) -> Steps:
+    """Points of a lattice follow those selected; the ball in it stops at the wall."""
+    yield from prepared(window, scenes.add_ball_in_lattice, "Lattice", "EDIT")
+    bpy.context.scene.tool_settings.use_proportional_edit = True
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Ball"), scenes.WALL_FACE, 0.1, "the ball at the wall")
+    yield from click(window)
+    expect_free(window)
+
+
+_ALL = (
+    proportional,
+    proportional_lattice,
+)
+PROPORTIONAL_EDITING = {scenario.__name__: scenario for scenario in _ALL}

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Snapping and pivots in a drag."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import scenes
+from playing import NEAR, box, box_x, click, ended, expect_free, expect_near, prepared, start
+from simulation import Steps, Window
+
+
+def snap_to_steps(window: Window) -> Steps:
+    """Ctrl held: whole steps; a turn by steps of five degrees."""
+    yield from prepared(window, scenes.add_box, "Box")
+    yield from start(window)
+    yield from window.glide(window.pixel((0.83, 0.27, 0.0)), ctrl=True)
+    steps = [coordinate * 10.0 for coordinate in box().location]
+    assert all(abs(step - round(step)) < 1e-3 for step in steps) and box_x() > 0.5, steps
+    window.key("R")
+    yield from window.glide(window.pixel((0.3, 0.9, 0.0)), ctrl=True)
+    degrees = math.degrees(box().rotation_euler.z) / 5.0
+    assert abs(degrees - round(degrees)) < 1e-3 and round(degrees), degrees
+    yield from click(window, "ESC")
+
+
+def snap_to_vertex(window: Window) -> Steps:
+    """The nearest corner of the box goes to the block's corner: as near as it may, since both keep their distance."""
+    yield from prepared(window, scenes.add_target, "Box")
+    tools = bpy.context.scene.tool_settings
+    tools.snap_elements, tools.use_snap = {"VERTEX"}, True
+    yield from window.rest_at((-0.5, 0.5, 0.0))  # so that this corner is the nearest one
+    yield from start(window)
+    yield from window.glide(window.pixel((-1.02, 1.02, 0.25)))
+    window.picture("snap_to_vertex")
+    expect_near(box_x(), -0.5, NEAR, "x of the box with its corner on the block's")
+    expect_near(box().location.y, 0.5, NEAR, "y of the box with its corner on the block's")
+    yield from click(window)
+    expect_free(window)
+
+
+def snap_to_face(window: Window) -> Steps:
+    """The lower side of the box is to lie on the block's upper face, and stops before it."""
+    yield from prepared(window, scenes.add_target, "Box")
+    tools = bpy.context.scene.tool_settings
+    tools.snap_elements, tools.use_snap = {"FACE"}, True
+    box().location.z = 2.0
+    yield from window.settle()
+    yield from start(window)
+    yield from window.glide(window.pixel((-1.25, 1.25, 0.25)), steps=12)
+    expect_near(box().location.z, 0.75, NEAR, "the box on the block")
+    yield from click(window)
+    assert box().location.z > 0.75
+    expect_free(window)
+
+
+def pivot_at_cursor(window: Window) -> Steps:
+    """The 3D cursor as pivot."""
+    yield from prepared(window, scenes.add_box, "Box")
+    scene = bpy.context.scene
+    scene.tool_settings.transform_pivot_point, scene.cursor.location = "CURSOR", (-1.0, 0.0, 0.0)
+    yield from start(window, "R")
+    yield from window.type("90")
+    window.key("RET")
+    yield from ended(window)
+    expect_near(box_x(), -1.0, 1e-5, "x after a quarter turn about the cursor")
+    expect_near(box().location.y, 1.0, 1e-5, "y after a quarter turn about the cursor")
+
+
+def individual_origins(window: Window) -> Steps:
+    """Each object turns about its own origin."""
+    yield from prepared(window, scenes.add_pair, "Upper")
+    bpy.context.scene.tool_settings.transform_pivot_point = "INDIVIDUAL_ORIGINS"
+    bpy.data.objects["Lower"].select_set(True)
+    yield from start(window, "R")
+    yield from window.type("30")
+    window.key("RET")
+    yield from ended(window)
+    for name, y in (("Upper", 1.0), ("Lower", -1.0)):
+        thing = bpy.data.objects[name]
+        expect_near(thing.location.y, y, 1e-6, f"y of {name}")
+        expect_near(thing.rotation_euler.z, math.radians(30.0), 1e-5, f"turn of {name}")
+
+
+_ALL = (
+    snap_to_steps,
+    snap_to_vertex,
+    snap_to_face,
+    pivot_at_cursor,
+    individual_origins,
+)
+SNAPPING_AND_PIVOTS = {scenario.__name__: scenario for scenario in _ALL}
