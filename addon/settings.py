@@ -11,7 +11,7 @@ from .modal.request import Request
 from .object_choices import object_choices
 from .preferences import threads
 
-DRAG_BUDGET = 0.04  # seconds that one solve may hold the interface: Esc waits for it, for writing and for restoring
+DRAG_BUDGET = 0.04  # seconds that one solve of a drag may take where its tick does not say otherwise: when it settles
 
 
 def edit_settings(scene: Any, request: Request | None = None, time_budget: float = 0.0) -> Any:
