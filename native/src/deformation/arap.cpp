@@ -15,9 +15,10 @@ namespace stiv {
 namespace {
 
 constexpr int most_steps = 300;
-constexpr double least_motion = 1e-11;    // of the mesh's size: a step that moves less is the last
-constexpr double least_residual = 1e-10;  // of the first one, in solving for J
-constexpr double slack = 1e-12;           // by which rounding may raise an energy
+constexpr double least_motion = 1e-11;      // of the mesh's size: a step that moves less is the last
+constexpr double least_residual = 1e-10;    // of the first one, in solving for J
+constexpr double slack = 1e-12;             // by which rounding may raise an energy
+constexpr std::size_t worth_a_factor = 16;  // so many solves by conjugate gradients cost as much as a factor of H
 
 /// The minimum for some controls, and the rotations there.
 struct Minimum {
@@ -56,6 +57,32 @@ class Arap final : public HandleDeformation {
     Positions covector = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) = g.value[k];
     return map_.pull_back(all_rows(covector + cells_.load_change(at->fits, solve_hessian(*at, covector))));
+  }
+
+  /// Many at once, as the contacts of a round: by a factor of H, which all of them share. A contact's covector is one
+  /// column, sixteen of them a pass.
+  std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    if (g.size() < worth_a_factor) return Deformation::pull_back_all(p, g, execution);
+    const auto at = minimum(p);
+    const auto factor = SparseFactor::if_definite(free_hessian(*at));
+    if (!factor) return Deformation::pull_back_all(p, g, execution);  // at a saddle
+    std::vector<SparseField> pulled(g.size());
+    execution.for_chunks(static_cast<Index>(g.size()), ColumnBlock::ColsAtCompileTime,
+                         [&](Index begin, Index end, Index) {
+                           ColumnBlock right = ColumnBlock::Zero(factor->size(), ColumnBlock::ColsAtCompileTime);
+                           for (Index k = begin; k < end; ++k)
+                             set_column(right, k - begin, g[static_cast<std::size_t>(k)]);
+                           const ColumnBlock solved = factor->solve(right);
+                           for (Index k = begin; k < end; ++k) {
+                             Positions covector = cells_.load_change(at->fits, from_column(solved, k - begin));
+                             const SparseField& field = g[static_cast<std::size_t>(k)];
+                             for (std::size_t i = 0; i < field.index.size(); ++i)
+                               covector.row(field.index[i]) += field.value[i];
+                             pulled[static_cast<std::size_t>(k)] = map_.pull_back(all_rows(covector));
+                           }
+                         });
+    return pulled;
   }
 
   /// J d = M d + H^-1 C M d: the global step with frozen rotations, and how the rotations answer it.
@@ -151,6 +178,47 @@ class Arap final : public HandleDeformation {
       product = next;
     }
     return y;
+  }
+
+  /// H = K + S'A S - C of the free vertices, three rows each.
+  SymmetricMatrix free_hessian(const Minimum& at) const {
+    const std::vector<Index>& place = map_.partition().place;
+    std::vector<Eigen::Triplet<double, Index>> entries;
+    const auto add = [&](Index row, Index column, double value) {
+      const Index i = place[static_cast<std::size_t>(row / 3)], j = place[static_cast<std::size_t>(column / 3)];
+      if (i >= 0 && j >= 0) entries.emplace_back(3 * i + row % 3, 3 * j + column % 3, value);
+    };
+    const SymmetricMatrix stiffness = mesh_laplacian(weights_), change = cells_.load_matrix(at.fits);
+    for (Index column = 0; column < stiffness.cols(); ++column)
+      for (SymmetricMatrix::InnerIterator entry(stiffness, column); entry; ++entry)
+        for (Index axis = 0; axis < 3; ++axis)
+          add(3 * static_cast<Index>(entry.row()) + axis, 3 * column + axis, entry.value());
+    for (Index k = 0; k < pull_.size(); ++k)
+      for (Index axis = 0, row = 3 * handles_[static_cast<std::size_t>(k)]; axis < 3; ++axis)
+        add(row + axis, row + axis, pull_[k]);
+    for (Index column = 0; column < change.cols(); ++column)
+      for (SymmetricMatrix::InnerIterator entry(change, column); entry; ++entry)
+        add(static_cast<Index>(entry.row()), column, -entry.value());
+    const auto count = 3 * static_cast<Index>(map_.partition().free.size());
+    SymmetricMatrix hessian(count, count);
+    hessian.setFromTriplets(entries.begin(), entries.end());
+    return hessian;
+  }
+
+  void set_column(ColumnBlock& block, Index column, const SparseField& field) const {
+    for (std::size_t k = 0; k < field.index.size(); ++k)
+      if (const Index place = map_.partition().place[static_cast<std::size_t>(field.index[k])]; place >= 0)
+        block.col(column).segment<3>(3 * place) = field.value[k];
+  }
+
+  Positions from_column(const ColumnBlock& block, Index column) const {
+    Positions values = Positions::Zero(vertex_count(), 3);
+    Index row = 0;
+    for (const Index vertex : map_.partition().free) {
+      values.row(vertex) = block.col(column).segment<3>(row).transpose();
+      row += 3;
+    }
+    return values;
   }
 
   /// The rows of the vertices that are solved for; 0 elsewhere.

@@ -128,11 +128,12 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
       hard_(definition.pull.size() == 0),
       drive_(drive_of(definition, partition_, stiffness)),
       factor_(std::make_unique<SparseFactor>(free_stiffness(definition, partition_, stiffness), "handles")) {
+  const std::vector<Index> driven = rows_in_use(drive_);
+  needed_ = factor_->needed_for(driven);
   if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) {
     keep_in_full();
     return;
   }
-  const std::vector<Index> driven = rows_in_use(drive_);
   if (static_cast<double>(driven.size()) * static_cast<double>(factor_->size()) <= limits_.entries)
     keep_answers(driven);
 }
@@ -153,7 +154,7 @@ template <class Block>
 Block HandleMap::pulled(const Block& g) const {
   Block free(static_cast<Index>(partition_.free.size()), g.cols());
   for (Index k = 0; k < free.rows(); ++k) free.row(k) = g.row(partition_.free[static_cast<std::size_t>(k)]);
-  Block covector = drive_.transpose() * factor_->solve(free);
+  Block covector = drive_.transpose() * factor_->solve(free, needed_);
   if (hard_)
     for (Index k = 0; k < control_count(); ++k) covector.row(k) += g.row(handles_[static_cast<std::size_t>(k)]);
   return covector;

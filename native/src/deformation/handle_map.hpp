@@ -70,6 +70,7 @@ class HandleMap {
   bool hard_;
   SymmetricMatrix drive_;  ///< (free, m): what a handle's displacement adds to the right side
   std::unique_ptr<const SparseFactor> factor_;
+  std::vector<unsigned char> needed_;  ///< of a solution, by products with the transpose of `drive_`
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full_;  ///< M, or nothing
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
       answers_;                       ///< (free, driven): columns of K^-1, or nothing

@@ -16,6 +16,13 @@ Vector3 across(const Positions& q, Index vertex, const Edge& edge) {
   return (q.row(vertex) - q.row(edge.row())).transpose();
 }
 
+using Triplets = std::vector<Eigen::Triplet<double, Index>>;
+
+void add_block(Triplets& entries, Index row, Index column, const Eigen::Matrix3d& block) {
+  for (Index a = 0; a < 3; ++a)
+    for (Index b = 0; b < 3; ++b) entries.emplace_back(3 * row + a, 3 * column + b, block(a, b));
+}
+
 }  // namespace
 
 RigidCells::RigidCells(SymmetricMatrix weights, Positions rest)
@@ -76,6 +83,26 @@ Positions RigidCells::load_change(const std::vector<RotationFit>& fits, const Po
     change.push_back(fit.rotation * cross_matrix(turn));
   }
   return load_of(change);
+}
+
+SymmetricMatrix RigidCells::load_matrix(const std::vector<RotationFit>& fits) const {
+  Triplets entries;
+  std::vector<std::pair<Index, Eigen::Matrix3d>> turns;  // T_i: vertices of the cell and their blocks
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
+    const RotationFit& fit = fits[static_cast<std::size_t>(vertex)];
+    turns.assign(1, {vertex, Eigen::Matrix3d::Zero()});
+    for (Edge edge(weights_, vertex); edge; ++edge) {
+      const Eigen::Matrix3d turn = edge.value() * cross_matrix(across(rest_, vertex, edge)) * fit.rotation.transpose();
+      turns.front().second += turn;
+      turns.emplace_back(static_cast<Index>(edge.row()), -turn);
+    }
+    for (const auto& [row, left] : turns)
+      for (const auto& [column, right] : turns)
+        add_block(entries, row, column, left.transpose() * fit.response * right / 2);
+  }
+  SymmetricMatrix matrix(3 * static_cast<Index>(weights_.cols()), 3 * static_cast<Index>(weights_.cols()));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 }  // namespace stiv

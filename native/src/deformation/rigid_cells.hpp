@@ -26,6 +26,10 @@ class RigidCells {
   /// How the load answers a change du of the positions, by way of the rotations; symmetric in du.
   Positions load_change(const std::vector<RotationFit>& fits, const Positions& du) const;
 
+  /// The same as a matrix, (3 n, 3 n): C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij,
+  /// the turn that cell i is asked for. Row 3 i + axis stands for an axis of vertex i.
+  SymmetricMatrix load_matrix(const std::vector<RotationFit>& fits) const;
+
  private:
   Positions load_of(const std::vector<Eigen::Matrix3d>& change) const;
 

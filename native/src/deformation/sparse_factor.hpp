@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
+#include <memory>
+#include <vector>
 
 #include "stiv/types.hpp"
 
@@ -20,15 +22,29 @@ class SparseFactor {
   /// @throws InputError that begins with `what` if the matrix cannot be factored
   SparseFactor(const SymmetricMatrix& matrix, const char* what);
 
+  /// The same, but nothing if the matrix is not positive definite.
+  static std::unique_ptr<const SparseFactor> if_definite(const SymmetricMatrix& matrix);
+
   Index size() const { return static_cast<Index>(factor_.rows()); }
   Index entries() const { return size() == 0 ? 0 : static_cast<Index>(lower().nonZeros()); }  ///< of L
   Positions solve(const Positions& right) const;
   ColumnBlock solve(const ColumnBlock& right) const;
 
+  /// (size) Marks for solutions of which some rows alone are asked: these rows depend on the marked ones, and on no
+  /// others. They are the ancestors in the elimination tree. [Gilbert 1994; Davis, Direct Methods, 3.2]
+  std::vector<unsigned char> needed_for(const std::vector<Index>& rows) const;
+
+  /// The solution at the rows that `needed` was made for, with the bits of `solve`. Where right sides are zero nearly
+  /// everywhere too, little of L is read.
+  Positions solve(const Positions& right, const std::vector<unsigned char>& needed) const;
+  ColumnBlock solve(const ColumnBlock& right, const std::vector<unsigned char>& needed) const;
+
  private:
+  SparseFactor() = default;
+  bool factor(const SymmetricMatrix& matrix);
   const SymmetricMatrix& lower() const { return factor_.matrixL().nestedExpression(); }
   template <class Block>
-  Block solve_block(const Block& right) const;
+  Block solve_block(const Block& right, const std::vector<unsigned char>* needed) const;
 
   Eigen::SimplicialLDLT<SymmetricMatrix> factor_;
 };

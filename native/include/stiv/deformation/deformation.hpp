@@ -25,8 +25,8 @@ class Deformation {
   /// J(p)' g: a sparse covector over vertices pulled back to controls.
   virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;
 
-  /// The same for many covectors, as a round asks for them: each result has the bits that it has alone, but what is
-  /// dear for one, such as a pass over a factor, may serve several, and threads share the work.
+  /// The same for many covectors, as a round asks for them, but for rounding: what is dear for one, such as a factor or
+  /// a pass over it, may serve several, and threads share the work. Results do not depend on the number of threads.
   /// @throws Interrupted
   virtual std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                                  const Execution& execution) const;
