@@ -16,7 +16,7 @@ from .content import Content, lines_of, texts_of
 ARROW = 0.06  # length of an arrow in distances from the eye to the view's centre
 LINE_WIDTH = 2.0
 FACE_ALPHA = 0.5
-CORNER = (20, 60)  # of the text, pixels from the lower left
+CORNER = (20, 60)  # of the text, pixels from the lower left, beside the toolbar
 TEXT_SIZE = 12
 
 
@@ -54,9 +54,16 @@ def draw_text(content: Content, chosen: Any) -> None:
     scale = context.preferences.system.ui_scale
     blf.size(0, TEXT_SIZE * scale)
     blf.color(0, *colours(context)["text"], 1.0)
+    left = toolbar_edge(context.area, context.region) + CORNER[0] * scale
     for number, text in enumerate(reversed(texts_of(content, chosen, _length_text, say))):
-        blf.position(0, CORNER[0] * scale, (CORNER[1] + 1.5 * TEXT_SIZE * number) * scale, 0)
+        blf.position(0, left, (CORNER[1] + 1.5 * TEXT_SIZE * number) * scale, 0)
         blf.draw(0, text)
+
+
+def toolbar_edge(area: Any, region: Any) -> int:
+    """Pixels at the left of a region that the toolbar lies over: it is long in Edit Mode, and would hide the text."""
+    tools = [each for each in area.regions if each.type == "TOOLS" and each.width > 1 and each.alignment == "LEFT"]
+    return max([0, *(each.x + each.width - region.x for each in tools)])
 
 
 def _draw(shader: Any, kind: str, points: Any, colour: tuple[float, ...]) -> None:

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the overlay holds, and that nothing of it stays; drawing itself is looked at in a window."""
 
+from types import SimpleNamespace
+
 import pytest
 
 bpy = pytest.importorskip("bpy")
 pytest.importorskip("stiv._native")
 
 import stiv_addon  # noqa: E402
-from stiv_addon.overlay import showing  # noqa: E402
+from stiv_addon.overlay import drawing, showing  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -78,3 +80,15 @@ def test_unregistering_leaves_nothing() -> None:
             assert not any("stiv" in each.__module__ for each in getattr(bpy.app.handlers, name))
     finally:
         stiv_addon.register()
+
+
+@pytest.mark.parametrize(
+    ("x", "width", "alignment", "edge"),
+    [(100, 56, "LEFT", 56), (100, 1, "LEFT", 0), (600, 56, "RIGHT", 0), (44, 56, "LEFT", 0)],
+)
+def test_texts_are_beside_the_toolbar_where_it_lies_over_the_view(
+    x: int, width: int, alignment: str, edge: int
+) -> None:
+    region = SimpleNamespace(type="WINDOW", x=100, width=600, alignment="NONE")
+    tools = SimpleNamespace(type="TOOLS", x=x, width=width, alignment=alignment)
+    assert drawing.toolbar_edge(SimpleNamespace(regions=[tools, region]), region) == edge
