@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "helper_threads.hpp"
 #include "stiv/error.hpp"
 #include "usable_processors.hpp"
 
@@ -41,6 +42,7 @@ void write_control(std::uint32_t) {}
 }  // namespace
 
 Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()) {}
+Execution::~Execution() = default;
 
 void Execution::set_time_budget(double seconds, bool after_gain) {
   using Clock = std::chrono::steady_clock;
@@ -79,10 +81,14 @@ void Execution::for_chunks(Index count, Index chunk_size, const std::function<vo
       }
     }
   };
-  std::vector<std::thread> helpers;
-  for (int k = 1; k < std::min<Index>(threads_, chunks); ++k) helpers.emplace_back(run);
-  run();
-  for (std::thread& helper : helpers) helper.join();
+  const bool shared = std::min<Index>(threads_, chunks) > 1 && !in_loop_.exchange(true, std::memory_order_acquire);
+  if (shared) {
+    if (!helpers_) helpers_ = std::make_unique<HelperThreads>(threads_ - 1);
+    helpers_->run(run);
+    in_loop_.store(false, std::memory_order_release);
+  } else {
+    run();
+  }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
 }

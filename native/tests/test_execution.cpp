@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cfenv>
+#include <mutex>
 #include <numeric>
+#include <set>
+#include <thread>
 
 #include "stiv/error.hpp"
 #include "stiv/execution.hpp"
@@ -19,6 +23,25 @@ TEST_CASE("execution: chunks cover the range once, for any number of threads") {
     CHECK(std::accumulate(seen.begin(), seen.end(), 0) == 1003);
     CHECK(*std::max_element(seen.begin(), seen.end()) == 1);
   }
+}
+
+TEST_CASE("execution: threads are kept from loop to loop, and a loop within a loop covers its range as well") {
+  const Execution execution(4);
+  std::atomic<int> inner{0};
+  for (int loop = 0; loop < 200; ++loop) {
+    std::atomic<int> outer{0};
+    execution.for_chunks(1 + loop % 7, 1, [&](Index, Index, Index) { ++outer; });
+    CHECK(outer == 1 + loop % 7);
+  }
+  std::set<std::thread::id> threads;
+  std::mutex mutex;
+  execution.for_chunks(64, 1, [&](Index, Index, Index) {
+    execution.for_chunks(10, 3, [&](Index begin, Index end, Index) { inner += end - begin; });
+    const std::lock_guard lock(mutex);
+    threads.insert(std::this_thread::get_id());
+  });
+  CHECK(inner == 640);
+  CHECK(threads.size() <= 4);
 }
 
 TEST_CASE("execution: cancelling and a used up budget interrupt") {

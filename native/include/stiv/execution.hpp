@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "stiv/types.hpp"
 
 namespace stiv {
+
+class HelperThreads;
 
 /// What was done, in numbers that do not depend on the machine.
 struct Counters {
@@ -40,6 +43,7 @@ class Execution {
   /// @param threads number of threads; 0: one for each processor that the process may use, no more than
   /// the environment's STIV_THREADS.
   explicit Execution(int threads = 0);
+  ~Execution();
 
   int threads() const { return threads_; }
 
@@ -73,7 +77,9 @@ class Execution {
 
   /// Calls `work(begin, end, chunk)` for consecutive chunks of [0, count), on all threads. Chunk boundaries depend on
   /// `count` and `chunk_size` alone, so results collected by chunk number do not depend on the number of threads.
-  /// The first exception (lowest chunk) is rethrown in the calling thread after all threads have ended.
+  /// The first exception (lowest chunk) is rethrown in the calling thread after all threads have ended the loop.
+  /// The threads are started by the first loop that has work for several, and sleep until the next one. Loops within
+  /// the work run on the thread that they are in.
   void for_chunks(Index count, Index chunk_size, const std::function<void(Index, Index, Index)>& work) const;
   static Index chunk_count(Index count, Index chunk_size) { return (count + chunk_size - 1) / chunk_size; }
 
@@ -88,6 +94,8 @@ class Execution {
   std::optional<std::chrono::steady_clock::time_point> deadline_;
   bool waits_for_gain_ = false;
   std::function<void(const char*, double)> progress_;
+  mutable std::atomic<bool> in_loop_{false};
+  mutable std::unique_ptr<HelperThreads> helpers_;
 };
 
 /// Adds the time of a scope to one of the timings.
