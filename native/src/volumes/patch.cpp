@@ -28,14 +28,14 @@ class Partition {
 };
 
 void join_neighbours(const Surface& surface, const std::vector<Region>& regions, Partition& partition) {
-  const auto before = [](const Region& region, Index vertex) { return region.vertex < vertex; };
+  std::vector<Index> place(static_cast<std::size_t>(surface.vertex_count()), -1);  // of each vertex's region
+  for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) place[static_cast<std::size_t>(regions[k].vertex)] = k;
   for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) {
     const Index vertex = regions[k].vertex;
     for (const Index* other = surface.neighbours_begin(vertex); other != surface.neighbours_end(vertex); ++other) {
       if (*other >= vertex) break;  // each pair once: neighbours ascend
-      const auto found = std::lower_bound(regions.begin(), regions.end(), *other, before);
-      const bool apart = regions[k].rigid || found->rigid;
-      if (found->vertex == *other && !apart) partition.join(k, static_cast<Index>(found - regions.begin()));
+      const Index neighbour = place[static_cast<std::size_t>(*other)];
+      if (neighbour >= 0 && !regions[k].rigid && !regions[neighbour].rigid) partition.join(k, neighbour);
     }
   }
 }

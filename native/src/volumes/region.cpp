@@ -15,7 +15,8 @@ namespace {
 /// the sign of n . Drho is rounding. [DESIGN 4, "Traps"]
 constexpr double least_cosine = 1e-8;
 
-bool normal_is_usable(const Event& event, const Positions& displacement) {
+template <class Field>
+bool normal_is_usable(const Event& event, const Field& displacement) {
   const Vector3 relative = weighted_sum(event, displacement);
   return event.normal.dot(relative) < -least_cosine * relative.norm();
 }
@@ -40,7 +41,7 @@ bool normal_is_steady(const Event& event, const Positions& start, const Position
 
 /// The events that a response is built on: usable and steady ones; usable ones if none is steady.
 std::vector<Index> telling_events(const Events& events, const Positions& start, const Positions& end) {
-  const Positions displacement = end - start;
+  const auto displacement = end - start;  // of the few vertices that are asked for
   std::vector<Index> usable, steady;
   for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
     if (!normal_is_usable(events[k], displacement)) continue;
@@ -106,19 +107,26 @@ std::vector<Region> thinned(const Surface& surface, const Events& events, const 
 
 /// The regions on either side of the chosen events; of those of one vertex the earliest, of equals the first.
 std::vector<Region> earliest_of(const Surface& surface, const Events& events, const std::vector<Index>& chosen) {
+  std::vector<Index> place(static_cast<std::size_t>(surface.vertex_count()), -1);  // of each vertex's region
   std::vector<Region> regions;
+  const auto add = [&](Index vertex, Index event, bool rigid) {
+    Index& at = place[static_cast<std::size_t>(vertex)];
+    if (at < 0) {
+      at = static_cast<Index>(regions.size());
+      regions.push_back({vertex, event, rigid});
+    } else if (Region& region = regions[static_cast<std::size_t>(at)];
+               std::tie(events[event].time, event) < std::tie(events[region.event].time, region.event)) {
+      region = {vertex, event, rigid};
+    }
+  };
   for (const Index k : chosen) {
     const Event& event = events[k];
     const int split = first_side_size(event.kind);
     const bool rigid = is_rigid(surface, bodies_of(surface, event));
-    regions.push_back({heaviest_vertex(event, 0, split), k, rigid});
-    regions.push_back({heaviest_vertex(event, split, 4), k, rigid});
+    add(heaviest_vertex(event, 0, split), k, rigid);
+    add(heaviest_vertex(event, split, 4), k, rigid);
   }
-  std::sort(regions.begin(), regions.end(), [&](const Region& a, const Region& b) {
-    return std::tie(a.vertex, events[a.event].time, a.event) < std::tie(b.vertex, events[b.event].time, b.event);
-  });
-  const auto same_vertex = [](const Region& a, const Region& b) { return a.vertex == b.vertex; };
-  regions.erase(std::unique(regions.begin(), regions.end(), same_vertex), regions.end());
+  std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return a.vertex < b.vertex; });
   return thinned(surface, events, regions);
 }
 
