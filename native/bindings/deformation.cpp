@@ -162,6 +162,14 @@ std::shared_ptr<Deformation> concatenate(
   return shared(make_concatenation(std::move(native), std::move(start)));
 }
 
+LatticeDefinition make_lattice_definition(const std::array<Index, 3>& resolution,
+                                          const std::array<std::string, 3>& interpolation, Positions rest,
+                                          Eigen::VectorXd point_weights) {
+  LatticeDefinition lattice{resolution, {}, std::move(rest), std::move(point_weights)};
+  for (std::size_t axis = 0; axis < 3; ++axis) lattice.interpolation[axis] = interpolation_of(interpolation[axis]);
+  return lattice;
+}
+
 void bind_class(py::module_& module) {
   py::class_<Deformation, std::shared_ptr<Deformation>>(
       module, "Deformation",
@@ -172,8 +180,8 @@ void bind_class(py::module_& module) {
       .def_property_readonly("vertex_count", &Deformation::vertex_count, "n, the number of vertices that it places.")
       .def_property_readonly("rotation_rows", &Deformation::rotation_rows,
                              "Rows of the controls that are rotation vectors (radians) rather than points; a list.")
-      .def("surface", &Deformation::surface, py::arg("controls"), py::call_guard<py::gil_scoped_release>(),
-           "Positions f(p), (n, 3), at controls p, (m, 3).")
+      .def("surface", py::overload_cast<const Controls&>(&Deformation::surface, py::const_), py::arg("controls"),
+           py::call_guard<py::gil_scoped_release>(), "Positions f(p), (n, 3), at controls p, (m, 3).")
       .def("pull_back", &pull_back, py::arg("controls"), py::arg("covector"), py::call_guard<py::gil_scoped_release>(),
            "J(p)' g, (m, 3), of a covector g over vertices, (n, 3).")
       .def("push_forward", &push_forward, py::arg("controls"), py::arg("motion"),
@@ -222,14 +230,16 @@ void bind_deformation(py::module_& module) {
   });
   module.def("subdivided_faces", &subdivided_faces);
   module.def("subdivided_triangles", &subdivided_triangles);
+  py::class_<LatticeDefinition>(module, "Lattice").def(py::init(&make_lattice_definition));
   module.def("lattice_weights",
-             [](const std::array<Index, 3>& resolution, const std::array<std::string, 3>& interpolation, Positions rest,
-                Eigen::VectorXd point_weights, const Positions& vertices, const Eigen::VectorXd& influence) {
-               LatticeDefinition lattice{resolution, {}, std::move(rest), std::move(point_weights)};
-               for (std::size_t axis = 0; axis < 3; ++axis)
-                 lattice.interpolation[axis] = interpolation_of(interpolation[axis]);
+             [](const LatticeDefinition& lattice, const Positions& vertices, const Eigen::VectorXd& influence) {
                return rows_of(lattice_weights(lattice, vertices, influence));
              });
+  module.def("lattice", [](const LatticeDefinition& lattice, Positions rest_vertices, Eigen::VectorXd influence,
+                           Positions vertices, Controls points) {
+    return shared(make_lattice(
+        lattice, {std::move(rest_vertices), std::move(influence), std::move(vertices), std::move(points)}));
+  });
 }
 
 }  // namespace stiv::bindings

@@ -135,14 +135,16 @@ def subdivision_weights(
 ) -> _Rows: ...
 def subdivided_faces(cage: Cage, levels: int) -> _Indices: ...
 def subdivided_triangles(cage: Cage, levels: int) -> _Indices: ...
-def lattice_weights(
-    resolution: list[int],
-    interpolation: list[str],
-    rest: _Floats,
-    point_weights: _Floats,
-    vertices: _Floats,
-    influence: _Floats,
-) -> _Rows: ...
+
+class Lattice:
+    def __init__(
+        self, resolution: list[int], interpolation: list[str], rest: _Floats, point_weights: _Floats
+    ) -> None: ...
+
+def lattice_weights(lattice: Lattice, vertices: _Floats, influence: _Floats) -> _Rows: ...
+def lattice(
+    lattice: Lattice, rest_vertices: _Floats, influence: _Floats, vertices: _Floats, points: _Floats
+) -> Deformation: ...
 
 class ConstraintKind(enum.Enum):
     per_patch = 0

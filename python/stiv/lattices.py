@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 from stiv import _native
 from stiv._native import Deformation, InputError
 from stiv.arrays import Floats, as_floats
-from stiv.deformation import linear
 from stiv.weights import Weights
 
 
@@ -47,12 +46,8 @@ def lattice_weights(
     that coincide along an axis.
     """
     places = as_floats(vertices, "vertices", (None, 3))
-    points = lattice_rest_points(resolution) if rest is None else as_floats(rest, "rest", (None, 3))
-    group = np.empty(0) if point_weights is None else as_floats(point_weights, "point_weights", (None,))
-    rows = _native.lattice_weights(
-        _resolution(resolution), _interpolations(interpolation), points, group, places, _influence(influence, places)
-    )
-    return Weights(*rows)
+    definition = _definition(resolution, interpolation, _rest_points(rest, resolution), point_weights)
+    return Weights(*_native.lattice_weights(definition, places, _influence(influence, places)))
 
 
 def lattice(
@@ -77,17 +72,21 @@ def lattice(
     """
     surface = as_floats(vertices, "vertices", (None, 3))
     to_world = np.eye(4) if frame is None else as_floats(frame, "frame", (4, 4))
-    points = lattice_rest_points(resolution) if rest is None else as_floats(rest, "rest", (None, 3))
-    weights = lattice_weights(
-        _transform(_inverse(to_world), surface),
-        resolution,
-        interpolation=interpolation,
-        influence=influence,
-        rest=points,
-        point_weights=point_weights,
-    )
-    undeformed = linear(weights).surface(_transform(to_world, points))
-    return linear(weights, surface - undeformed)
+    points = _rest_points(rest, resolution)
+    definition = _definition(resolution, interpolation, points, point_weights)
+    places = _transform(_inverse(to_world), surface)
+    return _native.lattice(definition, places, _influence(influence, places), surface, _transform(to_world, points))
+
+
+def _rest_points(rest: ArrayLike | None, resolution: Sequence[int]) -> Floats:
+    return lattice_rest_points(resolution) if rest is None else as_floats(rest, "rest", (None, 3))
+
+
+def _definition(
+    resolution: Sequence[int], interpolation: str | Sequence[str], points: Floats, point_weights: ArrayLike | None
+) -> _native.Lattice:
+    group = np.empty(0) if point_weights is None else as_floats(point_weights, "point_weights", (None,))
+    return _native.Lattice(_resolution(resolution), _interpolations(interpolation), points, group)
 
 
 def _resolution(resolution: Sequence[int]) -> list[int]:

@@ -124,9 +124,9 @@ class IntersectionTest::Implementation {
 
   void update(const Kinds& kinds, const Positions& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
-    const std::vector<Bounds> boxes = vertex_bounds(q);
-    for (Primitives* kind : kinds) kind->update(boxes, moved);
-    triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution));
+    const std::vector<Bounds> boxes = vertex_bounds(q, execution);
+    for (Primitives* kind : kinds) kind->update(boxes, moved, execution);
+    triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution), execution);
   }
 
   std::shared_ptr<const Surface> surface_;

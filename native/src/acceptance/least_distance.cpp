@@ -145,7 +145,8 @@ class LeastDistance::Implementation {
   std::optional<NearestTriangles> find(const Positions& q, bool within) {
     surface_->check_positions(q);
     if (triangles_.empty()) return std::nullopt;
-    triangles_.update(vertex_bounds(q), {});
+    const Execution execution(1);
+    triangles_.update(vertex_bounds(q, execution), {}, execution);
     return Search(*surface_, triangles_, q, within).run();
   }
 

@@ -7,26 +7,15 @@ namespace stiv {
 
 namespace {
 
+constexpr Index chunk_size = 4096;
+
 std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 
-std::vector<Bounds> primitive_bounds(const CornerList& corners, const std::vector<Bounds>& vertices) {
-  std::vector<Bounds> boxes;
-  boxes.reserve(corners.size());
-  for (const auto& [a, b, c] : corners) {
-    Bounds box = vertices[place(a)];
-    box.include(vertices[place(b)]);
-    box.include(vertices[place(c)]);
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
-std::vector<unsigned char> moved_primitives(const CornerList& corners, const std::vector<unsigned char>& moved) {
-  std::vector<unsigned char> active;
-  if (moved.empty()) return active;
-  active.reserve(corners.size());
-  for (const auto& [a, b, c] : corners) active.push_back(moved[place(a)] || moved[place(b)] || moved[place(c)]);
-  return active;
+Bounds bounds_of(const std::array<Index, 3>& corners, const std::vector<Bounds>& vertices) {
+  Bounds box = vertices[place(corners[0])];
+  box.include(vertices[place(corners[1])]);
+  box.include(vertices[place(corners[2])]);
+  return box;
 }
 
 }  // namespace
@@ -53,9 +42,12 @@ CornerList loose_vertex_corners(const Surface& surface) {
   return corners;
 }
 
-std::vector<Bounds> vertex_bounds(const Positions& q) {
-  std::vector<Bounds> boxes(place(static_cast<Index>(q.rows())), Bounds::empty());
-  for (Index vertex = 0; vertex < q.rows(); ++vertex) boxes[place(vertex)].include(q.row(vertex).transpose(), 0);
+std::vector<Bounds> vertex_bounds(const Positions& q, const Execution& execution) {
+  const auto count = static_cast<Index>(q.rows());
+  std::vector<Bounds> boxes(place(count), Bounds::empty());
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
+    for (Index vertex = begin; vertex < end; ++vertex) boxes[place(vertex)].include(q.row(vertex).transpose(), 0);
+  });
   return boxes;
 }
 
@@ -63,21 +55,32 @@ Primitives::Primitives(const Surface& surface, CornerList corners) : corners_(st
   for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
 }
 
-void Primitives::update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved) {
-  const std::vector<Bounds> boxes = primitive_bounds(corners_, vertices);
-  if (!tree_) tree_.emplace(centres_of(boxes), bodies_);
-  tree_->refit(boxes, moved_primitives(corners_, moved));
+void Primitives::update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved,
+                        const Execution& execution) {
+  if (!tree_) {
+    std::vector<Bounds> boxes;
+    for (const auto& corners : corners_) boxes.push_back(bounds_of(corners, vertices));
+    tree_.emplace(centres_of(boxes), bodies_);
+  }
+  const auto has_moved = [&](Index vertex) { return moved.empty() || moved[place(vertex)] != 0; };
+  const auto box_of = [&](Index primitive) {
+    const std::array<Index, 3>& corners = this->corners(primitive);
+    return PackedBox::of(bounds_of(corners, vertices), std::any_of(corners.begin(), corners.end(), has_moved));
+  };
+  tree_->refit(box_of, execution);
 }
 
 // The tree leaves out primitives with a corner of one name. Where their star is not known to be free, corners get names
 // that no other has: negative numbers.
-void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars) {
+void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution) {
   names_.resize(3 * corners_.size());
-  for (std::size_t k = 0; k < names_.size(); ++k) {
-    const Index vertex = corners_[k / 3][k % 3];
-    names_[k] = free_stars[place(vertex)] ? vertex : -2 - static_cast<Index>(k);
-  }
-  tree_->set_corners({names_.data(), 3});
+  execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = 3 * begin; k < 3 * end; ++k) {
+      const Index vertex = corners_[place(k / 3)][place(k % 3)];
+      names_[place(k)] = free_stars[place(vertex)] ? vertex : -2 - k;
+    }
+  });
+  tree_->set_corners({names_.data(), 3}, execution);
 }
 
 }  // namespace stiv

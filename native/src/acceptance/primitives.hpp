@@ -19,7 +19,7 @@ CornerList loose_edge_corners(const Surface& surface);
 CornerList loose_vertex_corners(const Surface& surface);
 
 /// Boxes of all vertices, (N).
-std::vector<Bounds> vertex_bounds(const Positions& q);
+std::vector<Bounds> vertex_bounds(const Positions& q, const Execution& execution);
 
 /// Primitives of one kind with the tree over them, built when first needed and refitted from then on.
 class Primitives {
@@ -27,10 +27,10 @@ class Primitives {
   Primitives(const Surface& surface, CornerList corners);
 
   /// `moved` as in IntersectionTest::is_free.
-  void update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved);
+  void update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved, const Execution& execution);
 
   /// From now on the tree's pairs with itself leave out those that share a vertex marked in `free_stars` (N).
-  void leave_out_neighbours(const std::vector<unsigned char>& free_stars);
+  void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution);
 
   bool empty() const { return corners_.empty(); }
   const std::array<Index, 3>& corners(Index k) const { return corners_[static_cast<std::size_t>(k)]; }

@@ -18,7 +18,9 @@ class StoredMesh final : public HandleDeformation {
 
   Index control_count() const override { return mesh_->control_count(); }
   Index vertex_count() const override { return mesh_->vertex_count(); }
-  Positions surface(const Controls& p) const override { return as_stored(mesh_->surface(p), storage_); }
+  Positions surface(const Controls& p, const Execution& execution) const override {
+    return as_stored(mesh_->surface(p, execution), storage_);
+  }
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return mesh_->pull_back(p, g); }
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                          const Execution& execution) const override {

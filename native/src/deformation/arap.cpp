@@ -43,7 +43,7 @@ class Arap final : public HandleDeformation {
   Index control_count() const override { return map_.control_count(); }
   Index vertex_count() const override { return map_.vertex_count(); }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, control_count());
     Positions q = rest_ + minimum(p)->u;
     if (pull_.size() == 0)

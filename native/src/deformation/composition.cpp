@@ -38,7 +38,9 @@ class Chain final : public HandleDeformation {
 
   Index control_count() const override { return inner_->control_count(); }
   Index vertex_count() const override { return outer_->vertex_count(); }
-  Positions surface(const Controls& p) const override { return outer_->surface(inner_->surface(p)); }
+  Positions surface(const Controls& p, const Execution& execution) const override {
+    return outer_->surface(inner_->surface(p, execution), execution);
+  }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
     return inner_->pull_back(p, outer_->pull_back(Controls(), g));  // the outer Jacobian is the same everywhere

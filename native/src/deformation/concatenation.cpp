@@ -127,11 +127,11 @@ class Concatenation final : public Deformation {
   Index control_count() const override { return control_starts_.back(); }
   Index vertex_count() const override { return static_cast<Index>(start_.rows()); }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count());
     Positions q = start_;
     for (std::size_t part = 0; part < parts_.size(); ++part)
-      place(parts_[part].deformation->surface(rows_of_part(p, control_starts_, part)), part, q);
+      place(parts_[part].deformation->surface(rows_of_part(p, control_starts_, part), execution), part, q, execution);
     return q;
   }
 
@@ -174,7 +174,7 @@ class Concatenation final : public Deformation {
     for (std::size_t part = 0; part < parts_.size(); ++part)
       place(parts_[part].deformation->push_forward(rows_of_part(p, control_starts_, part),
                                                    rows_of_part(d, control_starts_, part)),
-            part, velocity);
+            part, velocity, Execution(1));
     return velocity;
   }
 
@@ -206,10 +206,12 @@ class Concatenation final : public Deformation {
   }
 
  private:
-  void place(const Positions& piece, std::size_t part, Positions& whole) const {
+  void place(const Positions& piece, std::size_t part, Positions& whole, const Execution& execution) const {
+    constexpr Index rows_per_chunk = 8192;
     const std::vector<Index>& vertices = parts_[part].vertices;
-    for (std::size_t row = 0; row < vertices.size(); ++row)
-      whole.row(vertices[row]) = piece.row(static_cast<Index>(row));
+    execution.for_chunks(static_cast<Index>(piece.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+      for (Index row = begin; row < end; ++row) whole.row(vertices[static_cast<std::size_t>(row)]) = piece.row(row);
+    });
   }
 
   std::vector<DeformationPart> parts_;

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "deformation/column_sums.hpp"
+
 namespace stiv {
 
 namespace {
@@ -17,15 +19,12 @@ class InverseMetric final : public Metric {
   SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
-    ActiveColumns solution = ActiveColumns::Zero(inverse_.rows(), 3);
-    for (std::size_t k = 0; k < right.place.size(); ++k)
-      for (Index axis = 0; axis < 3; ++axis) solution.col(axis) += right.value[k][axis] * inverse_.col(right.place[k]);
-    return extend_from(active_, solution);
+    return extend_from(active_, inverse_.sum(right.place, right.value));
   }
 
  private:
   ActiveControls active_;
-  Eigen::MatrixXd inverse_;
+  SummedColumns inverse_;
 };
 
 class FactoredMetric final : public Metric {

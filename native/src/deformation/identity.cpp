@@ -18,7 +18,7 @@ class Identity final : public Deformation {
   Index control_count() const override { return count_; }
   Index vertex_count() const override { return count_; }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, count_);
     return p;
   }

@@ -22,7 +22,7 @@ class Laplacian final : public HandleDeformation {
   Index control_count() const override { return map_.control_count(); }
   Index vertex_count() const override { return map_.vertex_count(); }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, control_count());
     Positions q = rest_ + map_.follow(p - rest_controls_);
     if (hard_)

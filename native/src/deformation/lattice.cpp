@@ -1,74 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/deformation/lattice.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "deformation/checks.hpp"
-#include "deformation/cubic_weights.hpp"
+#include "deformation/lattice_axes.hpp"
 #include "deformation/weight_rows.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
 
 namespace {
-
-/// The points of a lattice along one axis, which stand at equal distances.
-struct LatticeAxis {
-  Index count = 1;
-  LatticeInterpolation interpolation = LatticeInterpolation::bspline;
-  double first = 0, spacing = 1;
-};
-
-/// Which points along an axis act at a coordinate, and with what weight; indices may repeat.
-struct AxisWeights {
-  std::array<Index, 4> index{};
-  FourWeights weight{};
-};
-
-FourWeights interpolate(LatticeInterpolation interpolation, double t) {
-  switch (interpolation) {
-    case LatticeInterpolation::linear:
-      return linear_weights(t);
-    case LatticeInterpolation::cardinal:
-      return cardinal_weights(t, 0.71);  // Blender's constant
-    case LatticeInterpolation::catmull_rom:
-      return cardinal_weights(t, 0.5);
-    case LatticeInterpolation::bspline:
-      break;
-  }
-  return bspline_weights(t);
-}
-
-/// Beyond the ends the outermost points stand in for those that are missing.
-AxisWeights axis_weights(const LatticeAxis& axis, double coordinate) {
-  if (axis.count == 1) return {{0, 0, 0, 0}, {0, 1, 0, 0}};
-  const double u = (coordinate - axis.first) / axis.spacing, cell = std::floor(u);
-  // Two cells outside all four points are the same one: the cell may be clamped there before it becomes an integer.
-  const auto base = static_cast<Index>(std::clamp(cell, -3.0, axis.count + 1.0));
-  AxisWeights weights;
-  weights.weight = interpolate(axis.interpolation, u - cell);
-  for (Index k = 0; k < 4; ++k)
-    weights.index[static_cast<std::size_t>(k)] = std::clamp(base - 1 + k, 0, axis.count - 1);
-  return weights;
-}
-
-std::array<LatticeAxis, 3> lattice_axes(const LatticeDefinition& lattice) {
-  std::array<LatticeAxis, 3> axes;
-  Index stride = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    axes[k].count = lattice.resolution[k];
-    axes[k].interpolation = lattice.interpolation[k];
-    axes[k].first = lattice.rest(0, static_cast<Index>(k));
-    if (axes[k].count > 1) axes[k].spacing = lattice.rest(stride, static_cast<Index>(k)) - axes[k].first;
-    if (axes[k].spacing == 0)
-      throw InputError("lattice: the rest positions of its points coincide along axis " + std::to_string(k) +
-                       "; give the undeformed points");
-    stride *= lattice.resolution[k];
-  }
-  return axes;
-}
 
 void check_lattice(const LatticeDefinition& lattice) {
   std::int64_t count = 1;
@@ -111,7 +54,10 @@ void weights_at(const std::array<LatticeAxis, 3>& axes, const Vector3& place, Po
   for (std::size_t c = 0; c < 4; ++c)
     for (std::size_t b = 0; b < 4; ++b)
       for (std::size_t a = 0; a < 4; ++a) {
-        result.point.push_back((w.index[c] * axes[1].count + v.index[b]) * axes[0].count + u.index[a]);
+        const Index along_u = axes[0].point(u.first + static_cast<Index>(a)),
+                    along_v = axes[1].point(v.first + static_cast<Index>(b)),
+                    along_w = axes[2].point(w.first + static_cast<Index>(c));
+        result.point.push_back((along_w * axes[1].count + along_v) * axes[0].count + along_u);
         result.weight.push_back(u.weight[a] * v.weight[b] * w.weight[c]);
       }
 }
@@ -127,6 +73,18 @@ double row_factor(const LatticeDefinition& lattice, const PointWeights& weights,
 }
 
 }  // namespace
+
+Eigen::VectorXd lattice_factors(const LatticeDefinition& lattice, const Positions& rest_vertices,
+                                const Eigen::VectorXd& influence) {
+  const std::array<LatticeAxis, 3> axes = lattice_axes(lattice);
+  Eigen::VectorXd factors(rest_vertices.rows());
+  PointWeights weights;
+  for (Index vertex = 0; vertex < factors.size(); ++vertex) {
+    weights_at(axes, rest_vertices.row(vertex), weights);
+    factors[vertex] = row_factor(lattice, weights, influence.size() > 0 ? influence[vertex] : 1);
+  }
+  return factors;
+}
 
 WeightMatrix lattice_weights(const LatticeDefinition& lattice, const Positions& rest_vertices,
                              const Eigen::VectorXd& influence) {

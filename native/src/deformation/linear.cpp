@@ -25,9 +25,9 @@ class Linear final : public LinearDeformation {
   Index control_count() const override { return static_cast<Index>(matrix_.cols()); }
   Index vertex_count() const override { return static_cast<Index>(matrix_.rows()); }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count());
-    Positions q = weighted_sums(matrix_, p);
+    Positions q = weighted_sums(matrix_, p, execution);
     if (offset_.rows() > 0) q += offset_;
     return q;
   }
@@ -52,7 +52,7 @@ class Linear final : public LinearDeformation {
 
   Positions push_forward(const Controls&, const Controls& d) const override {
     check_control_rows(d, control_count());
-    return weighted_sums(matrix_, d);
+    return weighted_sums(matrix_, d, Execution(1));
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {

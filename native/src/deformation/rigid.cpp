@@ -31,7 +31,7 @@ class Rigid final : public Deformation {
   Index control_count() const override { return 2; }
   Index vertex_count() const override { return static_cast<Index>(from_centre_.rows()); }
 
-  Positions surface(const Controls& p) const override {
+  Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, 2);
     return (from_centre_ * rotation_matrix(p.row(1)).transpose()).rowwise() + p.row(0);
   }

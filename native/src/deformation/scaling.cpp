@@ -21,7 +21,7 @@ class Scaling final : public Deformation {
   Index control_count() const override { return 2; }
   Index vertex_count() const override { return static_cast<Index>(along_axes_.rows()); }
 
-  Positions surface(const Controls& p) const override { return placed(p); }
+  Positions surface(const Controls& p, const Execution&) const override { return placed(p); }
 
   SparseField pull_back(const ControlsView&, const SparseField& g) const override {
     if (g.index.empty()) return {};

@@ -60,8 +60,8 @@ HWY_INLINE void add_row(const WeightedSums& s, Index row, std::size_t axis) {
   for (std::size_t k = axis; k < 3 && k < axis + hn::Lanes(d); ++k) sums[k] = values[k - axis];
 }
 
-void add_rows(const WeightedSums& s, Index count) {
-  for (Index row = 0; row < count; ++row)
+void add_rows(const WeightedSums& s, Index begin, Index end) {
+  for (Index row = begin; row < end; ++row)
     for (std::size_t axis = 0; axis < 3; axis += hn::Lanes(Coordinates())) add_row(s, row, axis);
 }
 
@@ -71,13 +71,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-Positions weighted_sums(const WeightMatrix& matrix, const Controls& x) {
+Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution) {
+  constexpr Index rows_per_chunk = 1024;
   using Padded = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
   Padded controls = Padded::Zero(x.rows(), 4);
   controls.leftCols<3>() = x;
   Positions sums(matrix.rows(), 3);
   const WeightedSums s{matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), controls.data(), sums.data()};
-  STIV_FOR_VECTOR_TARGET(add_rows)(s, static_cast<Index>(matrix.rows()));
+  execution.for_chunks(static_cast<Index>(matrix.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    STIV_FOR_VECTOR_TARGET(add_rows)(s, begin, end);
+  });
   return sums;
 }
 

@@ -6,7 +6,7 @@
 namespace stiv {
 
 /// M x, (rows, 3), in an order of additions that depends on the rows alone, none fused: the result is the same to the
-/// last bit whatever the width of the vectors.
-Positions weighted_sums(const WeightMatrix& matrix, const Controls& x);
+/// last bit whatever the width of the vectors and the number of threads.
+Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution);
 
 }  // namespace stiv

@@ -85,7 +85,7 @@ Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& 
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[at(order_[place])] = static_cast<Index>(place);
   reserve_levels(groups);
-  set_corners(corners);
+  set_corners(corners, Execution(1));
 }
 
 Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
@@ -109,15 +109,19 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
     }
 }
 
-void Bvh::set_corners(const CornerRows& corners) {
+void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
+  constexpr Index chunk_size = 8192;
   corner_size_ = corners.size;
-  corners_.assign(order_.size() * at(corners.size), -1);
-  for (std::size_t place = 0; place < order_.size(); ++place) {
-    if (order_[place] < 0) continue;
-    const Index* const row = corners.rows + static_cast<std::ptrdiff_t>(order_[place]) * corners.size;
-    for (std::size_t k = 0; k < at(corners.size); ++k)
-      corners_[(place / width * at(corners.size) + k) * width + place % width] = row[k];
-  }
+  const std::size_t size = at(corners.size);
+  corners_.resize(order_.size() * size);
+  execution.for_chunks(static_cast<Index>(order_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (std::size_t place = at(begin); place < at(end); ++place) {
+      const Index primitive = order_[place];
+      for (std::size_t k = 0; k < size; ++k)
+        corners_[(place / width * size + k) * width + place % width] =
+            primitive >= 0 ? corners.rows[at(primitive) * size + k] : -1;
+    }
+  });
 }
 
 void Bvh::refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active) {

@@ -115,7 +115,7 @@ Controls Problem::stored(const Controls& controls) const { return as_stored(cont
 
 Positions Problem::surface_at(const Controls& controls, Execution& execution) const {
   const ScopedTimer timer(execution.timings.deformation);
-  return deformation_->surface(controls);
+  return deformation_->surface(controls, execution);
 }
 
 std::optional<Events> Problem::find_events(const Positions& from, const Positions& to, bool at_any_cost,

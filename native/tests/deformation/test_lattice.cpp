@@ -2,6 +2,7 @@
 #include "deformation/finite_differences.hpp"
 #include "stiv/deformation/lattice.hpp"
 #include "stiv/error.hpp"
+#include "vector_targets.hpp"
 
 using namespace stiv;
 using namespace stiv::testing;
@@ -57,6 +58,28 @@ TEST_CASE("lattice: influence scales rows, twice where the lattice has weights o
   lattice.point_weights = Eigen::VectorXd::LinSpaced(27, 0, 1);
   const Eigen::VectorXd factor = influence.array().square() * (plain * lattice.point_weights).array();
   CHECK(Eigen::MatrixXd(lattice_weights(lattice, places, influence)).isApprox(factor.asDiagonal() * plain));
+}
+
+TEST_CASE("lattice: the deformation is that of its weights, the same bits for any target and number of threads") {
+  Positions places = 3 * random_positions(5000, 3);
+  places.row(0) << 1e12, -1e12, 1e300;
+  const Positions vertices = random_positions(5000, 4);
+  for (const LatticeInterpolation kind : kinds)
+    for (const std::array<Index, 3>& resolution : {std::array<Index, 3>{4, 3, 5}, {1, 2, 1}}) {
+      LatticeDefinition lattice = unit_lattice(resolution, kind);
+      const auto count = static_cast<Index>(lattice.rest.rows());
+      lattice.point_weights = Eigen::VectorXd::LinSpaced(count, 0.2, 1);
+      const Eigen::VectorXd influence = Eigen::VectorXd::LinSpaced(5000, 0, 1);
+      const Controls rest = random_positions(count, 5), p = random_positions(count, 6), d = random_positions(count, 7);
+      const auto deformation = make_lattice(lattice, {places, influence, vertices, rest});
+      const WeightMatrix weights = lattice_weights(lattice, places, influence);
+      const Positions expected = vertices + weights * (p - rest), q = deformation->surface(p);
+      CHECK((q - expected).cwiseAbs().maxCoeff() < 1e-13);
+      CHECK((deformation->surface(rest) - vertices).cwiseAbs().maxCoeff() < 1e-14);
+      CHECK((deformation->push_forward(p, d) - weights * d).cwiseAbs().maxCoeff() < 1e-13);
+      for (const Positions& other : for_each_vector_target([&] { return deformation->surface(p, Execution(3)); }))
+        CHECK(other == q);
+    }
 }
 
 TEST_CASE("lattice: bad input is named") {

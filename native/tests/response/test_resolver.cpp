@@ -35,7 +35,7 @@ class Copy : public Deformation {
   explicit Copy(Index count) : count_(count) {}
   Index control_count() const override { return count_; }
   Index vertex_count() const override { return count_; }
-  Positions surface(const Controls& p) const override { return p; }
+  Positions surface(const Controls& p, const Execution&) const override { return p; }
   SparseField pull_back(const ControlsView&, const SparseField& g) const override { return g; }
   Positions push_forward(const Controls&, const Controls& d) const override { return d; }
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {

@@ -19,8 +19,9 @@ class Deformation {
   virtual Index control_count() const = 0;  ///< m
   virtual Index vertex_count() const = 0;   ///< n
 
-  /// q = f(p): (m, 3) -> (n, 3).
-  virtual Positions surface(const Controls& p) const = 0;
+  /// q = f(p): (m, 3) -> (n, 3), on the threads of `execution`, which may interrupt it.
+  virtual Positions surface(const Controls& p, const Execution& execution) const = 0;
+  Positions surface(const Controls& p) const { return surface(p, Execution(1)); }
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.
   virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;

@@ -25,4 +25,17 @@ struct LatticeDefinition {
 WeightMatrix lattice_weights(const LatticeDefinition& lattice, const Positions& rest_vertices,
                              const Eigen::VectorXd& influence = Eigen::VectorXd());
 
+/// What a lattice deforms, and where.
+struct LatticePlacement {
+  Positions rest_vertices;    ///< (n, 3), in the lattice's frame
+  Eigen::VectorXd influence;  ///< (n), or empty: all 1
+  Positions vertices;         ///< (n, 3) undeformed, in the world
+  Controls points;            ///< (u v w, 3) rest positions of the points, in the world
+};
+
+/// q = vertices + W (p - points), whose controls are the lattice's points in the world. As make_linear with the weights
+/// above, but the product is made from the weights along each axis.
+/// @throws InputError as lattice_weights, and where sizes do not fit
+std::shared_ptr<const LinearDeformation> make_lattice(const LatticeDefinition& lattice, const LatticePlacement& placed);
+
 }  // namespace stiv

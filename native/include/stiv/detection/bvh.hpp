@@ -84,7 +84,7 @@ class Bvh {
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
   /// Other corners for the same primitives.
-  void set_corners(const CornerRows& corners);
+  void set_corners(const CornerRows& corners, const Execution& execution);
 
   /// Two subtrees to be compared, a unit of work.
   struct Task {
