@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "response/add_multiple.hpp"
+
 namespace stiv {
 
 namespace {
@@ -28,7 +30,7 @@ double sweep(const Eigen::MatrixXd& B, Eigen::VectorXd& x, Eigen::VectorXd& slac
     const double change = std::max(0.0, x[row] - slack[row] / diagonal) - x[row];
     if (change == 0) continue;
     x[row] += change;
-    slack += change * B.col(row);  // the column of a symmetric matrix: contiguous
+    add_multiple(slack, change, B.col(row).data());  // the column of a symmetric matrix: contiguous
     largest_change = std::max(largest_change, std::abs(change));
   }
   return largest_change;

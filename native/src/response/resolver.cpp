@@ -6,6 +6,7 @@
 
 #include "response/row_projection.hpp"
 #include "response/sparse_fields.hpp"
+#include "response/step_tile.hpp"
 #include "stiv/response/lcp.hpp"
 
 namespace stiv {
@@ -16,7 +17,7 @@ namespace {
 /// rounding leaves where free controls move all corners of the contacts alike, or move none.
 constexpr double least_squared_length = 1e-24;
 
-constexpr Index rows_per_chunk = 8;  // of the Gram matrix, and of steps
+constexpr Index steps_per_chunk = 8;
 
 std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 
@@ -30,7 +31,7 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
   std::vector<SparseField> gradients;
   for (const Stiv& stiv : stivs) gradients.push_back(stiv.gradient);
   std::vector<SparseField> rows = deformation.pull_back_all(p, gradients, shared), steps(rows.size());
-  shared.for_chunks(static_cast<Index>(rows.size()), rows_per_chunk, [&](Index begin, Index end, Index) {
+  shared.for_chunks(static_cast<Index>(rows.size()), steps_per_chunk, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end; ++k) steps[place(k)] = metric.apply_inverse(metric_at, rows[place(k)]);
   });
   std::vector<ControlConstraint> constraints;
@@ -55,10 +56,17 @@ void ConstraintSet::complete_gram(const Execution& execution) {
   const auto before = static_cast<Index>(gram_.rows()), after = static_cast<Index>(constraints_.size());
   Eigen::MatrixXd gram = std::exchange(gram_, Eigen::MatrixXd());  // made anew if interrupted
   gram.conservativeResize(after, after);
-  execution.for_chunks(after - before, rows_per_chunk, [&](Index begin, Index end, Index) {
-    for (Index row = before + begin; row < before + end; ++row)
-      for (Index column = 0; column <= row; ++column)
-        gram(row, column) = gram(column, row) = dot(constraints_[place(row)].row, constraints_[place(column)].step);
+  const RowControls controls(constraints_);
+  execution.for_chunks(after - before, StepTile::width, [&](Index begin, Index end, Index) {
+    const Index first = before + begin, last = before + end;
+    const StepTile steps({constraints_.data() + first, constraints_.data() + last}, controls);
+    StepTile::Products products;
+    for (Index row = 0; row < after; ++row) {
+      if (row >= before && row < first) continue;  // the tile of that row's step has the products
+      steps.multiply(constraints_[place(row)].row, products);
+      for (Index column = first; column < last; ++column)
+        if (row < before || row >= column) gram(row, column) = gram(column, row) = products[place(column - first)];
+    }
   });
   gram_ = std::move(gram);
 }

@@ -7,6 +7,7 @@
 
 #include "stiv/error.hpp"
 #include "stiv/response/lcp.hpp"
+#include "vector_targets.hpp"
 
 using namespace stiv;
 
@@ -55,6 +56,15 @@ TEST_CASE("lcp: equal to the enumeration of all complementarity cases") {
     const Eigen::VectorXd x = solve_lcp(B, b, {}, precise);
     CHECK((x - solve_by_enumeration(B, b)).norm() < 1e-7 * (1 + x.norm()));
   }
+}
+
+TEST_CASE("lcp: the same bits for every vector target") {
+  std::srand(8);
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(61, 40);
+  const Eigen::MatrixXd B = A * A.transpose();
+  const Eigen::VectorXd b = A * Eigen::VectorXd::Random(40);
+  const auto results = for_each_vector_target([&] { return solve_lcp(B, b); });
+  for (const Eigen::VectorXd& x : results) CHECK(x == results.front());
 }
 
 TEST_CASE("lcp: repeated rows have no unique multipliers but one correction") {

@@ -51,11 +51,12 @@ Stiv half_space(Index vertex, const Vector3& normal, double volume, double scale
   return {scale * volume, {{vertex}, {scale * normal}}};
 }
 
-Controls resolve(const std::vector<Stiv>& stivs, const Controls& p, const Eigen::VectorXd& weights) {
+Controls resolve(const std::vector<Stiv>& stivs, const Controls& p, const Eigen::VectorXd& weights, int threads = 1) {
   const Copy deformation(static_cast<Index>(p.rows()));
+  const Execution execution(threads);
   ConstraintSet set;
-  set.add(control_constraints(stivs, deformation, p, DiagonalMetric(weights), p));
-  return set.project(p, Execution(1));
+  set.add(control_constraints(stivs, deformation, p, DiagonalMetric(weights), p, &execution));
+  return set.project(p, execution);
 }
 
 }  // namespace
@@ -136,6 +137,7 @@ TEST_CASE("resolver: hundreds of random constraints are all met, and the correct
       slack += stiv.gradient.value[k].dot((resolved - p).row(stiv.gradient.index[k]).transpose());
     CHECK(slack > -1e-8);
   }
+  for (const int threads : {2, 5}) CHECK(resolve(stivs, p, Eigen::VectorXd::Ones(count), threads) == resolved);
 }
 
 TEST_CASE("resolver: constraints as equations are all met, also those that an inequality would let go") {
