@@ -2,8 +2,8 @@
 """Entries on a Dask cluster (`distributed`, of the extra `cluster`); its workers must see the same files.
 
 Each thread of a Dask worker keeps one worker process of ours, with one Blender, so that a scene that ends Blender does
-not end the Dask worker. Dask itself repeats what a lost machine was doing. A thread of Dask stands for one processor, so
-each worker process of ours edits with one thread, or with as many as STIV_THREADS says where the Dask worker runs.
+not end the Dask worker. Dask itself repeats what a lost machine was doing. A thread of Dask stands for one processor,
+so each worker process of ours edits with one thread, or with as many as STIV_THREADS says where the Dask worker runs.
 """
 
 from __future__ import annotations
