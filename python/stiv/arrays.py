@@ -32,20 +32,33 @@ def _check_shape(array: NDArray[Any], name: str, shape: tuple[int | None, ...]) 
         raise InputError(f"{name}: shape is {array.shape}, expected {_describe(shape)}")
 
 
-def as_floats(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
+def as_reals(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
     """Return `value` as a contiguous float64 array of a shape in which None is any size.
 
-    Raises InputError naming the first row with a number that is not finite.
+    Its numbers may be anything: for what the core looks at itself.
     """
     array = _as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: dtype is {array.dtype}, expected real numbers")
     _check_shape(array, name, shape)
-    result = np.ascontiguousarray(array, np.float64)
-    finite = np.isfinite(result)
+    return np.ascontiguousarray(array, np.float64)
+
+
+def check_finite(array: Floats, name: str) -> None:
+    """Raise InputError naming the first row with a number that is not finite."""
+    finite = np.isfinite(array)
     if not finite.all():
         row = int(np.argwhere(~finite)[0][0])
         raise InputError(f"{name}, row {row}: a number is not finite")
+
+
+def as_floats(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
+    """Return `value` as a contiguous float64 array of a shape in which None is any size.
+
+    Raises InputError naming the first row with a number that is not finite.
+    """
+    result = as_reals(value, name, shape)
+    check_finite(result, name)
     return result
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finding interference along linear steps."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
 from stiv._native import InputError
-from stiv.arrays import Floats, Indices, as_count, as_floats, as_indices, as_number
+from stiv.arrays import Floats, Indices, as_count, as_floats, as_indices, as_number, as_reals, check_finite
 from stiv.surface import Surface, as_surface
 
 KINDS: Mapping[str, _native.EventKind] = {"vf": _native.EventKind.vf, "ee": _native.EventKind.ee}
@@ -124,23 +125,38 @@ class Detector:
         where it starts nearer than that.
         """
         first, last = self._positions(start, end)
-        return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, keep)))
+        with _naming_rows(first, last):
+            return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, keep)))
 
     def earliest_time(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> float:
         """Return the time of the earliest event, inf if there is none; cheaper than `find`."""
         first, last = self._positions(start, end)
-        return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, keep))
+        with _naming_rows(first, last):
+            return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, keep))
 
     def _positions(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
         rows = self._surface.vertex_count if isinstance(self._surface, Surface) else None
-        first = as_floats(start, "start", (rows, 3))
-        return first, as_floats(end, "end", (len(first), 3))
+        first = as_reals(start, "start", (rows, 3))
+        return first, as_reals(end, "end", (len(first), 3))
 
     def _ready(self, vertex_count: int) -> _native.Detector:
         if self._native is None:
             self._surface = as_surface(self._surface, vertex_count)
             self._native = _native.Detector(self._surface.native, self._broad_phase, self._narrow_phase, self._threads)
         return self._native
+
+
+@contextmanager
+def _naming_rows(start: Floats, end: Floats) -> Iterator[None]:
+    """Says in which array the core met a number that is not finite. It looks at what changed since the last step alone,
+    which in a further round of a local edit costs a part of looking at all.
+    """
+    try:
+        yield
+    except InputError:
+        check_finite(start, "start")
+        check_finite(end, "end")
+        raise
 
 
 def _proximity(separation: float, keep: float) -> tuple[float, float]:

@@ -150,6 +150,21 @@ def test_a_detector_is_used_by_one_thread_at_a_time() -> None:
     assert all("in use" in str(outcome) for outcome in outcomes if not isinstance(outcome, int))
 
 
+@pytest.mark.parametrize("broad_phase", ["bvh", "hash_grid", "brute_force"])
+@pytest.mark.parametrize("asked", ["find", "earliest_time"])
+def test_what_is_not_finite_in_a_later_step_is_named_and_changes_nothing(broad_phase: str, asked: str) -> None:
+    triangles, start, end = soup(0, 60, 0.4)
+    detector = stiv.Detector(triangles, broad_phase=broad_phase)
+    before = detector.find(start, end)
+    for wrong, name in ((np.nan, "start"), (np.inf, "end")):
+        step = {"start": start.copy(), "end": end.copy()}
+        step[name][3, 1] = wrong
+        with pytest.raises(stiv.InputError, match=f"{name}, row 3: a number is not finite"):
+            getattr(detector, asked)(**step)
+        assert len(before) > 0
+        assert_same(detector.find(start, end), before)
+
+
 SHAPE = np.zeros((4, 3))
 
 
