@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cfenv>
 #include <exception>
-#include <thread>
 #include <vector>
 
 #if defined(__x86_64__) || defined(_M_X64)

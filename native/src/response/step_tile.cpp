@@ -36,7 +36,7 @@ using Lanes = hn::Vec<Doubles>;
 
 /// Four vectors of products stay in registers while the entries go by.
 HWY_INLINE void multiply_lanes(const TileProduct& p, std::size_t lane) {
-  constexpr std::size_t width = 32;
+  constexpr std::size_t width = StepTile::width;
   const Doubles d;
   const std::size_t lanes = hn::Lanes(d);
   Lanes sum[4];
@@ -56,7 +56,7 @@ HWY_INLINE void multiply_lanes(const TileProduct& p, std::size_t lane) {
 }
 
 void multiply_tile(const TileProduct& p) {
-  for (std::size_t lane = 0; lane < 32; lane += 4 * hn::Lanes(Doubles())) multiply_lanes(p, lane);
+  for (std::size_t lane = 0; lane < StepTile::width; lane += 4 * hn::Lanes(Doubles())) multiply_lanes(p, lane);
 }
 
 }  // namespace stiv::HWY_NAMESPACE

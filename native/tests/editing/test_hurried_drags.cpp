@@ -1,30 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "editing/small_scenes.hpp"
-#include "stiv/acceptance/intersections.hpp"
+#include "editing/sessions.hpp"
 #include "stiv/acceptance/step_check.hpp"
-#include "stiv/editing/session.hpp"
 
 using namespace stiv;
 using namespace stiv::tests;
 
 namespace {
-
-EditSession session_of(const Scene& scene) { return EditSession(scene.surface, scene.deformation, scene.controls); }
-
-Controls moved(const Controls& p, Index rows, const Vector3& offset) {
-  Controls goal = p;
-  goal.topRows(rows).rowwise() += offset.transpose();
-  return goal;
-}
-
-bool is_free(const Scene& scene, const Positions& q) {
-  Execution execution(1);
-  return IntersectionTest(scene.surface).find(q, execution).empty();
-}
-
-constexpr Index upper_sheet = 49;  // vertices of two_sheets' first body
 
 /// Drags to a goal until it ends by itself; how often anything was accepted on the way, and in how many calls.
 struct HurriedDrag {

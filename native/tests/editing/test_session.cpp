@@ -3,9 +3,7 @@
 
 #include <cmath>
 
-#include "editing/small_scenes.hpp"
-#include "stiv/acceptance/intersections.hpp"
-#include "stiv/editing/session.hpp"
+#include "editing/sessions.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -13,27 +11,10 @@ using namespace stiv::tests;
 
 namespace {
 
-EditSession session_of(const Scene& scene, const EditOptions& options = {}) {
-  return EditSession(scene.surface, scene.deformation, scene.controls, options);
-}
-
 EditResult edit(EditSession& session, const Controls& goal) {
   Execution execution(1);
   return session.edit(goal, execution);
 }
-
-Controls moved(const Controls& p, Index rows, const Vector3& offset) {
-  Controls goal = p;
-  goal.topRows(rows).rowwise() += offset.transpose();
-  return goal;
-}
-
-bool is_free(const Scene& scene, const Positions& q) {
-  Execution execution(1);
-  return IntersectionTest(scene.surface).find(q, execution).empty();
-}
-
-constexpr Index upper_sheet = 49;  // vertices of two_sheets' first body
 
 }  // namespace
 
