@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import uuid
 from collections.abc import Iterator
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
+from stiv.command_line.json_text import json_text
 
 
 @contextmanager
@@ -41,4 +41,4 @@ def require_folder(path: Path | None) -> None:
 def write_json(path: Path, data: dict[str, Any]) -> None:
     """Writes `data` as indented JSON."""
     with written_atomically(path) as temporary:
-        temporary.write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        temporary.write_text(json_text(data) + "\n", encoding="utf-8")
