@@ -118,6 +118,29 @@ def test_noise_is_refused(tmp_path):
         read_mesh(path)
 
 
+def test_members_whose_names_are_no_text_are_refused(tmp_path):
+    path = tmp_path / "names.npz"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("vertices ä.npy", b"")
+    path.write_bytes(path.read_bytes().replace("ä".encode(), b"\xff\xff"))
+    with pytest.raises(stiv.InputError, match=r"names\.npz: not a readable NPZ archive"):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize("compression", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_a_damaged_stream_is_refused(tmp_path, compression):
+    path = tmp_path / "damaged.npz"
+    with zipfile.ZipFile(path, "w", compression) as archive:
+        archive.writestr("vertices.npy", archive_member("<f8", "(4, 3)", bytes(96)))
+        archive.writestr("triangles.npy", archive_member("<i8", "(1, 3)", bytes(24)))
+        begin = archive.getinfo("vertices.npy").header_offset + 30 + len("vertices.npy")
+    data = bytearray(path.read_bytes())
+    data[begin + 9 : begin + 40] = bytes([0xFF] * 31)
+    path.write_bytes(data)
+    with pytest.raises(stiv.InputError, match=r"damaged\.npz"):
+        read_mesh(path)
+
+
 def test_a_flipped_byte_is_an_error_or_harmless(tmp_path):
     good = tmp_path / "good.npz"
     np.savez_compressed(good, vertices=VERTICES, triangles=TRIANGLES)

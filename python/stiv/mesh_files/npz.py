@@ -7,6 +7,7 @@ allocate more than the file holds; pickled objects are never loaded.
 
 from __future__ import annotations
 
+import lzma
 import tokenize
 import zipfile
 import zlib
@@ -21,6 +22,16 @@ from stiv import InputError
 from stiv.mesh_files.mesh import Mesh, checked_mesh
 
 MAX_ARRAY_BYTES = 2 * 2**30
+# What zipfile raises for archives that are none, damaged or encrypted, or whose members' names are no text.
+UNREADABLE = (
+    zipfile.BadZipFile,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    UnicodeDecodeError,
+    lzma.LZMAError,
+    zlib.error,
+)
 
 
 def read_npz(path: Path) -> Mesh:
@@ -31,7 +42,7 @@ def read_npz(path: Path) -> Mesh:
             triangles = _array(archive, "triangles", "iu", 3)
             names = _optional(archive, "object_names", "U")
             owners = _optional(archive, "triangle_object", "iu")
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
+    except UNREADABLE as error:
         raise InputError(f"not a readable NPZ archive: {error}") from error
     object_names = (path.stem,) if names is None else _texts(names, "object_names")
     owner = None if owners is None else owners.astype(np.int64)
