@@ -7,8 +7,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any, Protocol
+from typing import Any
 
+from .edit import Edit, put_back
 from .events import Event
 from .pace import Pace
 from .pointer import Pointer
@@ -17,29 +18,6 @@ from .state import Effect, Phase, State, step
 
 LAST_SLICES = 10  # solves, each within its time, for what is left to do when a drag is confirmed
 GAIN = 0.99  # of the energy before: a solve for the same goal that leaves more of it was the last
-
-
-class Edit(Protocol):
-    """What a drag needs of an edit of the scene; `stiv.blender.BlenderEdit` is one."""
-
-    @property
-    def interference(self) -> bool:
-        """Whether anything gives way."""
-
-    def set_interference(self, on: bool) -> str:
-        """Switch it; says why not, or where that led back to."""
-
-    def drag(self, motion: Any, *, time_budget: float) -> Any:
-        """Solve for an absolute goal in so many seconds; the same goal again takes up what these ended."""
-
-    def settle(self) -> Any:
-        """Solve again from the accepted state."""
-
-    def write(self) -> Any:
-        """Show the accepted state."""
-
-    def restore(self) -> None:
-        """Put everything back as it was at the start."""
 
 
 class Progress(Enum):
@@ -268,11 +246,3 @@ class Drag:
         self.error = error
         self.progress = Progress.CANCELLED
         put_back(self.edit, error)
-
-
-def put_back(edit: Edit, error: Exception) -> None:
-    """Restore after an error; where that fails too (the scene is gone), the error says so."""
-    try:
-        edit.restore()
-    except Exception as second:
-        error.add_note(f"while restoring: {second}")

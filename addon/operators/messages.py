@@ -6,7 +6,8 @@ from __future__ import annotations
 import traceback
 from typing import Any
 
-from ..modal.drag import DragEnded, put_back
+from ..modal.drag import DragEnded
+from ..modal.edit import put_back
 from ..modal.texts import verdict_text
 from ..wording import say
 
