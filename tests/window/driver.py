@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
 import sys
@@ -16,6 +17,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 TICK = 0.05  # seconds between two steps of a scenario: Blender handles events and draws in between
 UNDO_STEPS = 256  # the most that Blender keeps: scenarios count their steps, which a full history would hide
+HANG = 300.0  # seconds without a step after which Blender is ended, with the place where it hangs
 DRAW_LIMIT = 120.0  # seconds for the first picture; software rendering compiles its shaders first
 
 
@@ -86,6 +88,7 @@ class Driver:
 
     def tick(self) -> float:
         """Called by Blender's timer."""
+        faulthandler.dump_traceback_later(HANG, exit=True)
         pause: float | None = TICK
         try:
             pause = next(self.steps)
