@@ -55,7 +55,7 @@ def redo_panel_by_mouse(window: Window) -> Steps:
     expect_near(box_x(), FURTHEST, NEAR, "the box at the wall")
     expect_free(window)
     assert steps() == history, (steps(), history)
-    window.move(*window.pixel((0.0, 3.0, 0.0)))  # away from the panel, which closes
+    window.key("ESC")  # closes the panel; Blender 5.2's stays open when the mouse leaves it
     yield from window.settle()
     yield from window.undo()
     assert box_x() == 0.0, box_x()
