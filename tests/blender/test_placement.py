@@ -13,6 +13,7 @@ from stiv.blender.placement import (
     nearest_turn,
     rotation_matrix,
     rotation_vector,
+    without_rounding,
 )
 
 
@@ -47,3 +48,9 @@ def test_polar_factor_leaves_out_stretch_and_mirror() -> None:
 def test_about_takes_the_centre_to_its_target() -> None:
     matrix = about(np.array([1.0, 2, 3]), rotation_matrix(np.array([0, 0, 1.0])), np.array([4.0, 5, 6]))
     assert matrix @ [1, 2, 3, 1] == pytest.approx([4, 5, 6, 1])
+
+
+def test_what_single_precision_cannot_hold_beside_the_rest_is_left_out() -> None:
+    assert without_rounding(np.array([3.0, -1e-9, 1e-5])).tolist() == [3.0, 0.0, 1e-5]
+    assert without_rounding(np.array([3e-20, 1e-20, 0.0])).tolist() == [3e-20, 1e-20, 0.0]
+    assert without_rounding(np.array([1e-9, 0.0, -2e-6]), unit=1.0).tolist() == [0.0, 0.0, -2e-6]

@@ -163,6 +163,18 @@ def test_more_than_a_turn() -> None:
     )
 
 
+def test_what_meets_a_wall_shows_no_other_change_than_its_own() -> None:
+    """A solve leaves turns and shifts of 1e-8, which Blender's fields would show as -0."""
+    cube = add_cube("Cube")
+    add_grid("Wall", 2, 3.0, location=(2, 0, 0), rotation_euler=(0, np.pi / 2, 0))
+    select(cube)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    edit.apply(shift(1.5, 0, 0))
+    assert edit.write().passed
+    assert 0.9 < cube.location.x < 1.0
+    assert tuple(cube.location[1:]) == (0.0, 0.0) and tuple(cube.rotation_euler) == (0.0, 0.0, 0.0)
+
+
 def test_scaling_along_an_objects_own_axes() -> None:
     cube = add_cube("Cube", (1, 2, 3), rotation_euler=(0, 0, np.pi / 4))
     frame = turn(np.pi / 4, "Z")

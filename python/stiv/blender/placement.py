@@ -5,6 +5,8 @@ import numpy as np
 
 from stiv.blender.arrays import Floats
 
+SINGLE = 2.0**-23  # from 1 to the next number of single precision
+
 
 def rotation_matrix(vector: Floats) -> Floats:
     """The rotation by |vector| radians about vector, (3, 3). (Rodrigues)"""
@@ -58,6 +60,15 @@ def about(centre: Floats, linear: Floats, target: Floats) -> Floats:
     matrix[:3, :3] = linear
     matrix[:3, 3] = target - linear @ centre
     return matrix
+
+
+def without_rounding(vector: Floats, unit: float = 0.0) -> Floats:
+    """The vector, (3,), with 0 for components that single precision cannot hold beside its length, or beside `unit`.
+
+    A solve leaves them where nothing asks for a motion. Blender's fields would show them, as -0.
+    """
+    cleaned: Floats = np.where(np.abs(vector) > SINGLE * max(float(np.linalg.norm(vector)), unit), vector, 0.0)
+    return cleaned
 
 
 def _quaternion(r: Floats) -> Floats:

@@ -14,7 +14,14 @@ from stiv.blender.arrays import Floats
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.object_transform import ObjectTransform, read_transform, write_transform
 from stiv.blender.parts import Part
-from stiv.blender.placement import about, nearest_rotation, nearest_turn, rotation_matrix, rotation_vector
+from stiv.blender.placement import (
+    about,
+    nearest_rotation,
+    nearest_turn,
+    rotation_matrix,
+    rotation_vector,
+    without_rounding,
+)
 from stiv.blender.references import ObjectReference
 from stiv.blender.rigid_groups import RigidGroup
 from stiv.blender.settings import EditSettings
@@ -89,10 +96,10 @@ class PlacementWriter:
     def write(self, controls: Floats) -> None:
         """Write centre and rotation vector, or centre and scale factors, (2, 3)."""
         if self.axes is None:
-            linear, factors = rotation_matrix(controls[1]), np.ones(3)
+            linear, factors = rotation_matrix(without_rounding(controls[1], unit=1.0)), np.ones(3)
         else:
             linear, factors = (self.axes * controls[1]) @ self.axes.T, controls[1]
-        motion = about(self.centre, linear, controls[0])
+        motion = about(self.centre, linear, self.centre + without_rounding(controls[0] - self.centre))
         for ob, start in self._objects():
             if np.array_equal(motion, np.eye(4)):
                 start.restore(ob)
