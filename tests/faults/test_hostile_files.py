@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random and mutated bytes as files: each is read, or refused by name, within ten seconds and without a crash."""
+"""Random and mutated bytes as files: each is read, or refused by name, without a crash and without hanging."""
 
 import contextlib
 import faulthandler
@@ -21,7 +21,7 @@ from stiv.command_line import program
 from stiv.edit_scripts import read_edit_script
 from stiv.mesh_files import read_mesh
 
-HANG = 10  # seconds
+HANG = 60  # seconds: other tests run beside; the fuzzer, which runs alone, waits for ten
 CORPUS = Path(__file__).parent / "hostile_files"
 FEW = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -59,7 +59,7 @@ VALID = {
 
 @contextlib.contextmanager
 def hang_guard():
-    """A file that is read for more than ten seconds ends the test run, with the place where it hangs."""
+    """A file that is read for so long ends the test run, with the place where it hangs."""
     faulthandler.dump_traceback_later(HANG, exit=True, file=sys.__stderr__)
     try:
         yield

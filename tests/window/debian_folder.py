@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -89,9 +90,17 @@ def system_mounts(folder: Path) -> Iterator[None]:
 
 
 def run(folder: Path, command: Sequence[str], *, quiet: bool = False, timeout: float | None = None) -> None:
-    """Run a command inside the folder. Raises CalledProcessError or TimeoutExpired."""
-    output = subprocess.DEVNULL if quiet else None
-    subprocess.run(in_folder(folder, command), check=True, stdout=output, timeout=timeout)
+    """Run a command inside the folder. Raises CalledProcessError, or TimeoutExpired when all it started is ended."""
+    whole = in_folder(folder, command)
+    process = subprocess.Popen(whole, stdout=subprocess.DEVNULL if quiet else None, start_new_session=True)
+    try:
+        code = process.wait(timeout)
+    except BaseException:
+        os.killpg(process.pid, signal.SIGKILL)  # a display and its Blender would go on
+        process.wait()
+        raise
+    if code:
+        raise subprocess.CalledProcessError(code, whole)
 
 
 def in_folder(folder: Path, command: Sequence[str]) -> list[str]:
