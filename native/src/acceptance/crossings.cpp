@@ -1,65 +1,86 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acceptance/crossings.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <tuple>
 
-#include "acceptance/exact_meeting.hpp"
-#include "stiv/acceptance/predicates.hpp"
+#include "acceptance/piercing.hpp"
 
 namespace stiv {
 
 namespace {
 
-enum class Meeting { none, strict, degenerate };
+std::array<Index, 2> edge_between(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Does the edge meet the triangle, and if so inside of both? `step` of the piercing is set.
-Meeting meeting_of(const Segment& edge, const Triangle& t, int& step) {
-  const int from = orientation_3d(t[0], t[1], t[2], edge[0]), to = orientation_3d(t[0], t[1], t[2], edge[1]);
-  if (from * to > 0) return Meeting::none;
-  const int a = orientation_3d(edge[0], edge[1], t[0], t[1]), b = orientation_3d(edge[0], edge[1], t[1], t[2]),
-            c = orientation_3d(edge[0], edge[1], t[2], t[0]);
-  if (from * to < 0) {
-    step = to;  // positive below the triangle
-    if (std::min({a, b, c}) < 0 && std::max({a, b, c}) > 0) return Meeting::none;
-    return a * b * c != 0 ? Meeting::strict : Meeting::degenerate;
-  }
-  return segment_meets_triangle(edge, t) ? Meeting::degenerate : Meeting::none;
+auto key(const EdgeCrossing& crossing) { return std::tuple(crossing.edge, crossing.triangle); }
+
+void sort_and_unify(std::vector<EdgeCrossing>& crossings) {
+  std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) { return key(a) < key(b); });
+  const auto same = [](const auto& a, const auto& b) { return key(a) == key(b); };
+  crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
 }
 
-/// Fraction of the edge at which it meets the plane of the triangle.
-double fraction_at(const Segment& edge, const Triangle& t) {
-  const Vector3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double from = std::abs(normal.dot(edge[0] - t[0])), to = std::abs(normal.dot(edge[1] - t[0]));
-  return from + to > 0 ? from / (from + to) : 0.5;
+/// Weights of the second and third corner at a fraction of the side that begins at corner k.
+Eigen::Vector2d place_on_side(std::size_t k, double fraction) {
+  std::array<double, 3> weights{};
+  weights[k] = 1 - fraction;
+  weights[(k + 1) % 3] = fraction;
+  return {weights[1], weights[2]};
 }
 
 }  // namespace
 
-std::optional<Cut> crossing(const Surface& surface, const Positions& q, const std::array<Index, 2>& triangles,
-                            std::vector<Piercing>& piercings) {
-  const auto corner = [&](int side, Index k) {
-    return surface.triangles()(triangles[static_cast<std::size_t>(side)], k);
-  };
-  const auto at = [&](Index vertex) -> Vector3 { return q.row(vertex); };
+Crossings::Crossings(const PlacedBody& first, const PlacedBody& second, const IndexPairs& meeting, int nudge)
+    : bodies_{&first, &second}, nudge_(nudge) {
+  for (const auto& [a, b] : meeting) add({a, b});
+  for (auto& crossings : crossings_) sort_and_unify(crossings);
+}
+
+void Crossings::add(const std::array<Index, 2>& triangles) {
   Cut cut{triangles, {}};
-  std::size_t found = 0;
-  for (int side = 0; side < 2; ++side) {
-    const Triangle other{at(corner(1 - side, 0)), at(corner(1 - side, 1)), at(corner(1 - side, 2))};
-    for (Index k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax({corner(side, k), corner(side, (k + 1) % 3)});
-      const Segment edge{at(low), at(high)};  // in one order, so that both triangles of an edge find the same
-      int step = 0;
-      const Meeting meeting = meeting_of(edge, other, step);
-      if (meeting == Meeting::none) continue;
-      if (meeting == Meeting::degenerate || found == 2) return std::nullopt;
-      const double fraction = fraction_at(edge, other);
-      piercings.push_back({{low, high}, triangles[static_cast<std::size_t>(1 - side)], step, fraction});
-      cut.ends[found++] = edge[0] + fraction * (edge[1] - edge[0]);
+  std::array<bool, 2> found{};
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    const PlacedBody &own = body(side), &other = body(1 - side);
+    const auto& corners = own.corners(triangles[side]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // In one order, so that both triangles of an edge find the same.
+      const std::array<Index, 2> edge = edge_between(corners[k], corners[(k + 1) % 3]);
+      const auto pierced = piercing({own.point(edge[0]), own.point(edge[1])}, other.triangle(triangles[1 - side]),
+                                    nudge(side), touching_);
+      if (!pierced) continue;
+      crossings_[side].push_back({edge, triangles[1 - side], pierced->step, pierced->at});
+      // The cut runs from where a side of the first triangle leaves the back of the second, or where one of the second
+      // goes to the back of the first, as seen when one goes around the triangle.
+      const bool forward = corners[k] == edge[0], upward = forward ? pierced->step < 0 : pierced->step > 0;
+      const std::size_t end = upward == (side == 0) ? 0 : 1;
+      found[end] = true;
+      cut.ends[side][end] = place_on_side(k, forward ? pierced->at : 1 - pierced->at);
+      cut.ends[1 - side][end] = pierced->place;
     }
   }
-  if (found < 2) return std::nullopt;
-  return cut;
+  if (found[0] && found[1]) cuts_.push_back(cut);
+}
+
+/// Calls visit(crossing) for those of an edge, smaller vertex first.
+template <class Visit>
+void Crossings::along(std::size_t side, Index a, Index b, const Visit& visit) const {
+  const std::array<Index, 2> edge = edge_between(a, b);
+  const auto before = [](const EdgeCrossing& crossing, const std::array<Index, 2>& e) { return crossing.edge < e; };
+  const auto end = crossings_[side].end();
+  for (auto k = std::lower_bound(crossings_[side].begin(), end, edge, before); k != end && k->edge == edge; ++k)
+    visit(*k);
+}
+
+int Crossings::gained(std::size_t side, Index from, Index to) const {
+  int sum = 0;
+  along(side, from, to, [&](const EdgeCrossing& c) { sum += from < to ? c.step : -c.step; });
+  return sum;
+}
+
+double Crossings::mean_along(std::size_t side, Index from, Index to, int at_beginning) const {
+  double mean = at_beginning;
+  along(side, from, to,
+        [&](const EdgeCrossing& c) { mean += from < to ? c.step * (1 - c.at) : -c.step * c.at; });
+  return mean;
 }
 
 }  // namespace stiv

@@ -54,13 +54,17 @@ int orientation_3d(const Vector3& a, const Vector3& b, const Vector3& c, const V
 }
 
 int orientation_2d(const Vector3& a, const Vector3& b, const Vector3& c, int drop) {
+  return turn_2d(c, a, c, b, drop);
+}
+
+int turn_2d(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d, int drop) {
   const int x = (drop + 1) % 3, y = (drop + 2) % 3;
-  const double left = (a[x] - c[x]) * (b[y] - c[y]);
-  const double right = (a[y] - c[y]) * (b[x] - c[x]);
+  const double left = (b[x] - a[x]) * (d[y] - c[y]);
+  const double right = (b[y] - a[y]) * (d[x] - c[x]);
   const double determinant = left - right;
   if (is_certain(determinant, error_2d * (std::abs(left) + std::abs(right)))) return sign_of(determinant);
-  return exact_minor(exact_difference(a[x], c[x]), exact_difference(a[y], c[y]), exact_difference(b[x], c[x]),
-                     exact_difference(b[y], c[y]))
+  return exact_minor(exact_difference(b[x], a[x]), exact_difference(b[y], a[y]), exact_difference(d[x], c[x]),
+                     exact_difference(d[y], c[y]))
       .sign();
 }
 

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editing/depth_watch.hpp"
 
+#include "editing/displaced_bodies.hpp"
+
 namespace stiv {
 
-bool DepthWatch::is_deeper(const Positions& q, const IndexPairs& intersecting) const {
-  if (volumes_.empty()) return false;
-  const auto now = volumes_.at(q, intersecting);
-  for (std::size_t k = 0; k < at_start_.size(); ++k) {
-    if (!at_start_[k]) continue;
-    if (!now[k]) return true;
-    if (now[k]->volume > at_start_[k]->volume + rounding_ * (at_start_[k]->area + now[k]->area)) return true;
-  }
+void DepthWatch::begin(const Positions& q, const IndexPairs& intersecting) {
+  penetrations_.emplace(surface_, excluded_, q, rounding_);
+  last_.assign(penetrations_->pairs().size(), {});
+  penetrations_->update(last_, std::vector<unsigned char>(surface_->bodies().size(), 1), q, intersecting);
+  last_positions_ = q;
+  at_start_ = last_;
+}
+
+bool DepthWatch::is_deeper(const Positions& q, const IndexPairs& intersecting) {
+  if (last_.empty()) return false;
+  penetrations_->update(last_, displaced_bodies(*surface_, last_positions_, q), q, intersecting);
+  last_positions_ = q;
+  for (std::size_t k = 0; k < last_.size(); ++k)
+    if (last_[k].amount - last_[k].uncertainty > at_start_[k].amount) return true;
   return false;
 }
 

@@ -15,4 +15,8 @@ int orientation_3d(const Vector3& a, const Vector3& b, const Vector3& c, const V
 /// of that axis. Exact likewise.
 int orientation_2d(const Vector3& a, const Vector3& b, const Vector3& c, int drop);
 
+/// Sign of the turn from b - a to d - c, projected likewise, less than half a turn counter-clockwise positive. Exact
+/// likewise.
+int turn_2d(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d, int drop);
+
 }  // namespace stiv

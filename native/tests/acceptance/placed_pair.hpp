@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "acceptance/body_mesh.hpp"
+#include "acceptance/crossings.hpp"
+#include "shapes.hpp"
+#include "stiv/acceptance/intersections.hpp"
+
+namespace stiv {
+
+/// The first two bodies of an assembly where they stand, with the pairs of their triangles that meet.
+struct PlacedPair {
+  explicit PlacedPair(const Assembly& assembly)
+      : surface(assembly.surface()),
+        meshes{body_mesh(*surface, 0), body_mesh(*surface, 1)},
+        first(meshes[0], assembly.q),
+        second(meshes[1], assembly.q) {
+    const Index split = first.triangle_count();
+    Execution execution(1);
+    for (const auto& [a, b] : IntersectionTest(surface).find(assembly.q, execution))
+      if (a < split && b >= split) meeting.emplace_back(a, b - split);
+  }
+  PlacedPair(const PlacedPair&) = delete;
+  PlacedPair& operator=(const PlacedPair&) = delete;
+
+  Crossings crossings(int nudge = 1) const { return Crossings(first, second, meeting, nudge); }
+
+  std::shared_ptr<const Surface> surface;
+  std::array<BodyMesh, 2> meshes;
+  PlacedBody first, second;
+  IndexPairs meeting;
+};
+
+}  // namespace stiv
