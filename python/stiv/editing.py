@@ -59,8 +59,9 @@ class EditSession:
 
     A start that already intersects is refused, unless the pairs that do are excluded (`EditOptions.exclude`). Then,
     from one accepted state to the next, the number of excluded pairs that intersect never grows, and no other pair
-    ever intersects; and two closed bodies never have more volume in common than at the start of the session. How deep
-    excluded pairs of open surfaces, or of one body, go is not watched; but the neighbours of their triangles are
+    ever intersects; two closed bodies never have more volume in common than at the start of the session, and of an
+    open body no more area is inside of a closed one, each triangle counted with its area at the start. How deep
+    excluded pairs of two open bodies, or of one body, go is not watched; but the neighbours of their triangles are
     guarded, so that they cannot go on through these. Two bodies that stand in each other for good are better told to
     the surface, as `ignored`: with exclusion they can hardly be moved against each other, as other triangles would
     meet.

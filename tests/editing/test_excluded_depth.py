@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closed bodies that stand in each other, with their pairs excluded, go no deeper; they may go out."""
+"""Bodies that stand in each other, with their pairs excluded, go no deeper; they may go out. Two closed ones by the
+volume that they have in common, an open one by its area inside of a closed one."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 
 import stiv
+from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
 
 Array = np.ndarray
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
@@ -139,3 +143,144 @@ def test_other_bodies_move_while_these_stand_in_each_other() -> None:
     surface, start = tetrahedra(both[:4], both[4:], far)
     goal = start + np.array([0, 0, 1.0]) * (np.arange(12) >= 8)[:, None]
     assert session_of(surface, start).edit(goal).status == "reached"
+
+
+def bodies_of(named: dict[str, tuple[Array, Array]]) -> tuple[stiv.Surface, Array]:
+    """Bodies by name, each with its triangles and vertices, side by side."""
+    counts = [len(vertices) for _, vertices in named.values()]
+    firsts = np.cumsum([0, *counts])
+    surface = stiv.Surface(
+        np.concatenate([triangles + first for (triangles, _), first in zip(named.values(), firsts, strict=False)]),
+        int(firsts[-1]),
+        vertex_body=np.repeat(np.arange(len(counts)), counts),
+        bodies=[stiv.Body(name) for name in named],
+    )
+    return surface, np.concatenate([vertices for _, vertices in named.values()]).astype(np.float32).astype(float)
+
+
+def sheet_in_block(depth: float, tilt: float = 0.0) -> tuple[stiv.Surface, Array]:
+    """An upright sheet of two triangles, that goes into the upper face of a block, a tetrahedron, by `depth`."""
+    sheet = np.array([[-0.2, 0, -0.7], [0.4, 0, -0.7], [0.4, 0, 1.3], [-0.2, 0, 1.3]]) + (0, 0.3, 0.7 - depth)
+    sheet[:, 1] += tilt * sheet[:, 2]
+    return bodies_of({"sheet": (np.array([[0, 1, 2], [0, 2, 3]]), sheet), "block": (FACES, BASE)})
+
+
+def area_of(polygon: Array) -> float:
+    arms = polygon[1:] - polygon[:1]
+    return float(np.linalg.norm(np.cross(arms[:-1], arms[1:]).sum(axis=0)) / 2)
+
+
+def area_inside(start: Array, now: Array, triangles: Array, planes: Sequence[Array]) -> float:
+    """How much of triangles lies behind planes, each counted with its area at the start."""
+    area = 0.0
+    for corners in triangles:
+        polygon = now[corners]
+        for plane in planes:
+            polygon = part_behind(polygon, plane)
+        if len(polygon) > 2:
+            area += area_of(start[corners]) * area_of(polygon) / area_of(now[corners])
+    return area
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
+def test_a_sheet_goes_no_deeper_but_out_and_along(scale: float) -> None:
+    surface, start = sheet_in_block(0.8)
+    start = (scale * start).astype(np.float32).astype(float)
+    moving = scale * (np.arange(8) < 4)[:, None]
+    deeper = session_of(surface, start).edit(start - 0.3 * moving * (0, 0, 1))
+    assert deeper.status == "blocked"
+    assert np.abs(deeper.controls - start).max() < 1e-4 * scale  # what rounding may hide
+    for way in ((0, 0, 0.3), (0, 0, 1.5), (0.1, 0.2, 0), (-0.1, 0.1, 0.1)):
+        assert session_of(surface, start).edit(start + moving * way).status == "reached"
+
+
+def test_a_sheet_that_is_dragged_in_and_out_never_is_in_deeper_than_at_the_start() -> None:
+    surface, start = sheet_in_block(0.8)
+    upward = np.array([0, 0, 1.0]) * (np.arange(8) < 4)[:, None]
+    session = session_of(surface, start)
+    for height, reached in ((0.2, True), (0.1, True), (0.0, True), (-0.1, False), (0.3, True), (0.0, True)):
+        result = session.drag(start + height * upward)
+        assert (result.status in ("reached", "unchanged")) == reached
+        assert result.surface[:4, 2].min() > start[:4, 2].min() - 1e-4
+    assert np.array_equal(session.controls, start)
+
+
+def test_a_sheet_may_stretch_where_it_is() -> None:
+    surface, start = sheet_in_block(0.8)
+    wider = start.copy()
+    wider[:4, 0] = 1.2 * start[:4, 0]
+    assert session_of(surface, start).edit(wider).status == "reached"
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_no_random_edit_makes_the_area_inside_larger(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    surface, start = sheet_in_block(chance.uniform(0.2, 1.5), chance.uniform(-0.5, 0.5))
+    turn = np.linalg.qr(chance.normal(size=(3, 3)))[0]  # or a mirror, so that the block faces inward
+    start = (start @ turn.T).astype(np.float32).astype(float)
+    sheet = surface.triangles[:2]
+    most = area_inside(start, start, sheet, outward(start[4:]))
+    assert most > 0.05
+    session = session_of(surface, start)
+    moved = 0
+    for _ in range(12):
+        goal = session.controls
+        body = slice(0, 4) if chance.random() < 0.5 else slice(4, 8)
+        goal[body] += chance.normal(scale=0.1, size=3) + chance.normal(scale=0.03, size=(4, 3))
+        result = session.edit(goal) if chance.random() < 0.5 else session.drag(goal)
+        assert area_inside(start, result.surface, sheet, outward(result.surface[4:])) <= most + 1e-5
+        moved += len(result.path)
+    assert moved > 0
+
+
+def shirt_cut_by_torso() -> tuple[stiv.Surface, Array]:
+    """A ball that sticks out of an open tube of twelve long panels around it on one side."""
+    torso, panels = icosphere(1), triangulated(grid(12, 1, 12, 1.6))
+    angle, height = panels.vertices[:24, 0] * np.pi / 6, panels.vertices[:24, 1]
+    shirt = np.stack([1.25 * np.cos(angle) + 0.5, 1.25 * np.sin(angle) + 0.03, height + 0.04], axis=1)
+    return bodies_of({"torso": (torso.triangles(), torso.vertices), "shirt": (panels.triangles() % 24, shirt)})
+
+
+def test_a_shirt_goes_no_deeper_into_a_torso_but_off_it() -> None:
+    surface, start = shirt_cut_by_torso()
+    worn = (surface.vertex_body == 1)[:, None]
+    deeper = session_of(surface, start).edit(start + worn * (0.01, 0, 0))
+    assert deeper.status == "blocked"
+    assert np.abs(deeper.surface - start).max() < 1e-5
+    for way in (-0.01, -0.1, -0.24):
+        off = session_of(surface, start).edit(start + worn * (way, 0, 0))
+        assert off.status in ("reached", "corrected")
+        moved = (off.surface - start)[surface.vertex_body == 1].mean(axis=0)
+        assert np.abs(moved - (way, 0, 0)).max() < 0.02
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_random_drag_makes_more_of_a_shirt_be_in_a_torso(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    surface, start = shirt_cut_by_torso()
+    worn = (surface.vertex_body == 1)[:, None]
+    torso, shirt = surface.triangles[:80], surface.triangles[80:]
+    most = area_inside(start, start, shirt, start[torso])
+    assert most > 1
+    session = session_of(surface, start)
+    moved = 0
+    for _ in range(10):
+        way = chance.normal(scale=0.02, size=3) + chance.normal(scale=0.003, size=start.shape)
+        result = session.drag(session.controls + worn * way)
+        assert area_inside(start, result.surface, shirt, result.surface[torso]) <= most + 1e-4
+        moved += len(result.path)
+    assert moved > 10
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_what_lies_on_a_block_is_not_pressed_into_it_but_slides_and_leaves(closed: bool) -> None:
+    upper = np.array([[-0.5, -0.5, 1], [0.5, -0.5, 1], [0.0, 0.5, 1], [0, 0, 2]])
+    lower = np.array([[-3.0, -3, 1], [3, -3, 1], [0, 3, 1], [0, 0, -2]])
+    surface, start = bodies_of({"lying": (FACES if closed else FACES[:1], upper), "block": (FACES[:, ::-1], lower)})
+    assert len(stiv.find_intersections(start, surface)) > 0
+    moving = (np.arange(8) < 4)[:, None]
+    pressed = session_of(surface, start).edit(start - moving * (0, 0, 0.1))
+    assert pressed.status == "blocked"
+    assert np.abs(pressed.surface - start).max() < 1e-5
+    for way in ((0, 0, 0.1), (0.1, 0.2, 0.0)):
+        assert session_of(surface, start).edit(start + moving * way).status == "reached"

@@ -44,7 +44,8 @@ BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const
   for (const auto& pair : pairs_)
     for (const Index body : pair)
       if (watched_.count(body) == 0) watched_.emplace(body, Watched{body_mesh(*surface_, body), {}, 1});
-  std::erase_if(pairs_, [&](const auto& p) { return !watched_.at(p[0]).mesh.closed && !watched_.at(p[1]).mesh.closed; });
+  std::erase_if(pairs_,
+                [&](const auto& p) { return !watched_.at(p[0]).mesh.closed && !watched_.at(p[1]).mesh.closed; });
   for (auto& [body, watched] : watched_) {
     const PlacedBody placed(watched.mesh, start);
     watched.start_areas = areas_of(placed);
@@ -69,8 +70,8 @@ std::vector<IndexPairs> BodyPenetrations::meeting_by_pair(const IndexPairs& inte
     const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), bodies);
     if (found == pairs_.end() || *found != bodies) continue;
     if (body_of_triangle(*surface_, a) != bodies[0]) std::swap(a, b);
-    meeting[static_cast<std::size_t>(found - pairs_.begin())].emplace_back(
-        place_in(watched_.at(bodies[0]).mesh, a), place_in(watched_.at(bodies[1]).mesh, b));
+    meeting[static_cast<std::size_t>(found - pairs_.begin())].emplace_back(place_in(watched_.at(bodies[0]).mesh, a),
+                                                                           place_in(watched_.at(bodies[1]).mesh, b));
   }
   return meeting;
 }

@@ -78,8 +78,7 @@ int Crossings::gained(std::size_t side, Index from, Index to) const {
 
 double Crossings::mean_along(std::size_t side, Index from, Index to, int at_beginning) const {
   double mean = at_beginning;
-  along(side, from, to,
-        [&](const EdgeCrossing& c) { mean += from < to ? c.step * (1 - c.at) : -c.step * c.at; });
+  along(side, from, to, [&](const EdgeCrossing& c) { mean += from < to ? c.step * (1 - c.at) : -c.step * c.at; });
   return mean;
 }
 

@@ -21,7 +21,7 @@ struct EdgeCrossing {
 /// The segment in which two triangles cross, from its end 0 to its end 1 along the normal of the first times that of
 /// the second.
 struct Cut {
-  std::array<Index, 2> triangles{};                       ///< of the first and the second body
+  std::array<Index, 2> triangles{};                      ///< of the first and the second body
   std::array<std::array<Eigen::Vector2d, 2>, 2> ends{};  ///< for each, ends: weights of its second and third corner
 };
 

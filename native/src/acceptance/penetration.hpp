@@ -14,9 +14,9 @@ struct Penetration {
   double uncertainty = 0;  ///< what it changes by where the bodies move by a given distance, `rounding`
 };
 
-/// The volume that two closed bodies have in common, found from their surfaces: with winding numbers w, by the divergence
-/// theorem, 3 V = integral of w_b x.n over the surface of a + integral of w_a x.n over that of b. Negative if one of
-/// them faces inward.
+/// The volume that two closed bodies have in common, found from their surfaces: with winding numbers w, by the
+/// divergence theorem, 3 V = integral of w_b x.n over the surface of a + integral of w_a x.n over that of b. Negative
+/// if one of them faces inward.
 /// @param meeting pairs of their triangles, among which are all that intersect
 Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& meeting, double rounding);
 

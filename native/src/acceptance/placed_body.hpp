@@ -14,7 +14,9 @@ class PlacedBody {
 
   const BodyMesh& mesh() const { return mesh_; }
   Index triangle_count() const { return static_cast<Index>(mesh_.triangles.size()); }
-  const std::array<Index, 3>& corners(Index triangle) const { return mesh_.corners[static_cast<std::size_t>(triangle)]; }
+  const std::array<Index, 3>& corners(Index triangle) const {
+    return mesh_.corners[static_cast<std::size_t>(triangle)];
+  }
   const Vector3& point(Index vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
   Triangle triangle(Index triangle) const;
   const Eigen::AlignedBox3d& box() const { return box_; }

@@ -53,9 +53,7 @@ int orientation_3d(const Vector3& a, const Vector3& b, const Vector3& c, const V
   return exact_orientation_3d(a, b, c, d);
 }
 
-int orientation_2d(const Vector3& a, const Vector3& b, const Vector3& c, int drop) {
-  return turn_2d(c, a, c, b, drop);
-}
+int orientation_2d(const Vector3& a, const Vector3& b, const Vector3& c, int drop) { return turn_2d(c, a, c, b, drop); }
 
 int turn_2d(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d, int drop) {
   const int x = (drop + 1) % 3, y = (drop + 2) % 3;

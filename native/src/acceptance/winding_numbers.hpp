@@ -11,8 +11,8 @@ namespace stiv {
 /// @param nudge of the point: see nudged_orientation.hpp
 int winding_number(const PlacedBody& closed, const Vector3& point, int nudge);
 
-/// How often the other body, which is closed, winds around each vertex of the body of a side: along a ray from one vertex
-/// of each component, and from there along edges by what they cross.
+/// How often the other body, which is closed, winds around each vertex of the body of a side: along a ray from one
+/// vertex of each component, and from there along edges by what they cross.
 std::vector<int> winding_numbers(const Crossings& crossings, std::size_t side);
 
 }  // namespace stiv

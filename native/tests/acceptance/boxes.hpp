@@ -87,8 +87,7 @@ inline Polygon inside(Polygon polygon, const std::vector<Polygon>& faces) {
 
 inline double area_of(const Polygon& polygon) {
   Vector3 sum = Vector3::Zero();
-  for (std::size_t k = 2; k < polygon.size(); ++k)
-    sum += (polygon[k - 1] - polygon[0]).cross(polygon[k] - polygon[0]);
+  for (std::size_t k = 2; k < polygon.size(); ++k) sum += (polygon[k - 1] - polygon[0]).cross(polygon[k] - polygon[0]);
   return sum.norm() / 2;
 }
 

@@ -160,13 +160,33 @@ TEST_CASE("triangles count with the area that they had at the start") {
         doctest::Approx(4));
 }
 
+TEST_CASE("what moves away from the middle of a box goes no deeper, and what moves toward it comes no less deep") {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> factor(1, 1.3);
+  int changed = 0;
+  for (int round = 0; round < 100; ++round) {
+    Assembly scene = sheet_and_box(random_frame(random, 0.7) * Eigen::Scaling(2.0));
+    const PlacedPair before(scene);
+    scene.q.topRows(25) *= factor(random);
+    const PlacedPair after(scene);
+    const std::vector<double> inner = areas_of(before.first), outer = areas_of(after.first);
+    const auto inside_of = [](const PlacedPair& pair, const std::vector<double>& areas) {
+      return area_inside(pair.first, areas, pair.second, pair.meeting, 0).amount;
+    };
+    CHECK(inside_of(after, inner) <= inside_of(before, inner) + 1e-12);
+    CHECK(inside_of(before, outer) >= inside_of(after, outer) - 1e-12);
+    changed += inside_of(after, inner) < inside_of(before, inner) - 0.1;
+  }
+  CHECK(changed > 50);
+}
+
 TEST_CASE("what lies in the surface of a closed body counts half, whatever side of the body that is") {
   const Eigen::AngleAxisd upright(std::numbers::pi / 2, Vector3::UnitY());
   for (const double side : {-2.0, 2.0}) {
     CHECK(area_of_first(sheet_and_box(at(0, 0, side))).amount == doctest::Approx(2));
-    CHECK(area_of_first(sheet_and_box(at(2, 0, side))).amount == doctest::Approx(1));   // half beyond the edge
-    CHECK(area_of_first(sheet_and_box(at(0, side, 0))).amount == doctest::Approx(2));   // across the face: half in
-    CHECK(area_of_first(sheet_and_box(at(0, 3 * side / 2, 0))).amount == 0);            // along an edge, outside
+    CHECK(area_of_first(sheet_and_box(at(2, 0, side))).amount == doctest::Approx(1));      // half beyond the edge
+    CHECK(area_of_first(sheet_and_box(at(0, side, 0))).amount == doctest::Approx(2));      // across the face: half in
+    CHECK(area_of_first(sheet_and_box(at(0, 3 * side / 2, 0))).amount == 0);               // along an edge, outside
     CHECK(area_of_first(sheet_and_box(at(0, side / 2, 0))).amount == doctest::Approx(4));  // inside
   }
   CHECK(area_of_first(sheet_and_box(at(-2, 0.5, 0) * upright)).amount == doctest::Approx(2));

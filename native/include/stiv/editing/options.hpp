@@ -34,7 +34,8 @@ struct EditOptions {
   Eigen::VectorXd weights;  ///< (m) response of each control, 0 pins; empty: all 1
   /// Pairs of triangles that may intersect, at the start and later: their number that does never grows from one
   /// accepted state to the next, and no other pair ever intersects. What belongs to such pairs alone is not detected.
-  /// Two closed bodies never have more volume in common than at the start of the session.
+  /// Two closed bodies never have more volume in common than at the start of the session, and of an open body no more
+  /// area, counted as it was at the start, is inside of a closed one.
   IndexPairs excluded;
   ConstraintKind constraints = ConstraintKind::per_patch;
   ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear keeps no constraints from round to round
