@@ -8,20 +8,17 @@
 
 namespace stiv {
 
-/// The triangles of a body by themselves, with vertices counted from 0: what is done with one body takes no time for
-/// the others. Vertices of no triangle are left out.
+/// Triangles of a body by themselves, with vertices counted from 0: what is done with one body takes no time for the
+/// others.
 struct BodyMesh {
   std::vector<Index> vertices;                ///< of the surface, ascending
   std::vector<Index> triangles;               ///< of the surface, ascending
   std::vector<std::array<Index, 3>> corners;  ///< of each triangle, places in `vertices`
   std::vector<Index> seeds;                   ///< a vertex of each component, a place in `vertices`
   std::vector<std::array<Index, 2>> walk;     ///< edges (from, to) that lead from the seeds to all others, in order
-
-  /// Does it bound a volume: does every edge run as often one way as the other? It may have several connected
-  /// components, an inner one that faces inward being a cavity, and edges of more than two triangles.
-  bool closed = false;
 };
 
-BodyMesh body_mesh(const Surface& surface, Index body);
+/// @param triangles of the surface, ascending
+BodyMesh body_mesh(const Surface& surface, std::vector<Index> triangles);
 
 }  // namespace stiv

@@ -3,25 +3,19 @@
 
 #include <algorithm>
 
+#include "acceptance/body_parts.hpp"
+
 namespace stiv {
 
 namespace {
 
-Index body_of_triangle(const Surface& surface, Index triangle) {
-  return surface.body_of(surface.triangles()(triangle, 0));
-}
-
-std::array<Index, 2> bodies_of(const Surface& surface, const std::pair<Index, Index>& pair) {
-  const Index a = body_of_triangle(surface, pair.first), b = body_of_triangle(surface, pair.second);
-  return {std::min(a, b), std::max(a, b)};
-}
-
-std::vector<std::array<Index, 2>> pairs_of_bodies(const Surface& surface, const IndexPairs& pairs) {
-  std::vector<std::array<Index, 2>> bodies;
-  for (const auto& pair : pairs) bodies.push_back(bodies_of(surface, pair));
+/// The bodies of pairs of triangles, each once.
+std::vector<Index> bodies_among(const Surface& surface, const IndexPairs& pairs) {
+  std::vector<Index> bodies;
+  for (const auto& [a, b] : pairs)
+    for (const Index triangle : {a, b}) bodies.push_back(surface.body_of(surface.triangles()(triangle, 0)));
   std::sort(bodies.begin(), bodies.end());
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  std::erase_if(bodies, [&](const auto& pair) { return pair[0] == pair[1] || !surface.bodies_meet(pair[0], pair[1]); });
   return bodies;
 }
 
@@ -31,64 +25,82 @@ std::vector<double> areas_of(const PlacedBody& body) {
   return areas;
 }
 
-Index place_in(const BodyMesh& mesh, Index triangle) {
-  const auto found = std::lower_bound(mesh.triangles.begin(), mesh.triangles.end(), triangle);
-  return static_cast<Index>(found - mesh.triangles.begin());
-}
-
 }  // namespace
 
-BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
+BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& excluded,
                                    const Positions& start, double rounding)
-    : surface_(std::move(surface)), rounding_(rounding), pairs_(pairs_of_bodies(*surface_, pairs)) {
-  for (const auto& pair : pairs_)
-    for (const Index body : pair)
-      if (watched_.count(body) == 0) watched_.emplace(body, Watched{body_mesh(*surface_, body), {}, 1});
-  std::erase_if(pairs_,
-                [&](const auto& p) { return !watched_.at(p[0]).mesh.closed && !watched_.at(p[1]).mesh.closed; });
-  for (auto& [body, watched] : watched_) {
-    const PlacedBody placed(watched.mesh, start);
-    watched.start_areas = areas_of(placed);
-    if (watched.mesh.closed && placed.signed_volume() < 0) watched.facing = -1;
-  }
+    : surface_(std::move(surface)),
+      rounding_(rounding),
+      places_(static_cast<std::size_t>(surface_->triangles().rows())) {
+  for (const Index body : bodies_among(*surface_, excluded)) add_parts(body, start);
+  for (const auto& [a, b] : excluded) pairs_.push_back(ordered(place(a).part, place(b).part));
+  std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  std::erase_if(pairs_, [&](const auto& parts) { return !is_measurable(parts); });
+}
+
+void BodyPenetrations::add_parts(Index body, const Positions& start) {
+  BodyParts parts = body_parts(*surface_, body);
+  add_part(body, false, std::move(parts.open), start);
+  add_part(body, true, std::move(parts.closed), start);
+}
+
+void BodyPenetrations::add_part(Index body, bool closed, std::vector<Index> triangles, const Positions& start) {
+  const auto number = static_cast<Index>(parts_.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    places_[static_cast<std::size_t>(triangles[k])] = {number, static_cast<Index>(k)};
+  Part& added = parts_.emplace_back(Part{body, closed, body_mesh(*surface_, std::move(triangles)), {}, 1});
+  const PlacedBody placed(added.mesh, start);
+  added.start_areas = areas_of(placed);
+  if (closed && placed.signed_volume() < 0) added.facing = -1;
+}
+
+/// Where one is open, it comes first.
+std::array<Index, 2> BodyPenetrations::ordered(Index a, Index b) const {
+  const bool forward = part(a).closed == part(b).closed ? a < b : part(b).closed;
+  return forward ? std::array{a, b} : std::array{b, a};
+}
+
+bool BodyPenetrations::is_measurable(const std::array<Index, 2>& parts) const {
+  const Part &first = part(parts[0]), &second = part(parts[1]);
+  return second.closed && first.body != second.body && surface_->bodies_meet(first.body, second.body);
+}
+
+std::vector<BodyPenetrations::Pair> BodyPenetrations::pairs() const {
+  std::vector<Pair> pairs;
+  for (const auto& [a, b] : pairs_) pairs.push_back({{part(a).body, part(b).body}, {part(a).closed, part(b).closed}});
+  return pairs;
 }
 
 void BodyPenetrations::update(std::vector<Penetration>& penetrations, const std::vector<unsigned char>& displaced,
                               const Positions& q, const IndexPairs& intersecting) const {
-  std::vector<IndexPairs> meeting = meeting_by_pair(intersecting);
-  const auto is_displaced = [&](Index body) { return displaced[static_cast<std::size_t>(body)] != 0; };
+  const std::vector<IndexPairs> meeting = meeting_by_pair(intersecting);
+  const auto is_displaced = [&](Index number) { return displaced[static_cast<std::size_t>(part(number).body)] != 0; };
   for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (is_displaced(pairs_[k][0]) || is_displaced(pairs_[k][1]))
-      penetrations[k] = measured(pairs_[k], std::move(meeting[k]), q);
+    if (is_displaced(pairs_[k][0]) || is_displaced(pairs_[k][1])) penetrations[k] = measured(pairs_[k], meeting[k], q);
 }
 
-/// Of each pair of bodies, places of their triangles in its first and its second body.
+/// Of each pair, places of triangles in its first and its second part.
 std::vector<IndexPairs> BodyPenetrations::meeting_by_pair(const IndexPairs& intersecting) const {
   std::vector<IndexPairs> meeting(pairs_.size());
-  for (auto [a, b] : intersecting) {
-    const std::array<Index, 2> bodies = bodies_of(*surface_, {a, b});
-    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), bodies);
-    if (found == pairs_.end() || *found != bodies) continue;
-    if (body_of_triangle(*surface_, a) != bodies[0]) std::swap(a, b);
-    meeting[static_cast<std::size_t>(found - pairs_.begin())].emplace_back(place_in(watched_.at(bodies[0]).mesh, a),
-                                                                           place_in(watched_.at(bodies[1]).mesh, b));
+  for (const auto& [a, b] : intersecting) {
+    Place first = place(a), second = place(b);
+    if (first.part < 0 || second.part < 0) continue;
+    const std::array<Index, 2> parts = ordered(first.part, second.part);
+    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), parts);
+    if (found == pairs_.end() || *found != parts) continue;
+    if (first.part != parts[0]) std::swap(first, second);
+    meeting[static_cast<std::size_t>(found - pairs_.begin())].emplace_back(first.triangle, second.triangle);
   }
   return meeting;
 }
 
-Penetration BodyPenetrations::measured(const std::array<Index, 2>& bodies, IndexPairs meeting,
+Penetration BodyPenetrations::measured(const std::array<Index, 2>& parts, const IndexPairs& meeting,
                                        const Positions& q) const {
-  const Watched &a = watched_.at(bodies[0]), &b = watched_.at(bodies[1]);
+  const Part &a = part(parts[0]), &b = part(parts[1]);
   const PlacedBody first(a.mesh, q), second(b.mesh, q);
-  Penetration found;
-  if (a.mesh.closed && b.mesh.closed) {
-    found = common_volume(first, second, meeting, rounding_);
-  } else if (b.mesh.closed) {
-    found = area_inside(first, a.start_areas, second, meeting, rounding_);
-  } else {
-    for (auto& [of_first, of_second] : meeting) std::swap(of_first, of_second);
-    found = area_inside(second, b.start_areas, first, meeting, rounding_);
-  }
+  Penetration found = a.closed ? common_volume(first, second, meeting, rounding_)
+                               : area_inside(first, a.start_areas, second, meeting, rounding_);
   found.amount *= a.facing * b.facing;
   return found;
 }

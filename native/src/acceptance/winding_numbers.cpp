@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acceptance/winding_numbers.hpp"
 
-#include <cmath>
-
 #include "acceptance/piercing.hpp"
 
 namespace stiv {

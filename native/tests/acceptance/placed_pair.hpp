@@ -8,11 +8,19 @@
 
 namespace stiv {
 
+/// All triangles of a body.
+inline BodyMesh whole_body(const Surface& surface, Index body) {
+  std::vector<Index> triangles;
+  for (Index k = 0; k < static_cast<Index>(surface.triangles().rows()); ++k)
+    if (surface.body_of(surface.triangles()(k, 0)) == body) triangles.push_back(k);
+  return body_mesh(surface, std::move(triangles));
+}
+
 /// The first two bodies of an assembly where they stand, with the pairs of their triangles that meet.
 struct PlacedPair {
   explicit PlacedPair(const Assembly& assembly)
       : surface(assembly.surface()),
-        meshes{body_mesh(*surface, 0), body_mesh(*surface, 1)},
+        meshes{whole_body(*surface, 0), whole_body(*surface, 1)},
         first(meshes[0], assembly.q),
         second(meshes[1], assembly.q) {
     const Index split = first.triangle_count();

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "boxes.hpp"
+#include "placed_pair.hpp"
 
 using namespace stiv;
 
@@ -14,7 +15,7 @@ TEST_CASE("a placed box has its corners, areas along its normals outward, and it
     add_sheet(scene, 2, Eigen::Affine3d::Identity());
     add_box(scene, random_frame(random, 3) * Eigen::Scaling(1.0, 2.0, 0.5));
     scene.q *= scale;
-    const BodyMesh mesh = body_mesh(*scene.surface(), 1);
+    const BodyMesh mesh = whole_body(*scene.surface(), 1);
     const PlacedBody box(mesh, scene.q);
     REQUIRE(box.triangle_count() == 12);
     const Vector3 middle = scene.q.bottomRows(8).colwise().mean().transpose();
@@ -25,7 +26,7 @@ TEST_CASE("a placed box has its corners, areas along its normals outward, and it
     }
     CHECK(box.signed_volume() / (scale * scale * scale) == doctest::Approx(64));
     scene.definition.triangles.bottomRows(12).rowwise().reverseInPlace();
-    const BodyMesh turned = body_mesh(*scene.surface(), 1);
+    const BodyMesh turned = whole_body(*scene.surface(), 1);
     CHECK(PlacedBody(turned, scene.q).signed_volume() / (scale * scale * scale) == doctest::Approx(-64));
   }
 }

@@ -41,7 +41,7 @@ TEST_CASE("points on faces, edges and corners are on the side to which they are 
   Assembly scene;
   add_box(scene, Eigen::Affine3d::Identity());
   const auto surface = scene.surface();
-  const BodyMesh mesh = body_mesh(*surface, 0);
+  const BodyMesh mesh = whole_body(*surface, 0);
   const PlacedBody box(mesh, scene.q);
   int inside = 0;
   for (int nudge : {1, -1})
@@ -59,7 +59,7 @@ TEST_CASE("points on faces, edges and corners are on the side to which they are 
 TEST_CASE("a flat body, a body in the plane of the ray's start and one in itself twice are counted") {
   Assembly scene;
   add_box(scene, Eigen::Affine3d(Eigen::Scaling(0.0, 1.0, 1.0)));
-  const BodyMesh flat = body_mesh(*scene.surface(), 0);
+  const BodyMesh flat = whole_body(*scene.surface(), 0);
   CHECK(winding_number(PlacedBody(flat, scene.q), Vector3(0, 1, 1), 1) == 0);
   Assembly twice;
   auto corners = box_corners(Eigen::Affine3d::Identity());
@@ -70,6 +70,6 @@ TEST_CASE("a flat body, a body in the plane of the ray's start and one in itself
     faces.push_back(face);
   }
   add_body(twice, corners, faces);
-  const BodyMesh mesh = body_mesh(*twice.surface(), 0);
+  const BodyMesh mesh = whole_body(*twice.surface(), 0);
   CHECK(winding_number(PlacedBody(mesh, twice.q), Vector3(0.5, 0.3, 0.1), 1) == 2);
 }
