@@ -4,7 +4,7 @@ volume that they have in common, an open one by its area inside of a closed one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pytest
@@ -81,6 +81,15 @@ def session_of(surface: stiv.Surface, start: Array) -> stiv.EditSession:
     return stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
 
 
+def random_edits(session: stiv.EditSession, chance: np.random.Generator) -> Iterator[stiv.EditResult]:
+    """Results of edits and drags that move and bend one of two bodies with four vertices each."""
+    for _ in range(12):
+        goal = session.controls
+        body = slice(0, 4) if chance.random() < 0.5 else slice(4, 8)
+        goal[body] += chance.normal(scale=0.1, size=3) + chance.normal(scale=0.03, size=(4, 3))
+        yield session.edit(goal) if chance.random() < 0.5 else session.drag(goal)
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_no_random_edit_makes_the_common_volume_larger(seed: int) -> None:
     chance = np.random.default_rng(seed)
@@ -93,11 +102,7 @@ def test_no_random_edit_makes_the_common_volume_larger(seed: int) -> None:
     assert most > 0
     session = session_of(surface, start)
     moved = 0
-    for _ in range(12):
-        goal = session.controls
-        body = slice(0, 4) if chance.random() < 0.5 else slice(4, 8)
-        goal[body] += chance.normal(scale=0.1, size=3) + chance.normal(scale=0.03, size=(4, 3))
-        result = session.edit(goal) if chance.random() < 0.5 else session.drag(goal)
+    for result in random_edits(session, chance):
         now = common_volume(result.surface[:4], result.surface[4:])
         assert now <= most + rounding_of(start[:4]) + rounding_of(start[4:])
         moved += len(result.path)
@@ -223,11 +228,7 @@ def test_no_random_edit_makes_the_area_inside_larger(seed: int) -> None:
     assert most > 0.05
     session = session_of(surface, start)
     moved = 0
-    for _ in range(12):
-        goal = session.controls
-        body = slice(0, 4) if chance.random() < 0.5 else slice(4, 8)
-        goal[body] += chance.normal(scale=0.1, size=3) + chance.normal(scale=0.03, size=(4, 3))
-        result = session.edit(goal) if chance.random() < 0.5 else session.drag(goal)
+    for result in random_edits(session, chance):
         assert area_inside(start, result.surface, sheet, outward(result.surface[4:])) <= most + 1e-5
         moved += len(result.path)
     assert moved > 0
