@@ -23,7 +23,6 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 3600  # seconds for one command: three times what the longest takes on an idle machine of two cores
-STUCK = 900  # seconds after which a test in Python tells where it is
 WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 PRINTING = threading.Lock()
@@ -77,7 +76,7 @@ def pytest(title: str, venv: Path, *arguments: str) -> Counts:
     report = REPORTS / f"{venv.name}.xml"
     report.unlink(missing_ok=True)
     command = [venv / "bin/python", "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
-    code = run(title, [*command, "-o", f"faulthandler_timeout={STUCK}", *arguments])
+    code = run(title, [*command, *arguments])
     return junit_counts.from_pytest(report, code)
 
 

@@ -2,6 +2,7 @@
 """What the installed wheel and the source archive hold."""
 
 import importlib.metadata
+import shutil
 import tarfile
 from pathlib import Path
 
@@ -37,9 +38,25 @@ def test_wheel_holds_the_licenses_of_what_is_linked(installed_files: set[str]) -
     assert names >= {"LICENSE", "Eigen.txt", "Highway.txt", "OpenSubdiv.txt", "OpenSubdiv-NOTICE.txt", "pybind11.txt"}
 
 
-def test_source_archive_holds_what_a_build_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def copied_tree(tmp_path: Path) -> Path:
+    """The source tree with something built in it. Not the tree itself: the backend's search for files may go into
+    `build/` in spite of what is ignored, and follows links there, of a Debian folder in use into all of the machine.
+    """
+    tree = tmp_path / "tree"
+    shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", "dist", ".git", "__pycache__", ".*_cache"))
+    for name in ("build/native/log.txt", "dist/stiv.zip", "python/stiv/_native.so"):
+        path = tree / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("built")
+    return tree
+
+
+def test_source_archive_holds_what_a_build_needs(
+    copied_tree: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     backend = pytest.importorskip("scikit_build_core.build", reason="the build backend is in build/venv only")
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(copied_tree)
     with tarfile.open(tmp_path / backend.build_sdist(str(tmp_path))) as archive:
         names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
     assert names >= {
