@@ -22,19 +22,19 @@ Edges as_rows(const IndexPairs& pairs) {
   return rows;
 }
 
-Edges find_intersections(const SurfacePointer& surface, const Positions& q, int threads) {
+Edges find_intersections(const SurfacePointer& surface, const PositionsView& q, int threads) {
   Execution execution(threads);
   return as_rows(IntersectionTest(surface).find(q, execution));
 }
 
-std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const Positions& q, int threads) {
+std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const PositionsView& q, int threads) {
   Execution execution(threads);
   IntersectionTest test(surface);
   return {as_rows(test.find_loose_edges(q, execution)), as_rows(test.find_loose_vertices(q, execution))};
 }
 
-bool step_is_free(const SurfacePointer& surface, const Positions& start, const Positions& end, double separation,
-                  int threads) {
+bool step_is_free(const SurfacePointer& surface, const PositionsView& start, const PositionsView& end,
+                  double separation, int threads) {
   Execution execution(threads);
   IntersectionTest test(surface);
   Detector detector(surface);
@@ -45,7 +45,7 @@ bool step_is_free(const SurfacePointer& surface, const Positions& start, const P
 struct KeptIntersectionTest {
   KeptIntersectionTest(const SurfacePointer& surface, int thread_count) : test(surface), threads(thread_count) {}
 
-  Edges find(const Positions& q) {
+  Edges find(const PositionsView& q) {
     Execution execution(threads);
     return as_rows(test.find(q, execution));
   }
@@ -59,7 +59,7 @@ struct StepCheck {
   StepCheck(const SurfacePointer& surface, int thread_count)
       : detector(surface), intersections(surface), threads(thread_count) {}
 
-  bool is_free(const Positions& start, const Positions& end, double separation) {
+  bool is_free(const PositionsView& start, const PositionsView& end, double separation) {
     Execution execution(threads);
     return is_step_free(detector, intersections, start, end, {separation}, execution);
   }
@@ -90,7 +90,7 @@ void bind_acceptance(py::module_& module) {
   module.def("find_loose_intersections", &find_loose_intersections, Release());
   module.def("is_step_free", &step_is_free, Release());
   module.def("stored_mesh", &stored_mesh);
-  module.def("least_distance", [](const SurfacePointer& surface, const Positions& q, bool within) {
+  module.def("least_distance", [](const SurfacePointer& surface, const PositionsView& q, bool within) {
     return tuple_of([&] {
       const py::gil_scoped_release unlocked;
       return LeastDistance(surface).find(q, within);

@@ -46,13 +46,13 @@ class GuardedDetector {
   GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, NarrowPhase narrow_phase, int threads)
       : detector_(std::move(surface), {broad_phase, narrow_phase}), threads_(threads) {}
 
-  Events find(const Positions& start, const Positions& end, double separation, double keep) {
+  Events find(const PositionsView& start, const PositionsView& end, double separation, double keep) {
     const Use use(busy_);
     Execution execution(threads_);
     return detector_.find(start, end, {separation, keep}, execution);
   }
 
-  double earliest_time(const Positions& start, const Positions& end, double separation, double keep) {
+  double earliest_time(const PositionsView& start, const PositionsView& end, double separation, double keep) {
     const Use use(busy_);
     Execution execution(threads_);
     return detector_.earliest_time(start, end, {separation, keep}, execution);
@@ -105,7 +105,8 @@ void bind_detection(py::module_& module) {
   py::class_<GuardedDetector>(module, "Detector")
       .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>())
       .def("find",
-           [](GuardedDetector& detector, const Positions& start, const Positions& end, double separation, double keep) {
+           [](GuardedDetector& detector, const PositionsView& start, const PositionsView& end, double separation,
+              double keep) {
              const Events events = [&] {
                const py::gil_scoped_release release;
                return detector.find(start, end, separation, keep);

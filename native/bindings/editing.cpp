@@ -113,7 +113,7 @@ class Session {
   }
   double separation() const { return session_.separation(); }
 
-  bool is_step_free(const Positions& start, const Positions& end) {
+  bool is_step_free(const PositionsView& start, const PositionsView& end) {
     const InUse in_use(in_use_);
     const py::gil_scoped_release unlocked;
     Execution execution(threads_);

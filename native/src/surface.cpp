@@ -177,7 +177,7 @@ bool Surface::in_one_recut_face(const Index* vertices, std::size_t count) const 
   return false;
 }
 
-Eigen::VectorXd Surface::vertex_areas(const Positions& q) const {
+Eigen::VectorXd Surface::vertex_areas(const PositionsView& q) const {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count());
   for (Index face = 0; face < triangles().rows(); ++face) {
     const auto corner = [&](Index k) -> Vector3 { return q.row(triangles()(face, k)); };
@@ -199,7 +199,7 @@ std::string Surface::describe_triangle(Index triangle) const {
   return "object \"" + bodies()[static_cast<std::size_t>(body)].name + "\", face " + std::to_string(place);
 }
 
-void Surface::check_positions(const Positions& q) const {
+void Surface::check_positions(const PositionsView& q) const {
   if (q.rows() != vertex_count()) {
     std::ostringstream message;
     message << "positions have " << q.rows() << " rows, the surface has " << vertex_count() << " vertices";

@@ -33,7 +33,7 @@ def _check_shape(array: NDArray[Any], name: str, shape: tuple[int | None, ...]) 
 
 
 def as_reals(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
-    """Return `value` as a contiguous float64 array of a shape in which None is any size.
+    """Return `value` as a contiguous float64 array of a shape in which None is any size: itself if it is one.
 
     Its numbers may be anything: for what the core looks at itself.
     """
@@ -41,7 +41,8 @@ def as_reals(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floa
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: dtype is {array.dtype}, expected real numbers")
     _check_shape(array, name, shape)
-    return np.ascontiguousarray(array, np.float64)
+    result: Floats = np.ascontiguousarray(array, np.float64)
+    return result if result.flags.aligned else result.copy()  # the core reads it where it is
 
 
 def check_finite(array: Floats, name: str) -> None:

@@ -102,6 +102,7 @@ class Detector:
     threads       0: one for each processor; results are the same for any number
 
     Left out are pairs that share a vertex, pairs of which no vertex moves, and pairs of bodies that do not meet.
+    Contiguous arrays of float64 are read where they are, without a copy: nothing may write to them during a call.
     """
 
     def __init__(

@@ -2,6 +2,7 @@
 """Events of whole surfaces: the broad phases agree, and agree with single pairs."""
 
 import threading
+from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
@@ -89,6 +90,53 @@ def test_events_describe_the_contact() -> None:
     assert np.all(np.einsum("ki,ki->k", separation, events.normal) > 0) and np.all(approach <= 0)
     order = np.lexsort((*events.vertices.T[::-1], events.kind))
     assert np.array_equal(order, np.arange(len(events)))
+
+
+def misaligned(array: np.ndarray) -> np.ndarray:
+    """The same numbers at addresses that are no multiple of their size."""
+    found = np.frombuffer(bytes(4) + array.tobytes(), np.float64, offset=4).reshape(array.shape)
+    assert not found.flags.aligned
+    return found
+
+
+LAYOUTS = {
+    "columns first": np.asfortranarray,
+    "a transpose": lambda array: np.ascontiguousarray(array.T).T,
+    "with gaps between rows": lambda array: np.hstack([array, array])[:, :3],
+    "every second row": lambda array: np.repeat(array, 2, axis=0)[::2],
+    "backwards": lambda array: array[::-1].copy()[::-1],
+    "single precision": lambda array: array.astype(np.float32),
+    "other byte order": lambda array: array.astype(array.dtype.newbyteorder()),
+    "misaligned": misaligned,
+    "lists": lambda array: array.tolist(),
+}
+
+
+@pytest.mark.parametrize("laid_out", LAYOUTS.values(), ids=LAYOUTS.keys())
+@pytest.mark.parametrize("threads", [1, 2])
+def test_arrays_may_lie_in_any_way_and_are_left_as_they_are(laid_out: Callable, threads: int) -> None:
+    corners, *both = soup(7, 60, 0.4)
+    start, end = (array.astype(np.float32).astype(float) for array in both)  # what every layout can hold
+    expected = stiv.find_interference(corners, start, end, 0.01, "brute_force")
+    given = [laid_out(start), laid_out(end)]
+    before = [np.array(array).tobytes() for array in given]
+    for array in given:
+        if isinstance(array, np.ndarray):
+            array.flags.writeable = False
+    detector = stiv.Detector(corners, threads=threads)
+    for _ in range(2):  # the second one finds all as it was
+        assert_same(detector.find(*given, 0.01), expected)
+        assert detector.earliest_time(*given, 0.01) == expected.time.min()
+    assert [np.array(array).tobytes() for array in given] == before
+
+
+def test_a_detector_sees_what_was_written_into_an_array_since_its_last_call() -> None:
+    corners, start, end = soup(8, 60, 0.4)
+    detector = stiv.Detector(corners)
+    given = end.copy()
+    for share in (1.0, 0.5, 1.0, 0.0):
+        given[:] = start + share * (end - start)
+        assert_same(detector.find(start, given, 0.01), stiv.Detector(corners).find(start, given.copy(), 0.01))
 
 
 def test_bodies_loose_edges_and_loose_vertices() -> None:

@@ -73,7 +73,7 @@ class Surface {
   }
 
   /// Barycentric area of each vertex: a third of the adjacent triangles' areas at positions `q`, (N). [P4, Eq. 3]
-  Eigen::VectorXd vertex_areas(const Positions& q) const;
+  Eigen::VectorXd vertex_areas(const PositionsView& q) const;
 
   /// "object "X", vertex 12": how messages name a vertex (12 counted within its body).
   std::string describe_vertex(Index vertex) const;
@@ -81,7 +81,7 @@ class Surface {
   std::string describe_triangle(Index triangle) const;
 
   /// @throws InputError naming object and vertex if the shape is not (N, 3) or a coordinate is not finite.
-  void check_positions(const Positions& q) const;
+  void check_positions(const PositionsView& q) const;
 
  private:
   bool in_one_recut_face(const Index* vertices, std::size_t count) const;

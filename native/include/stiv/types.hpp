@@ -17,6 +17,10 @@ using Vector3 = Eigen::Vector3d;
 /// Points in space, one a row: (N, 3), row major, so that they share memory with NumPy arrays.
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// Positions looked at where they are, in memory of Eigen or of NumPy: rows follow each other without a gap. What lies
+/// otherwise, or is still to be computed, is copied when the view is made.
+using PositionsView = Eigen::Ref<const Positions, 0, Eigen::OuterStride<3>>;
+
 /// The controls `p` of a deformation, (m, 3). What a row means is the deformation's affair: a cage vertex, a
 /// lattice point, or for a rigid placement two rows, centre and rotation vector.
 using Controls = Positions;

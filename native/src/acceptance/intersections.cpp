@@ -23,7 +23,7 @@ GroupTable meeting_bodies(const Surface& surface) {
 class Search {
  public:
   Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
-         const Positions& q)
+         const PositionsView& q)
       : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q) {
     if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
   }
@@ -81,7 +81,7 @@ class Search {
   const Surface& surface_;
   const Primitives &first_, &second_;
   const GroupTable& bodies_;
-  const Positions& q_;
+  PositionsView q_;
   std::vector<Bvh::Task> tasks_;
 };
 
@@ -97,17 +97,17 @@ class IntersectionTest::Implementation {
         stars_(triangles_.all_corners(), surface_->vertex_count()),
         bodies_(meeting_bodies(*surface_)) {}
 
-  IndexPairs find(const Positions& q, const Execution& execution) { return find(triangles_, q, execution); }
-  IndexPairs find_loose_edges(const Positions& q, const Execution& execution) {
+  IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
+  IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
     return find(loose_edges_, q, execution);
   }
-  IndexPairs find_loose_vertices(const Positions& q, const Execution& execution) {
+  IndexPairs find_loose_vertices(const PositionsView& q, const Execution& execution) {
     IndexPairs pairs = find(loose_vertices_, q, execution);
     for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
     return pairs;
   }
 
-  bool is_free(const Positions& q, const std::vector<unsigned char>& moved, const Execution& execution) {
+  bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
     update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
     for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
       if (Search(*surface_, *first, triangles_, bodies_, q).any(execution)) return false;
@@ -115,14 +115,14 @@ class IntersectionTest::Implementation {
   }
 
  private:
-  IndexPairs find(Primitives& first, const Positions& q, const Execution& execution) {
+  IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
     update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
     return Search(*surface_, first, triangles_, bodies_, q).all(execution);
   }
 
   using Kinds = std::vector<Primitives*>;
 
-  void update(const Kinds& kinds, const Positions& q, const std::vector<unsigned char>& moved,
+  void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
     const std::vector<Bounds> boxes = vertex_bounds(q, execution);
     for (Primitives* kind : kinds) kind->update(boxes, moved, execution);
@@ -141,22 +141,22 @@ IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
 
-IndexPairs IntersectionTest::find(const Positions& q, Execution& execution) {
+IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find(q, execution);
 }
 
-IndexPairs IntersectionTest::find_loose_edges(const Positions& q, Execution& execution) {
+IndexPairs IntersectionTest::find_loose_edges(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find_loose_edges(q, execution);
 }
 
-IndexPairs IntersectionTest::find_loose_vertices(const Positions& q, Execution& execution) {
+IndexPairs IntersectionTest::find_loose_vertices(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find_loose_vertices(q, execution);
 }
 
-bool IntersectionTest::is_free(const Positions& q, const std::vector<unsigned char>& moved, Execution& execution) {
+bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->is_free(q, moved, execution);
 }

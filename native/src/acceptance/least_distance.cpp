@@ -43,7 +43,7 @@ struct Parts {
 /// Branch and bound over pairs of nodes, nearest first.
 class Search {
  public:
-  Search(const Surface& surface, const Primitives& triangles, const Positions& q, bool within)
+  Search(const Surface& surface, const Primitives& triangles, const PositionsView& q, bool within)
       : surface_(surface), triangles_(triangles), tree_(triangles.tree()), q_(q), within_(within) {}
 
   std::optional<NearestTriangles> run() {
@@ -129,7 +129,7 @@ class Search {
   const Surface& surface_;
   const Primitives& triangles_;
   const Bvh& tree_;
-  const Positions& q_;
+  PositionsView q_;
   bool within_;
   std::optional<NearestTriangles> best_;
   double squared_best_ = std::numeric_limits<double>::infinity();
@@ -142,7 +142,7 @@ class LeastDistance::Implementation {
   explicit Implementation(std::shared_ptr<const Surface> surface)
       : surface_(std::move(surface)), triangles_(*surface_, triangle_corners(*surface_)) {}
 
-  std::optional<NearestTriangles> find(const Positions& q, bool within) {
+  std::optional<NearestTriangles> find(const PositionsView& q, bool within) {
     surface_->check_positions(q);
     if (triangles_.empty()) return std::nullopt;
     const Execution execution(1);
@@ -161,7 +161,7 @@ LeastDistance::~LeastDistance() = default;
 LeastDistance::LeastDistance(LeastDistance&&) noexcept = default;
 LeastDistance& LeastDistance::operator=(LeastDistance&&) noexcept = default;
 
-std::optional<NearestTriangles> LeastDistance::find(const Positions& q, bool within) {
+std::optional<NearestTriangles> LeastDistance::find(const PositionsView& q, bool within) {
   return implementation_->find(q, within);
 }
 

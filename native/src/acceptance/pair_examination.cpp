@@ -18,7 +18,7 @@ bool share_corner(const std::array<Index, 3>& a, const std::array<Index, 3>& b) 
 }  // namespace
 
 PairExamination::PairExamination(const Surface& surface, const Primitives& first, const Primitives& second,
-                                 const Positions& q, Report report)
+                                 const PositionsView& q, Report report)
     : surface_(surface), first_(first), second_(second), q_(q), report_(std::move(report)) {}
 
 bool PairExamination::take(const PrimitivePair& pair) {

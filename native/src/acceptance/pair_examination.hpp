@@ -15,7 +15,7 @@ class PairExamination {
   /// Returns whether to go on.
   using Report = std::function<bool(const PrimitivePair&)>;
 
-  PairExamination(const Surface& surface, const Primitives& first, const Primitives& second, const Positions& q,
+  PairExamination(const Surface& surface, const Primitives& first, const Primitives& second, const PositionsView& q,
                   Report report);
 
   /// Takes a candidate. False: no more are wanted.
@@ -29,7 +29,7 @@ class PairExamination {
 
   const Surface& surface_;
   const Primitives &first_, &second_;
-  const Positions& q_;
+  PositionsView q_;
   Report report_;
   TrianglePairs waiting_;
   std::array<PrimitivePair, TrianglePairs::capacity> pairs_;

@@ -42,7 +42,7 @@ CornerList loose_vertex_corners(const Surface& surface) {
   return corners;
 }
 
-std::vector<Bounds> vertex_bounds(const Positions& q, const Execution& execution) {
+std::vector<Bounds> vertex_bounds(const PositionsView& q, const Execution& execution) {
   const auto count = static_cast<Index>(q.rows());
   std::vector<Bounds> boxes(place(count), Bounds::empty());
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {

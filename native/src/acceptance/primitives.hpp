@@ -19,7 +19,7 @@ CornerList loose_edge_corners(const Surface& surface);
 CornerList loose_vertex_corners(const Surface& surface);
 
 /// Boxes of all vertices, (N).
-std::vector<Bounds> vertex_bounds(const Positions& q, const Execution& execution);
+std::vector<Bounds> vertex_bounds(const PositionsView& q, const Execution& execution);
 
 /// Primitives of one kind with the tree over them, built when first needed and refitted from then on.
 class Primitives {

@@ -88,7 +88,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_separated(const TrianglePairs& pairs, const Positions& q, TriangleFlags& separated) {
+void find_separated(const TrianglePairs& pairs, const PositionsView& q, TriangleFlags& separated) {
   STIV_FOR_VECTOR_TARGET(find_separated)(pairs, q.data(), separated.data());
 }
 

@@ -29,6 +29,6 @@ using TriangleFlags = std::array<unsigned char, TrianglePairs::capacity>;
 
 /// 1 for each pair that a plane separates strictly, beyond all rounding: across the line that joins the centres, in
 /// parallel to one of the triangles, or upright on one over one of its edges. True is certain; false means nothing.
-void find_separated(const TrianglePairs& pairs, const Positions& q, TriangleFlags& separated);
+void find_separated(const TrianglePairs& pairs, const PositionsView& q, TriangleFlags& separated);
 
 }  // namespace stiv

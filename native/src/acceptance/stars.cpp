@@ -100,7 +100,7 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   start_.push_back(static_cast<Index>(rims_.size()));
 }
 
-bool Stars::proven_free(Index vertex, const Positions& q) const {
+bool Stars::proven_free(Index vertex, const PositionsView& q) const {
   const std::span<const Index> rim = this->rim(vertex);
   if (rim.empty()) return false;
   const std::size_t count = rim.size() - 1;
@@ -128,7 +128,7 @@ bool Stars::proven_free(Index vertex, const Positions& q) const {
   return true;
 }
 
-std::vector<unsigned char> Stars::find_free(const Positions& q, const std::vector<unsigned char>& moved,
+std::vector<unsigned char> Stars::find_free(const PositionsView& q, const std::vector<unsigned char>& moved,
                                             const Execution& execution) const {
   constexpr Index chunk_size = 4096;
   std::vector<unsigned char> free(at(static_cast<Index>(q.rows())), 0);

@@ -20,11 +20,11 @@ class Stars {
   Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
 
   /// Is the star of `vertex` proven free at positions q? True is certain; false means nothing.
-  bool proven_free(Index vertex, const Positions& q) const;
+  bool proven_free(Index vertex, const PositionsView& q) const;
 
   /// 1 for each vertex whose star is proven free. `moved` as in IntersectionTest::is_free: stars in which nothing moved
   /// are not asked for, and get 0.
-  std::vector<unsigned char> find_free(const Positions& q, const std::vector<unsigned char>& moved,
+  std::vector<unsigned char> find_free(const PositionsView& q, const std::vector<unsigned char>& moved,
                                        const Execution& execution) const;
 
  private:

@@ -5,7 +5,7 @@ namespace stiv {
 
 namespace {
 
-std::vector<unsigned char> moved_vertices(const Positions& start, const Positions& end) {
+std::vector<unsigned char> moved_vertices(const PositionsView& start, const PositionsView& end) {
   std::vector<unsigned char> moved;
   moved.reserve(static_cast<std::size_t>(start.rows()));
   for (Index vertex = 0; vertex < start.rows(); ++vertex) moved.push_back(start.row(vertex) != end.row(vertex));
@@ -14,8 +14,8 @@ std::vector<unsigned char> moved_vertices(const Positions& start, const Position
 
 }  // namespace
 
-bool is_step_free(Detector& detector, IntersectionTest& intersections, const Positions& start, const Positions& end,
-                  Proximity proximity, Execution& execution) {
+bool is_step_free(Detector& detector, IntersectionTest& intersections, const PositionsView& start,
+                  const PositionsView& end, Proximity proximity, Execution& execution) {
   return detector.earliest_time(start, end, proximity, execution) == never &&
          intersections.is_free(end, moved_vertices(start, end), execution);
 }

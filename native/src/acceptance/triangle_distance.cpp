@@ -13,7 +13,7 @@ namespace {
 
 using Corners = std::array<Vector3, 3>;
 
-Corners seen_from(const Vector3& origin, const std::array<Index, 3>& triangle, const Positions& q) {
+Corners seen_from(const Vector3& origin, const std::array<Index, 3>& triangle, const PositionsView& q) {
   Corners corners;
   for (std::size_t k = 0; k < 3; ++k) corners[k] = q.row(triangle[k]).transpose() - origin;
   return corners;
@@ -34,7 +34,7 @@ double gap_along(const Vector3& direction, const Corners& a, const Corners& b) {
 }  // namespace
 
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
-                               const Positions& q) {
+                               const PositionsView& q) {
   const Vector3 origin = q.row(first[0]);
   const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
   const Vector3 centres = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
@@ -47,7 +47,7 @@ double least_triangle_distance(const std::array<Index, 3>& first, const std::arr
 }
 
 NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
-                                   const Positions& q) {
+                                   const PositionsView& q) {
   const Vector3 origin = q.row(first[0]);  // differences are exact to the size of the pair, not of the scene
   const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
   NearestTriangles nearest;

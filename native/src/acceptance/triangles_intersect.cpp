@@ -36,7 +36,7 @@ struct Sharing {
 
 class Points {
  public:
-  explicit Points(const Positions& q) : q_(q) {}
+  explicit Points(const PositionsView& q) : q_(q) {}
   Vector3 operator()(Index vertex) const { return q_.row(vertex); }
   Triangle triangle(const std::array<Index, 3>& corners) const {
     return {(*this)(corners[0]), (*this)(corners[1]), (*this)(corners[2])};
@@ -47,7 +47,7 @@ class Points {
   }
 
  private:
-  const Positions& q_;
+  PositionsView q_;
 };
 
 bool disjoint_triangles(const Triangle& a, const Triangle& b) { return !clearly_apart(a, b) && triangles_meet(a, b); }
@@ -62,7 +62,8 @@ bool edge_neighbours(const Segment& edge, const Vector3& a, const Vector3& b) {
 
 }  // namespace
 
-bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const Positions& q) {
+bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                         const PositionsView& q) {
   const Sharing sharing(first, second);
   const Points at(q);
   const Corners &a = sharing.first_only, &b = sharing.second_only;

@@ -19,10 +19,10 @@ namespace stiv {
 /// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
 using Candidate = PrimitivePair;
 
-/// A linear step of a surface, checked.
+/// A linear step of a surface, checked; of positions that live as long.
 struct Step {
-  const Positions& start;
-  const Positions& end;
+  PositionsView start;
+  PositionsView end;
   Proximity proximity;
   Vector3 motion = Vector3::Zero();  ///< of the frame that it is seen from, see common_motion
 };

@@ -14,7 +14,7 @@ struct Sums {
 
 }  // namespace
 
-Vector3 common_motion(const Positions& start, const Positions& end) {
+Vector3 common_motion(const PositionsView& start, const PositionsView& end) {
   constexpr Index enough = 4096;
   const auto all = static_cast<Index>(start.rows());
   const Index stride = all / enough + 1;

@@ -9,6 +9,6 @@ namespace stiv {
 /// from a frame that moves along, a common motion sweeps little; seen from one at rest, what rests stays what it was.
 /// Any frame is sound, so some thousand vertices, evenly picked, speak for all. Depends on the step alone, to the last
 /// bit. Zero without vertices.
-Vector3 common_motion(const Positions& start, const Positions& end);
+Vector3 common_motion(const PositionsView& start, const PositionsView& end);
 
 }  // namespace stiv

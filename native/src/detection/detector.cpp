@@ -211,7 +211,7 @@ class Detector::Implementation {
   /// What the numbers are is for the source to check.
   void check_step(const Step& step) const {
     check_proximity(step.proximity);
-    for (const Positions* positions : {&step.start, &step.end})
+    for (const PositionsView* positions : {&step.start, &step.end})
       if (positions->rows() != surface_->vertex_count()) surface_->check_positions(*positions);
   }
 
@@ -236,27 +236,27 @@ Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
-Events Detector::find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution) {
+Events Detector::find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution) {
   return *implementation_->find({start, end, proximity}, Extent::all, execution);
 }
 
-double Detector::earliest_time(const Positions& start, const Positions& end, Proximity proximity,
+double Detector::earliest_time(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                Execution& execution) {
   return *implementation_->earliest_time({start, end, proximity}, Extent::all, execution);
 }
 
-std::optional<Events> Detector::find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
-                                                   Execution& execution) {
+std::optional<Events> Detector::find_if_manageable(const PositionsView& start, const PositionsView& end,
+                                                   Proximity proximity, Execution& execution) {
   return implementation_->find({start, end, proximity}, Extent::manageable, execution);
 }
 
-std::optional<double> Detector::earliest_time_if_manageable(const Positions& start, const Positions& end,
+std::optional<double> Detector::earliest_time_if_manageable(const PositionsView& start, const PositionsView& end,
                                                             Proximity proximity, Execution& execution) {
   return implementation_->earliest_time({start, end, proximity}, Extent::manageable, execution);
 }
 
-std::optional<Events> Detector::find_among_kept(const Positions& start, const Positions& end, Proximity proximity,
-                                                Execution& execution) {
+std::optional<Events> Detector::find_among_kept(const PositionsView& start, const PositionsView& end,
+                                                Proximity proximity, Execution& execution) {
   return implementation_->find_among_kept({start, end, proximity}, execution);
 }
 

@@ -43,7 +43,7 @@ class PrimitiveTree {
   }
 
   /// Sorted by where things are at the start: a first step may take them anywhere.
-  void build(const Positions& start) {
+  void build(const PositionsView& start) {
     std::vector<Eigen::Vector3f> centres(place(count_));
     std::vector<Index> bodies(place(count_));
     for (Index primitive = 0; primitive < count_; ++primitive) {
@@ -59,7 +59,7 @@ class PrimitiveTree {
 
   /// How far what shares a block lies apart, in parts of the whole extent, the mean over some blocks: what a
   /// deformation that keeps neighbours together leaves as it is.
-  double spread(const Positions& start) const {
+  double spread(const PositionsView& start) const {
     constexpr std::size_t stride = 8;
     const std::vector<Index>& order = tree_->order();
     Eigen::AlignedBox3d whole;
@@ -76,7 +76,7 @@ class PrimitiveTree {
   }
 
   /// Has the surface been deformed so much since the tree was built that another one pays?
-  bool is_spoiled(const Positions& start) const { return spread(start) > 2 * spread_; }
+  bool is_spoiled(const PositionsView& start) const { return spread(start) > 2 * spread_; }
 
   const Surface& surface_;
   const Index* rows_;

@@ -15,11 +15,11 @@ constexpr Index chunk_size = 4096;
 
 std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
-const double* row(const Positions& positions, Index vertex) {
+const double* row(const PositionsView& positions, Index vertex) {
   return positions.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
 }
 
-bool same_bits(const Positions& a, const Positions& b, Index vertex, Index count) {
+bool same_bits(const PositionsView& a, const PositionsView& b, Index vertex, Index count) {
   return std::memcmp(row(a, vertex), row(b, vertex), 3 * sizeof(double) * at(count)) == 0;
 }
 

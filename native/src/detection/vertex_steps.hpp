@@ -18,15 +18,15 @@ struct alignas(64) VertexStep {
 class VertexSteps {
  public:
   /// Takes all of a step. Rows of `start` and `end` are positions, (N, 3).
-  void update(const Positions& start, const Positions& end, const Execution& execution);
+  void update(const PositionsView& start, const PositionsView& end, const Execution& execution);
   /// Takes what it is for some vertices.
-  void update(const Positions& start, const Positions& end, const std::vector<Index>& vertices,
+  void update(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
               const Execution& execution);
 
   const VertexStep* data() const { return rows_.data(); }
 
  private:
-  void take(const Positions& start, const Positions& end, Index vertex);
+  void take(const PositionsView& start, const PositionsView& end, Index vertex);
 
   std::vector<VertexStep> rows_;
 };

@@ -40,7 +40,7 @@ double first_time(const Events& events) {
 }
 
 /// Marks vertices whose position differs in any bit.
-std::vector<unsigned char> moved_vertices(const Positions& from, const Positions& to) {
+std::vector<unsigned char> moved_vertices(const PositionsView& from, const PositionsView& to) {
   std::vector<unsigned char> moved(from.rows());
   for (Index vertex = 0; vertex < from.rows(); ++vertex) moved[vertex] = from.row(vertex) != to.row(vertex);
   return moved;
@@ -166,7 +166,7 @@ bool Problem::is_free(const Positions& from, const Positions& to, Execution& exe
   return !depth_->is_deeper(to, all);
 }
 
-bool Problem::is_step_free(const Positions& from, const Positions& to, Execution& execution) {
+bool Problem::is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution) {
   // Seen with the separation of edits, for which the boxes of what rests are at hand; but no pair needs to keep any.
   Proximity touching;
   touching.separation = proximity_.separation;

@@ -97,14 +97,14 @@ class Problem {
   /// and no deeper than at the start of the session.
   bool is_free(const Positions& from, const Positions& to, Execution& execution);
   /// Is a step free, its path and its end, however near things come? Its start is known to be; nothing is excluded.
-  bool is_step_free(const Positions& from, const Positions& to, Execution& execution);
+  bool is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution);
 
  private:
   void set_proximity(const MovingExtent& extent, double least);
   /// All but those of excluded pairs.
   std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,
                                          Proximity proximity, bool at_any_cost, Execution& execution) const;
-  Positions centred(const Positions& q) const { return q.rowwise() - centre_; }
+  Positions centred(const PositionsView& q) const { return q.rowwise() - centre_; }
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Deformation> deformation_;

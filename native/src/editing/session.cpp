@@ -84,7 +84,7 @@ class EditSession::Implementation {
     });
   }
 
-  bool is_step_free(const Positions& start, const Positions& end, Execution& execution) {
+  bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
     const FloatingPointScope floating_point;
     problem_.surface().check_positions(start);
     problem_.surface().check_positions(end);
@@ -225,7 +225,7 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution) {
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
 void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
 
-bool EditSession::is_step_free(const Positions& start, const Positions& end, Execution& execution) {
+bool EditSession::is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
   return implementation_->is_step_free(start, end, execution);
 }
 

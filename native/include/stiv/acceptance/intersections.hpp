@@ -14,7 +14,7 @@ namespace stiv {
 /// corners are told by equal indices; three of them always count as meeting. Touching, coplanar overlap, coincident
 /// vertices of different index and neighbours folded flat onto each other count; triangles without area are segments or
 /// points. Exact in the range of orientation_3d.
-bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const Positions& q);
+bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q);
 
 /// Pairs of indices, sorted.
 using IndexPairs = std::vector<std::pair<Index, Index>>;
@@ -29,17 +29,17 @@ class IntersectionTest {
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
 
   /// All pairs of triangles (smaller index first) that intersect at positions q, (N, 3).
-  IndexPairs find(const Positions& q, Execution& execution);
+  IndexPairs find(const PositionsView& q, Execution& execution);
 
   /// Pairs (loose edge, triangle) that meet off the vertices they share.
-  IndexPairs find_loose_edges(const Positions& q, Execution& execution);
+  IndexPairs find_loose_edges(const PositionsView& q, Execution& execution);
 
   /// Pairs (vertex of no edge at all, triangle) that meet.
-  IndexPairs find_loose_vertices(const Positions& q, Execution& execution);
+  IndexPairs find_loose_vertices(const PositionsView& q, Execution& execution);
 
   /// True if there is none of any kind; ends at the first. `moved` (N, may be empty: all) marks vertices that differ
   /// from a state known to be free: pairs of which no vertex is marked are not looked at.
-  bool is_free(const Positions& q, const std::vector<unsigned char>& moved, Execution& execution);
+  bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution);
 
  private:
   class Implementation;

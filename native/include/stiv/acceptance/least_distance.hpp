@@ -27,7 +27,7 @@ class LeastDistance {
 
   /// At positions q, (N, 3); nothing if there is no pair. Of several pairs at the same distance always the same one.
   /// @param within also pairs of one body, but those that share a vertex
-  std::optional<NearestTriangles> find(const Positions& q, bool within = false);
+  std::optional<NearestTriangles> find(const PositionsView& q, bool within = false);
 
  private:
   class Implementation;

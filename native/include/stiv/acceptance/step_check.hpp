@@ -8,7 +8,7 @@ namespace stiv {
 
 /// Is the linear step start -> end free, and its end free of intersections, given that its start is? Conservative
 /// continuous check of the path, then the exact static test: the two conditions of an accepted state. [DESIGN 4]
-bool is_step_free(Detector& detector, IntersectionTest& intersections, const Positions& start, const Positions& end,
-                  Proximity proximity, Execution& execution);
+bool is_step_free(Detector& detector, IntersectionTest& intersections, const PositionsView& start,
+                  const PositionsView& end, Proximity proximity, Execution& execution);
 
 }  // namespace stiv

@@ -39,26 +39,26 @@ class Detector {
   Detector& operator=(Detector&&) noexcept;
 
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
-  Events find(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
+  Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
   /// The same, or nothing if the step brings more pairs near each other than can be looked at in bounded time and
   /// memory: then look at a shorter one. Whether it does depends on the step alone. Only trees refuse; they do so
   /// however short the step, where so much lies in one place at the start.
-  std::optional<Events> find_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
+  std::optional<Events> find_if_manageable(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                            Execution& execution);
 
   /// The events of a step among the few pairs that the step of the last search, or one that leads each vertex a part of
   /// its way, may bring within the separation, and no others: for rounds of an edit whose answers are looked at again
   /// anyway. Depends on that step and this one alone. Nothing if there was no complete search before, or if its step
   /// was not manageable.
-  std::optional<Events> find_among_kept(const Positions& start, const Positions& end, Proximity proximity,
+  std::optional<Events> find_among_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                         Execution& execution);
 
   /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
-  double earliest_time(const Positions& start, const Positions& end, Proximity proximity, Execution& execution);
+  double earliest_time(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
-  std::optional<double> earliest_time_if_manageable(const Positions& start, const Positions& end, Proximity proximity,
-                                                    Execution& execution);
+  std::optional<double> earliest_time_if_manageable(const PositionsView& start, const PositionsView& end,
+                                                    Proximity proximity, Execution& execution);
 
   const Surface& surface() const;
 

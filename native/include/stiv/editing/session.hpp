@@ -70,7 +70,7 @@ class EditSession {
   /// Is the linear step between two surfaces free, its path and its end, given that its start is? (stiv::is_step_free)
   /// With the trees that edits use; the accepted surface itself is known to be free. For sessions without excluded
   /// pairs.
-  bool is_step_free(const Positions& start, const Positions& end, Execution& execution);
+  bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution);
 
   const Controls& controls() const;                                           ///< accepted, (m, 3)
   const Positions& surface() const;                                           ///< f(accepted), (N, 3)
