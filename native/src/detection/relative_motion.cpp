@@ -10,9 +10,10 @@ namespace {
 template <class Scalar>
 using Values = std::array<Scalar, 4>;
 
+/// The first vertex rests at the origin.
 template <class Scalar>
 Values<Scalar> project(const VectorOf<Scalar>& normal, const Quadruple<Scalar>& x) {
-  return {normal.dot(x[0]), normal.dot(x[1]), normal.dot(x[2]), normal.dot(x[3])};
+  return {Scalar(0), normal.dot(x[1]), normal.dot(x[2]), normal.dot(x[3])};
 }
 
 /// min over pairs across the sides of p_i - p_j.
@@ -42,7 +43,7 @@ RelativeMotion<Scalar>::RelativeMotion(EventKind event_kind, const PairMotion& m
 
 template <class Scalar>
 Quadruple<Scalar> RelativeMotion<Scalar>::at(const Scalar& time) const {
-  return {start[0] + time * step[0], start[1] + time * step[1], start[2] + time * step[2], start[3] + time * step[3]};
+  return {VectorOf<Scalar>::Zero(), start[1] + time * step[1], start[2] + time * step[2], start[3] + time * step[3]};
 }
 
 template <class Scalar>
@@ -72,7 +73,7 @@ bool turning_plane_holds(const RelativeMotion<Scalar>& motion, const VectorOf<Sc
   if (!(gap(motion.kind, project(n0, x0)) >= clearance)) return false;
   if (!(gap(motion.kind, project(n1, x1)) >= clearance)) return false;
   const Values<Scalar> a = project(n0, x1), b = project(n1, x0);
-  return gap<Scalar>(motion.kind, {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}) / 2 >= clearance;
+  return gap<Scalar>(motion.kind, {Scalar(0), a[1] + b[1], a[2] + b[2], a[3] + b[3]}) / 2 >= clearance;
 }
 
 template <class Scalar>
