@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cfenv>
 #include <exception>
+#include <functional>
 #include <vector>
 
 #if defined(__x86_64__) || defined(_M_X64)
@@ -83,7 +84,7 @@ void Execution::for_chunks(Index count, Index chunk_size, const std::function<vo
   const bool shared = std::min<Index>(threads_, chunks) > 1 && !in_loop_.exchange(true, std::memory_order_acquire);
   if (shared) {
     if (!helpers_) helpers_ = std::make_unique<HelperThreads>(threads_ - 1);
-    helpers_->run(run);
+    helpers_->run(std::ref(run));
     in_loop_.store(false, std::memory_order_release);
   } else {
     run();

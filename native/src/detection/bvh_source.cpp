@@ -65,11 +65,13 @@ class BvhSource final : public CandidateSource {
 
   bool manageable() const override { return collected_; }
 
-  Index chunk_count(EventKind kind) const override { return static_cast<Index>(of(kind).tasks.size()); }
+  Index chunk_count(EventKind kind) const override {
+    return static_cast<Index>(collected_ ? of(kind).fruitful.size() : of(kind).tasks.size());
+  }
 
   void visit(EventKind kind, Index chunk, const Sink& sink) const override {
     if (collected_) {
-      const std::vector<Candidate>& near = of(kind).near[at(chunk)];
+      const std::vector<Candidate>& near = of(kind).near[at(of(kind).fruitful[at(chunk)])];
       std::vector<Candidate> batch;
       for (std::size_t begin = 0; begin < near.size(); begin += batch_size) {
         batch.assign(near.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -94,6 +96,7 @@ class BvhSource final : public CandidateSource {
   struct Pairs {
     std::vector<Bvh::Task> tasks;
     std::vector<std::vector<Candidate>> near;
+    std::vector<Index> fruitful;  ///< tasks that gave any: of a local edit, few
   };
 
   const Pairs& of(EventKind kind) const { return pairs_[static_cast<std::size_t>(kind)]; }
@@ -112,8 +115,8 @@ class BvhSource final : public CandidateSource {
       pairs.near.resize(pairs.tasks.size());
     }
     compared_ = near_ = 0;
-    const Index faces = chunk_count(EventKind::vertex_face);
-    const Index count = faces + chunk_count(EventKind::edge_edge);
+    const auto faces = static_cast<Index>(of(EventKind::vertex_face).tasks.size());
+    const auto count = faces + static_cast<Index>(of(EventKind::edge_edge).tasks.size());
     execution.for_chunks(count, 1, [&](Index task, Index, Index) {
       if (task < faces)
         collect(EventKind::vertex_face, task);
@@ -121,8 +124,12 @@ class BvhSource final : public CandidateSource {
         collect(EventKind::edge_edge, task - faces);
     });
     collected_ = few_enough();
-    if (!collected_)
-      for (Pairs& pairs : pairs_) pairs.near.clear();
+    for (Pairs& pairs : pairs_) {
+      if (!collected_) pairs.near.clear();
+      pairs.fruitful.clear();
+      for (std::size_t task = 0; task < pairs.near.size(); ++task)
+        if (!pairs.near[task].empty()) pairs.fruitful.push_back(static_cast<Index>(task));
+    }
   }
 
   void collect(EventKind kind, Index task) {

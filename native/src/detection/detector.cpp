@@ -5,11 +5,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "detection/candidates.hpp"
 #include "detection/close_pairs.hpp"
 #include "detection/common_motion.hpp"
+#include "detection/joined.hpp"
 #include "detection/pair_test.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
@@ -34,6 +36,7 @@ struct LastSearch {
 };
 
 std::size_t number(EventKind kind) { return static_cast<std::size_t>(kind); }
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
 /// What one chunk found.
 struct ChunkResult {
@@ -151,8 +154,8 @@ class Detector::Implementation {
       ChunkResult& result = results[static_cast<std::size_t>(chunk)];
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
       const auto decide_pair = decide(test, kind);
-      source_->visit(kind, chunk < faces ? chunk : chunk - faces,
-                     [&](std::span<Candidate> candidates) { decide_all(test, kind, candidates, decide_pair, result); });
+      const auto decide_some = [&](std::span<Candidate> some) { decide_all(test, kind, some, decide_pair, result); };
+      source_->visit(kind, chunk < faces ? chunk : chunk - faces, std::ref(decide_some));
     });
     count(results, execution.counters);
     last_ = LastSearch{step.motion, step.proximity.separation};
@@ -176,7 +179,10 @@ class Detector::Implementation {
   };
 
   static Events collected(std::vector<ChunkResult>& results, Execution& execution) {
+    std::size_t total = 0;
+    for (const ChunkResult& result : results) total += result.events.size();
     Events events;
+    events.reserve(total);
     for (ChunkResult& result : results) {
       events.insert(events.end(), result.events.begin(), result.events.end());
       result.events = Events();  // there may be millions
@@ -195,17 +201,13 @@ class Detector::Implementation {
     execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
       std::vector<Candidate>& part = parts[static_cast<std::size_t>(chunk)];
-      source_->visit(kind, chunk < faces ? chunk : chunk - faces, [&](std::span<Candidate> candidates) {
-        append_close(*surface_, kind, candidates, source_->vertex_steps(), last_->motion, last_->separation, part);
-      });
+      const auto append_some = [&](std::span<Candidate> some) {
+        append_close(*surface_, kind, some, source_->vertex_steps(), last_->motion, last_->separation, part);
+      };
+      source_->visit(kind, chunk < faces ? chunk : chunk - faces, std::ref(append_some));
     });
-    ClosePairs pairs;
-    for (std::size_t chunk = 0; chunk < parts.size(); ++chunk) {
-      const bool of_faces = static_cast<Index>(chunk) < faces;
-      std::vector<Candidate>& of_kind = pairs[number(of_faces ? EventKind::vertex_face : EventKind::edge_edge)];
-      of_kind.insert(of_kind.end(), parts[chunk].begin(), parts[chunk].end());
-    }
-    return kept_.emplace(std::move(pairs));
+    const std::span<const std::vector<Candidate>> all(parts);
+    return kept_.emplace(ClosePairs{joined(all.first(at(faces))), joined(all.subspan(at(faces)))});
   }
 
   /// What the numbers are is for the source to check.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "detection/joined.hpp"
+
 namespace stiv {
 
 namespace {
@@ -73,9 +75,7 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
         if (!same(vertex, 1)) parts[at(chunk)].push_back(vertex);
     }
   });
-  std::vector<Index> changed;
-  for (const std::vector<Index>& part : parts) changed.insert(changed.end(), part.begin(), part.end());
-  return changed;
+  return joined<Index>(parts);
 }
 
 /// @throws InputError if a number is not finite
