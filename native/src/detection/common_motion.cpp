@@ -15,7 +15,7 @@ struct Sums {
 }  // namespace
 
 Vector3 common_motion(const PositionsView& start, const PositionsView& end) {
-  constexpr Index enough = 4096;
+  constexpr Index enough = 1024;
   const auto all = static_cast<Index>(start.rows());
   const Index stride = all / enough + 1;
   Index count = 0;
