@@ -34,14 +34,14 @@ double begun_part(Problem& problem, const State& accepted, Projection projection
   return part;
 }
 
-/// Adds the constraints of the outcome's events to those kept; false if nothing that is free to move can help.
-bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& areas, RoundOutcome& outcome,
-               RoundProgress& progress, Execution& execution) {
+/// Adds the constraints of the events to those kept; false if nothing that is free to move can help.
+bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& areas, const Events& events,
+               RoundOutcome& outcome, RoundProgress& progress, Execution& execution) {
   const EditOptions& options = problem.options();
   ConstraintSet& kept = progress.kept;
   ++execution.counters.rounds;
   if (kept.size() > most_constraints(problem) / 2) kept.drop_inactive();
-  const Measurement measured = measure(problem, {outcome.events, accepted.surface, outcome.candidate.surface, areas},
+  const Measurement measured = measure(problem, {events, accepted.surface, outcome.candidate.surface, areas},
                                        progress.round, kept.size(), execution);
   outcome.patches = measured.patches;
   const ScopedTimer timer(execution.timings.response);
@@ -91,13 +91,16 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     }
     outcome.clear = found->empty();
     if (outcome.clear) return outcome;
-    outcome.events = *found;
-    if (!constrained && !constrain(problem, accepted, areas, outcome, progress, execution)) return outcome;
+    if (!constrained && !constrain(problem, accepted, areas, *found, outcome, progress, execution)) {
+      outcome.events = *found;  // a call that takes these rounds up again asks for them once more
+      return outcome;
+    }
     constrained = true;  // what ends here is not to add them twice
     const ScopedTimer timer(execution.timings.response);
     const Controls& from = accumulate ? goal : outcome.candidate.controls;
     p = is_lcp ? kept.project(from, execution) : kept.project_as_equations(from, execution);
     constrained = false;
+    outcome.events = std::move(*found);
     found.reset();
     execution.note_gain();
   }

@@ -60,7 +60,8 @@ RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& ai
                        !moves_pinned_controls(problem, accepted.controls, aim.controls);
   if (!strayed) return outcome;
   RoundOutcome other = rounds(Projection::from_last_round);
-  return other.clear && energy_of(other) < energy_of(outcome) ? other : outcome;
+  if (other.clear && energy_of(other) < energy_of(outcome)) return other;
+  return outcome;
 }
 
 }  // namespace

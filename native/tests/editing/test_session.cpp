@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "editing/sessions.hpp"
+#include "stiv/detection/detector.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -107,6 +108,28 @@ TEST_CASE("session: everything pinned is blocked at the contact and names the bo
   CHECK(is_free(scene, result.surface));
   CHECK(result.surface(0, 2) < 0.01);  // it came as far as the contact
   CHECK(result.surface(0, 2) > 0);
+}
+
+TEST_CASE("session: the events told are those of the last responding round, whether anything can give way or not") {
+  const Scene scene = two_sheets();
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0.1, 0.2, -1)).cast<float>().cast<double>();
+  for (const double weight : {0.0, 1.0}) {
+    EditOptions options;
+    options.weights = Eigen::VectorXd::Constant(scene.controls.rows(), weight);
+    options.max_sub_edits = options.max_rounds = 1;
+    EditSession session = session_of(scene, options);
+    const EditResult result = edit(session, goal);
+    Execution execution(1);
+    const Events all = Detector(scene.surface, {.broad_phase = BroadPhase::brute_force})
+                           .find(scene.controls, goal, {session.separation()}, execution);
+    CHECK(all.size() > 50);
+    REQUIRE(result.events.size() == all.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      CHECK(result.events[k].kind == all[k].kind);
+      CHECK(result.events[k].vertices == all[k].vertices);
+      CHECK(result.events[k].time == doctest::Approx(all[k].time));
+    }
+  }
 }
 
 TEST_CASE("session: pinned controls do not give way, the others do") {
