@@ -60,7 +60,9 @@ def test_the_plant_takes_at_least_sixty_edits():
     ("changes", "message"),
     [
         ({"operator": "melt"}, "step 0: operator 'melt' is none of move, scale, rotate"),
+        ({"operator": ["move"]}, r"step 0: operator \['move'\] is none of"),
         ({"mode": "SCULPT"}, "step 0: mode 'SCULPT'"),
+        ({"mode": ["EDIT"]}, r"step 0: mode \['EDIT'\]"),
         ({"objects": []}, '"objects" is not a list of object names'),
         ({"objects": ["A", "B"], "mode": "EDIT"}, "Edit Mode takes one object, not 2"),
         ({"points": [1]}, '"points" are selected in Edit Mode only'),

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
+from stiv.json_files import read_json
 
 SCHEMA, VERSION = "stiv-edits", 1
 MAX_EDITS = 1_000_000
@@ -65,18 +65,11 @@ class EditScript:
 def read_edit_script(path: Path | str) -> EditScript:
     """The script in a file. Raises InputError naming file, step and field."""
     path = Path(path)
+    data = read_json(path, MAX_BYTES)
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path}: larger than {MAX_BYTES // 2**20} MiB, which no edit script needs")
-        return parse_edit_script(json.loads(path.read_text(encoding="utf-8")))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except RecursionError as error:
-        raise InputError(f"{path}: nested too deeply") from error
+        return parse_edit_script(data)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: not JSON in UTF-8: {error}") from error
 
 
 def parse_edit_script(data: object) -> EditScript:
@@ -104,7 +97,7 @@ def _step(data: object, where: str) -> EditStep:
     if unknown:
         raise InputError(f'{where}: unknown field "{unknown[0]}"; there are {", ".join(sorted(_STEP_KEYS))}')
     operator = step.get("operator")
-    if operator not in TRANSFORMS and operator not in RESHAPES:
+    if not isinstance(operator, str) or operator not in (*TRANSFORMS, *RESHAPES):
         raise InputError(f"{where}: operator {operator!r} is none of {', '.join((*TRANSFORMS, *RESHAPES))}")
     mode = step.get("mode", "OBJECT")
     if mode not in ("OBJECT", "EDIT"):
