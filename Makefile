@@ -6,7 +6,7 @@ BLENDERS := $(shell $(PYTHON) tools/blender_versions.py)
 DEMO_BLENDER := $(shell $(PYTHON) tools/blender_versions.py --demo)
 
 NATIVE_SOURCES := CMakeLists.txt CMakePresets.json $(shell find cmake native -type f)
-PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses -type f -not -path '*/__pycache__/*')
+PYTHON_SOURCES := pyproject.toml README.md $(shell find python addon licenses blend_fixtures -type f -not -path '*/__pycache__/*')
 OPENSUBDIV := build/opensubdiv
 WHEEL := build/wheel/ready
 EXTENSION := build/extension
@@ -32,7 +32,7 @@ help: ## List the targets
 	sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 18
 
 demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/demo/ and check the result
-	build/venv-blender/bin/python blend_fixtures/demo.py --output build/demo
+	build/venv-blender/bin/python -m stiv.command_line demo --output build/demo
 
 test: build/stiv_tests build/stiv_tests_asan build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
 	build/venv/bin/python tools/run_tests.py native sanitizers threads window python blender lint

@@ -18,7 +18,7 @@ DEMO = ROOT / "build" / "demo"
 
 def main() -> int:
     """Runs the demo and copies before.png and after.png; the exit code is the demo's."""
-    command = [sys.executable, str(ROOT / "blend_fixtures" / "demo.py"), "--output", str(DEMO)]
+    command = [sys.executable, "-m", "stiv.command_line", "demo", "--output", str(DEMO)]
     code = subprocess.run(command, check=False).returncode
     if code == 0:
         IMAGES.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ Usage: portable_wheels.py WHEEL FOLDER PLATFORM MODULE...
 WHEEL is of this source tree, for any Python; each MODULE takes the place of its module in one of the new wheels. They
 are written into FOLDER, in place of what is there, and tagged for PLATFORM: manylinux_2_17_x86_64 where the modules are
 compiled for that version of the C library, linux_x86_64 where they are for systems like this one. All but module and
-tag is the same, without the add-on, which the extension has itself.
+tag is the same, without the add-on, which the extension has itself, and the demo, which is for the command line.
 """
 
 import base64
@@ -16,6 +16,7 @@ import sys
 import zipfile
 from pathlib import Path
 
+LEFT_OUT = ("stiv/_native.", "stiv/demo/", "stiv_addon/")
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -28,10 +29,10 @@ def python_tag(module: Path) -> str:
 
 
 def read_wheel(path: Path) -> dict[str, bytes]:
-    """Files of a wheel by name, without its native module, the add-on and the list of files."""
+    """Files of a wheel by name, without its native module, the list of files, and what the extension needs not."""
     with zipfile.ZipFile(path) as archive:
         names = [name for name in archive.namelist() if not name.endswith(("/", "/RECORD"))]
-        return {name: archive.read(name) for name in names if not name.startswith(("stiv/_native.", "stiv_addon/"))}
+        return {name: archive.read(name) for name in names if not name.startswith(LEFT_OUT)}
 
 
 def with_module(files: dict[str, bytes], module: Path, tag: str) -> dict[str, bytes]:

@@ -27,6 +27,10 @@ def test_wheel_holds_every_module_of_the_package(installed_files: set[str]) -> N
     assert "stiv/py.typed" in installed_files
 
 
+def test_wheel_holds_the_scene_of_the_demo(installed_files: set[str]) -> None:
+    assert installed_files >= {"stiv/demo/plant_in_vase.blend", "stiv/demo/plant_in_vase.edits.json"}
+
+
 def test_wheel_holds_the_addon_as_a_package(installed_files: set[str]) -> None:
     sources = {f"stiv_addon/{path.relative_to(ROOT / 'addon').as_posix()}" for path in (ROOT / "addon").rglob("*.py")}
     assert sources

@@ -34,7 +34,12 @@ def addon_registered(path: Path) -> Iterator[None]:
     if require_blender("stiv.blender.replaying", path).operators_are_there():
         yield
         return
-    addon = require_blender("stiv_addon", path)
+    try:
+        addon = require_blender("stiv_addon", path)
+    except ModuleNotFoundError as error:
+        if error.name != "stiv_addon":
+            raise
+        raise InputError(f"{path}: the add-on is missing beside the package stiv; install STIV's wheel") from error
     addon.register()
     try:
         yield

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from stiv import InputError
-from stiv.command_line import batch, bench, check, repair, replay, resolve
+from stiv.command_line import batch, bench, check, demo, repair, replay, resolve
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.installed_blender import run_inside, without_option
 
-_SUBCOMMANDS = (check, replay, repair, resolve, batch, bench)
+_SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv demo`: lowers a bunch of shoots into a vase and scales it up there, through the add-on's operators."""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stiv import InputError
+from stiv.checks.report import summary as check_summary
+from stiv.command_line.blender_module import require_blender
+from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.file_checking import check_path
+from stiv.command_line.installed_blender import add_blender_option
+from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.replay import replay_report, run_script
+from stiv.edit_scripts import read_edit_script
+
+if TYPE_CHECKING:
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+NAME = "plant_in_vase"
+PACKAGE = Path(__file__).resolve().parents[1]
+FOLDERS = (PACKAGE / "demo", PACKAGE.parents[1] / "blend_fixtures")  # of a wheel, of a source checkout
+MEDIANS = {"milliseconds": "ms an edit", "rounds": "rounds", "events": "events", "patches": "patches"}
+
+_DESCRIPTION = """\
+Lowers a bunch of shoots into a vase, where it must give way, and scales it up there: some sixty edits of a lattice.
+Writes before.png, after.png, after.blend and report.json, then opens after.blend anew and checks it exactly."""
+_EXAMPLES = """\
+examples:
+  stiv demo
+  stiv demo --output pictures --blender /usr/bin/blender
+
+exit codes: 0 done and free of intersections, 4 not free of them, 2 no Blender or no folder to write to,
+1 wrong usage, 3 internal error, 5 cancelled"""
+
+
+def add_to(subcommands: Subparsers) -> None:
+    """Adds the subcommand to the parser."""
+    parser = subcommands.add_parser(
+        "demo",
+        help="lower a plant into a vase in Blender, and check the result",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--output", type=Path, default=Path("stiv-demo"), metavar="FOLDER", help="(stiv-demo)")
+    add_blender_option(parser)
+    parser.set_defaults(run=_run)
+
+
+def _run(arguments: argparse.Namespace) -> ExitCode:
+    begin, scene, output = time.perf_counter(), _scene(), arguments.output
+    require_blender("stiv.blender.blend_files", scene)
+    require_folder(output)
+    output.mkdir(exist_ok=True)
+    edits = _edited(scene, output)
+    check = check_path(output / "after.blend")
+    print(check_summary(check))
+    print(_summary(edits, time.perf_counter() - begin))
+    print(f"written to {output}: before.png, after.png, after.blend, report.json")
+    return ExitCode.DONE if check.free else ExitCode.NOT_FREE
+
+
+def _scene() -> Path:
+    """The .blend, its script beside it. Raises InputError where it is not installed."""
+    for folder in FOLDERS:
+        if (folder / f"{NAME}.blend").is_file():
+            return folder / f"{NAME}.blend"
+    raise InputError("demo: this installation has no scene for it; install the wheel, or run it in a source checkout")
+
+
+def _edited(scene: Path, output: Path) -> list[dict[str, Any]]:
+    """Runs the edits and writes their files; what each edit did."""
+    files = require_blender("stiv.blender.blend_files", scene)
+    script = read_edit_script(scene.with_suffix(".edits.json"))
+    with quiet_blender():
+        files.open_blend(scene)
+        _render(output / "before.png", scene)
+        edits = run_script(script, scene)
+        with written_atomically(output / "after.blend") as temporary:
+            files.save_blend(temporary)
+        _render(output / "after.png", scene)
+    write_json(output / "report.json", replay_report(scene, edits))
+    return edits
+
+
+def _render(path: Path, scene: Path) -> None:
+    with written_atomically(path) as temporary, quiet_blender(errors=True):
+        require_blender("stiv.blender.blend_files", scene).render_picture(temporary)
+
+
+def _summary(edits: list[dict[str, Any]], seconds: float) -> str:
+    """What the demo did, in a few lines."""
+    touching = [edit for edit in edits if edit["rounds"] > 0]
+    rounds = [1000 * edit["timings"]["total"] / edit["counters"]["detections"] for edit in touching]
+    lines = [f"{len(edits)} edits, {len(touching)} of them met resistance, {seconds:.0f} s in all"]
+    if touching:
+        median = {key: statistics.median(edit[key] for edit in touching) for key in MEDIANS}
+        named = ", ".join(f"{median[key]:.0f} {unit}" for key, unit in MEDIANS.items())
+        lines.append(f"median of those: {named}, {statistics.median(rounds):.1f} ms a round")
+    return "\n".join(lines)
