@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from jobs import NAME, record, results, write_job
+from json_schemas import read_valid
 
 import stiv
 from blend_fixtures.scenes.primitives import icosphere
@@ -27,7 +28,7 @@ def test_every_scene_gets_its_result_and_the_report_says_what_it_took(tmp_path, 
     job, report = write_job(tmp_path, 3), tmp_path / "report.json"
     assert run(job, "--report", str(report)) == 0
     assert "3 of 3 scenes done (0 by an earlier run)" in capsys.readouterr().out
-    data = json.loads(report.read_text())
+    data = read_valid(report, "batch_report")
     assert [(entry["name"], entry["code"], entry["attempts"]) for entry in data["entries"]] == [
         (NAME.format(number), 0, 1) for number in range(3)
     ]

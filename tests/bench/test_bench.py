@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measuring sessions: the same edits by other options, averages over edits with contacts, the paper's own figures."""
 
-import json
 import types
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from json_schemas import read_valid
 
 import stiv
 from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
@@ -87,7 +87,7 @@ def test_the_command_prints_the_table_and_writes_its_rows(small_scenes, tmp_path
     path = tmp_path / "table1.json"
     code = program.run(["bench", "table1", "--scenes", "knot", "--threads", "1", "2", "--json", str(path)])
     assert code == 0
-    rows = json.loads(path.read_text())["rows"]
+    rows = read_valid(path, "bench")["rows"]
     kinds = [(r["preset"], r["constraints"], r["threads"]) for r in rows]
     assert kinds == [
         ("stiv", "many", 1),

@@ -2,10 +2,10 @@
 """`stiv demo`, with and without Blender."""
 
 import importlib.util
-import json
 from dataclasses import replace
 
 import pytest
+from json_schemas import read_valid
 
 from stiv.command_line import demo, program
 from stiv.edit_scripts import EditScript, read_edit_script
@@ -33,7 +33,7 @@ def test_it_writes_pictures_scene_and_report_and_checks_what_it_saved(tmp_path, 
     folder = tmp_path / "demo ü"
     assert program.run(["demo", "--output", str(folder)]) == 0
     assert sorted(path.name for path in folder.iterdir()) == ["after.blend", "after.png", "before.png", "report.json"]
-    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    report = read_valid(folder / "report.json", "replay")
     assert len(report["edits"]) == EDITS and sum(edit["rounds"] for edit in report["edits"]) > 0
     assert (folder / "before.png").read_bytes() != (folder / "after.png").read_bytes()
     assert "free of intersections" in capsys.readouterr().out
