@@ -38,6 +38,10 @@ BOUNDARIES = (
     ("all", "All", "Corners are rounded"),
     ("preserve_corners", "Keep Corners", "Corners stay where they are"),
 )
+CONSTRAINTS = (
+    ("per_patch", "One a Patch", "Each region of contact gives way by itself"),
+    ("single", "One for All", "One constraint for all regions: less work a round, more rounds, a less even response"),
+)
 RESPONDERS = (
     ("selected", "Selected", "What is selected gives way, everything else stays where it is"),
     ("unselected", "Unselected", "What is selected goes where it is put, everything else that can gives way"),
@@ -103,6 +107,19 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     responders: EnumProperty(name="Gives way", description="Who gives way", items=RESPONDERS, default="selected")
     object_response: EnumProperty(
         name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
+    )
+    smoothness: FloatProperty(
+        name="Smoothness",
+        description="0.1 gives way smoothly, 0.01 tightly: nearer to the shape, less even",
+        default=0.1,
+        min=1e-4,
+        max=10.0,
+        soft_min=0.01,
+        soft_max=1.0,
+        precision=3,
+    )
+    constraints: EnumProperty(
+        name="Constraints", description="What a response is found by", items=CONSTRAINTS, default="per_patch"
     )
     excluded: StringProperty(
         name="Excluded Pairs",

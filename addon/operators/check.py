@@ -37,7 +37,7 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         if pairs and context.mode == "OBJECT":
             select(context, {name for pair in pairs for name in pair})
         chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
-        text = summary(pairs, chosen) + (read_out(context) if not pairs else "")
+        text = summary(pairs, chosen) + (read_out(context) if not pairs else "") + f"\n{tested(found)}"
         context.window_manager.stiv_check.summary = text
         showing.show_pairs(context, found.pairs)
         self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
@@ -55,6 +55,12 @@ def summary(pairs: Counter[tuple[str, str]], chosen: Mapping[str, int]) -> str:
     if len(pairs) > MOST:
         lines.append(f"and {len(pairs) - MOST} more pairs of objects")
     return "\n".join(lines)
+
+
+def tested(found: Any) -> str:
+    """What took part in a check and what did not, as a line."""
+    hidden = f"; hidden, and not tested: {found.hidden}" if found.hidden else ""
+    return f"Objects: {found.objects}, triangles: {found.triangles:,}{hidden}"
 
 
 def read_out(context: bpy.types.Context) -> str:

@@ -9,6 +9,8 @@ from .. import availability
 from ..operators import TRANSFORMS
 from .drawing import SidebarPanel, draw_problem
 
+SETTINGS = ("interference", "separation", "responders", "object_response", "smoothness", "constraints")
+
 
 class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
     """Transforms and how they respond."""
@@ -26,5 +28,5 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
             column.operator(operator.bl_idname, text=operator.bl_label.partition(" ")[0])
         self.layout.use_property_split = True
         settings = self.layout.column()
-        for name in ("interference", "separation", "responders", "object_response"):
+        for name in SETTINGS:
             settings.prop(context.scene.stiv, name)

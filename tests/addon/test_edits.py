@@ -185,6 +185,28 @@ def test_the_check_finds_and_selects_what_intersects() -> None:
     assert "intersecting pairs" in summary and "Wall" in summary and "Far" not in summary
 
 
+def test_the_check_says_what_took_part(wall: Any) -> None:
+    box("Hidden", (9.0, 0.0, 0.0), (0.5, 0.5, 0.5)).hide_set(True)
+    box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.ops.stiv.check()
+    told = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
+    triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
+    assert told == f"Objects: 2, triangles: {triangles}; hidden, and not tested: 1"
+
+
+@pytest.mark.parametrize("constraints", ["per_patch", "single"])
+@pytest.mark.parametrize("smoothness", [0.01, 1.0])
+def test_constraints_and_smoothness_are_choices(constraints: str, smoothness: float) -> None:
+    settings = bpy.context.scene.stiv
+    settings.constraints, settings.smoothness = constraints, smoothness
+    ball_in_lattice()
+    edit_right_half()
+    assert bpy.ops.stiv.move(value=(3.0, 0.0, 0.0)) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert positions("Ball")[:, 0].max() > 1.2
+    expect_free()
+
+
 @pytest.mark.parametrize(("build", "name"), [(smooth_cage, "Cage"), (ball_in_lattice, "Ball")])
 def test_restoring_works_in_another_mode_too(build: Any, name: str) -> None:
     from stiv.blender import BlenderEdit, EditSettings

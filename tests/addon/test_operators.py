@@ -133,11 +133,15 @@ def test_an_axis_without_direction_is_refused_before_anything_begins() -> None:
 def test_settings_and_roles_of_the_scene_are_passed_on(scene: Any) -> None:
     bpy.context.scene.stiv.separation = 0.25
     bpy.context.scene.stiv.object_response = "deform"
+    bpy.context.scene.stiv.constraints = "single"
     scene.stiv.role = "controls"
     bpy.ops.stiv.move(value=(0.0, 0.0, 1.0))
     settings = RecordingEdit.begun.settings
     assert (settings.separation, settings.object_response, settings.roles) == (0.25, "deform", {scene.name: "controls"})
-    assert settings.time_budget == 0.0
+    assert (settings.constraints, settings.smoothness, settings.time_budget) == ("single", 0.1, 0.0)
+    bpy.context.scene.stiv.smoothness = 0.013
+    bpy.ops.stiv.move(value=(0.0, 0.0, 1.0))
+    assert RecordingEdit.begun.settings.smoothness == 0.013
 
 
 def test_choices_of_a_drag_are_properties() -> None:

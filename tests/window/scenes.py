@@ -23,7 +23,7 @@ def clear() -> None:
         bpy.data.objects.remove(thing)
     scene = bpy.context.scene
     scene.stiv.live_guard = False
-    for name in ("separation", "responders", "object_response", "interference"):
+    for name in ("separation", "responders", "object_response", "interference", "smoothness", "constraints"):
         scene.stiv.property_unset(name)
     tools = scene.tool_settings
     tools.transform_pivot_point, tools.snap_target, tools.snap_elements = "MEDIAN_POINT", "CLOSEST", {"INCREMENT"}

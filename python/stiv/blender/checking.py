@@ -20,11 +20,12 @@ class SceneCheck:
 
     Attributes:
         pairs: faces that meet; a loose edge or vertex that meets a face comes with that face as the second.
-        triangles: how many were tested.
+        objects, triangles: how many were tested.
         hidden: objects with a surface that are hidden or excluded, and were not.
     """
 
     pairs: tuple[FacePair, ...]
+    objects: int
     triangles: int
     hidden: int
 
@@ -51,7 +52,8 @@ def check_scene(
     scene = read_scene(context, lambda name: settings.takes_part(name) and (objects is None or name in objects))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
-    return SceneCheck(pairs, len(assembly.surface.triangles), scene.hidden)
+    names = {mesh.owner.name for mesh in assembly.meshes}
+    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden)
 
 
 def exclusions_now(
