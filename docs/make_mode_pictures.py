@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the guide's pictures of the modes anew: fixtures before and after their edit scripts, side by side.
+
+    python docs/make_mode_pictures.py [NAME ...]
+
+Needs Blender as a Python module, the package `stiv` with its add-on, and Pillow.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from PIL import Image
+
+from stiv.blender.blend_files import open_blend, render_picture
+from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.replay import run_script
+from stiv.edit_scripts import read_edit_script
+
+ROOT = Path(__file__).resolve().parents[1]
+FIXTURES = {  # by picture, and how many steps of the script it shows; None: all
+    "rigid": ("box_along_wall", 1),
+    "cage": ("cage_into_wavy_wall", None),
+    "lattice": ("lattice_bspline", None),
+    "soft": ("arm_with_handles", None),
+    "gives_way": ("figures/weighted_handles", None),
+    "loop": ("figures/dressing", None),
+    "repair": ("figures/untangling", None),
+}
+WIDTH, GAP = 400, 8  # pixels of one state, and between the two
+
+
+def rendered(folder: Path) -> Image.Image:
+    """The open scene from its own camera."""
+    path = folder / "state.png"
+    with quiet_blender(errors=True):
+        render_picture(path)
+    with Image.open(path) as picture:
+        return picture.convert("RGB").resize((WIDTH, round(picture.height * WIDTH / picture.width)), Image.LANCZOS)
+
+
+def before_and_after(fixture: Path, steps: int | None, folder: Path) -> Image.Image:
+    """Two states beside each other."""
+    with quiet_blender():
+        open_blend(fixture)
+    before = rendered(folder)
+    script = read_edit_script(fixture.with_suffix(".edits.json"))
+    run_script(replace(script, steps=script.steps[:steps]), fixture)
+    whole = Image.new("RGB", (2 * WIDTH + GAP, before.height), "white")
+    whole.paste(before, (0, 0))
+    whole.paste(rendered(folder), (WIDTH + GAP, 0))
+    return whole
+
+
+def main() -> None:
+    """Makes the pictures named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(FIXTURES)}")
+    chosen = parser.parse_args().names or list(FIXTURES)
+    with tempfile.TemporaryDirectory() as folder:
+        for name in chosen:
+            fixture, steps = FIXTURES[name]
+            picture = before_and_after(ROOT / "blend_fixtures" / f"{fixture}.blend", steps, Path(folder))
+            # A palette halves the size, and surfaces in studio light need no more colours.
+            picture.quantize(128).save(ROOT / "docs/images" / f"mode_{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)  # the Blender module of 4.2 and 4.5 may hang when the interpreter ends
