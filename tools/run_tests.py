@@ -22,7 +22,7 @@ from junit_counts import Counts
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
-TIME_LIMIT = 3600  # seconds for one command: three times what the longest takes on an idle machine of two cores
+TIME_LIMIT = 3600  # seconds for one command: a last resort, several times what the longest takes
 WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
 PRINTING = threading.Lock()

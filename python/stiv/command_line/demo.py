@@ -17,7 +17,7 @@ from stiv.command_line.file_checking import check_path
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.quiet import quiet_blender
-from stiv.command_line.replay import replay_report, run_script
+from stiv.command_line.replay import render_scene, replay_report, run_script
 from stiv.edit_scripts import read_edit_script
 
 if TYPE_CHECKING:
@@ -81,18 +81,13 @@ def _edited(scene: Path, output: Path) -> list[dict[str, Any]]:
     script = read_edit_script(scene.with_suffix(".edits.json"))
     with quiet_blender():
         files.open_blend(scene)
-        _render(output / "before.png", scene)
+        render_scene(output / "before.png", scene)
         edits = run_script(script, scene)
         with written_atomically(output / "after.blend") as temporary:
             files.save_blend(temporary)
-        _render(output / "after.png", scene)
+        render_scene(output / "after.png", scene)
     write_json(output / "report.json", replay_report(scene, edits))
     return edits
-
-
-def _render(path: Path, scene: Path) -> None:
-    with written_atomically(path) as temporary, quiet_blender(errors=True):
-        require_blender("stiv.blender.blend_files", scene).render_picture(temporary)
 
 
 def _summary(edits: list[dict[str, Any]], seconds: float) -> str:

@@ -85,8 +85,7 @@ def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dic
         with written_atomically(arguments.output) as temporary:
             files.save_blend(temporary)
         if arguments.render is not None:
-            with written_atomically(arguments.render) as temporary, quiet_blender(errors=True):
-                files.render_picture(temporary)
+            render_scene(arguments.render, arguments.scene)
     return edits
 
 
@@ -116,6 +115,13 @@ def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dic
     with addon_registered(scene), progress_bar("edits", len(script)) as advance:
         edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]), check)
     return edits
+
+
+def render_scene(picture: Path, scene: Path) -> None:
+    """Renders the open scene, which came from the file `scene`, to a PNG file."""
+    files = require_blender("stiv.blender.blend_files", scene)
+    with written_atomically(picture) as temporary, quiet_blender(errors=True):
+        files.render_picture(temporary)
 
 
 def replay_report(scene: Path, edits: list[dict[str, Any]]) -> dict[str, Any]:
