@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acceptance/penetration.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "acceptance/mean_windings.hpp"
