@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "detection/nearest_filter.hpp"
 #include "detection/plane_filter.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
@@ -10,6 +11,9 @@
 namespace stiv {
 
 namespace {
+
+/// In parts of the separation: the narrow phase ends its advance a thousandth before.
+constexpr double farthest_reported = 1 + 0x1p-9;
 
 PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
   PairMotion motion;
@@ -29,7 +33,10 @@ PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
 PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase, const VertexSteps& vertices)
     : surface_(surface), step_(step), narrow_phase_(narrow_phase), vertices_(vertices) {}
 
-std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
+/// Those that `find(kind, block, vertices, separation, flags)` does not flag, moved to the front.
+template <class Find>
+std::span<Candidate> PairTest::without(EventKind kind, std::span<Candidate> candidates, double separation,
+                                       const Find& find) const {
   PairBlock block;
   PairFlags apart;
   std::size_t kept = 0;
@@ -38,13 +45,19 @@ std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candi
     const std::span<Candidate> some =
         candidates.subspan(begin, std::min(PairBlock::capacity, candidates.size() - begin));
     for (const Candidate& candidate : some) block.add(vertices_of(surface_, kind, candidate));
-    find_apart(kind, block, vertices_, step_.proximity.separation, apart);
+    find(kind, block, vertices_, separation, apart);
     for (std::size_t k = 0; k < some.size(); ++k) {
       candidates[kept] = some[k];
       kept += apart[k] == 0;
     }
   }
   return candidates.first(kept);
+}
+
+std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
+  const double separation = step_.proximity.separation;
+  const std::span<Candidate> left = without(kind, candidates, separation, find_apart);
+  return without(kind, left, farthest_reported * separation, find_rims_apart);
 }
 
 std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, Proximity proximity,

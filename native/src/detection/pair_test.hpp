@@ -25,6 +25,9 @@ class PairTest {
   std::optional<Event> event(EventKind kind, const Candidate& candidate, double latest) const;
 
  private:
+  template <class Find>
+  std::span<Candidate> without(EventKind kind, std::span<Candidate> candidates, double separation,
+                               const Find& find) const;
   std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) const;
 
   const Surface& surface_;
