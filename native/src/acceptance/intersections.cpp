@@ -124,8 +124,8 @@ class IntersectionTest::Implementation {
 
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
-    const std::vector<Bounds> boxes = vertex_bounds(q, execution);
-    for (Primitives* kind : kinds) kind->update(boxes, moved, execution);
+    const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
+    for (Primitives* kind : kinds) kind->update(boxes, execution);
     triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution), execution);
   }
 

@@ -146,7 +146,7 @@ class LeastDistance::Implementation {
     surface_->check_positions(q);
     if (triangles_.empty()) return std::nullopt;
     const Execution execution(1);
-    triangles_.update(vertex_bounds(q, execution), {}, execution);
+    triangles_.update(vertex_boxes(q, {}, execution), execution);
     return Search(*surface_, triangles_, q, within).run();
   }
 

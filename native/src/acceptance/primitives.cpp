@@ -11,8 +11,8 @@ constexpr Index chunk_size = 4096;
 
 std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 
-Bounds bounds_of(const std::array<Index, 3>& corners, const std::vector<Bounds>& vertices) {
-  Bounds box = vertices[place(corners[0])];
+PackedBox box_of(const std::array<Index, 3>& corners, const std::vector<PackedBox>& vertices) {
+  PackedBox box = vertices[place(corners[0])];
   box.include(vertices[place(corners[1])]);
   box.include(vertices[place(corners[2])]);
   return box;
@@ -42,11 +42,16 @@ CornerList loose_vertex_corners(const Surface& surface) {
   return corners;
 }
 
-std::vector<Bounds> vertex_bounds(const PositionsView& q, const Execution& execution) {
+std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
+                                    const Execution& execution) {
   const auto count = static_cast<Index>(q.rows());
-  std::vector<Bounds> boxes(place(count), Bounds::empty());
+  std::vector<PackedBox> boxes(place(count));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
-    for (Index vertex = begin; vertex < end; ++vertex) boxes[place(vertex)].include(q.row(vertex).transpose(), 0);
+    for (Index vertex = begin; vertex < end; ++vertex) {
+      Bounds point = Bounds::empty();
+      point.include(q.row(vertex).transpose(), 0);
+      boxes[place(vertex)] = PackedBox::of(point, moved.empty() || moved[place(vertex)] != 0);
+    }
   });
   return boxes;
 }
@@ -55,19 +60,13 @@ Primitives::Primitives(const Surface& surface, CornerList corners) : corners_(st
   for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
 }
 
-void Primitives::update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved,
-                        const Execution& execution) {
+void Primitives::update(const std::vector<PackedBox>& vertices, const Execution& execution) {
   if (!tree_) {
     std::vector<Bounds> boxes;
-    for (const auto& corners : corners_) boxes.push_back(bounds_of(corners, vertices));
+    for (const auto& corners : corners_) boxes.push_back(box_of(corners, vertices).bounds());
     tree_.emplace(centres_of(boxes), bodies_);
   }
-  const auto has_moved = [&](Index vertex) { return moved.empty() || moved[place(vertex)] != 0; };
-  const auto box_of = [&](Index primitive) {
-    const std::array<Index, 3>& corners = this->corners(primitive);
-    return PackedBox::of(bounds_of(corners, vertices), std::any_of(corners.begin(), corners.end(), has_moved));
-  };
-  tree_->refit(box_of, execution);
+  tree_->refit([&](Index primitive) { return box_of(corners(primitive), vertices); }, execution);
 }
 
 // The tree leaves out primitives with a corner of one name. Where their star is not known to be free, corners get names

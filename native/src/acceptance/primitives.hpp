@@ -18,16 +18,17 @@ CornerList loose_edge_corners(const Surface& surface);
 /// Vertices of no triangle and no loose edge.
 CornerList loose_vertex_corners(const Surface& surface);
 
-/// Boxes of all vertices, (N).
-std::vector<Bounds> vertex_bounds(const PositionsView& q, const Execution& execution);
+/// Boxes of all vertices, (N); active are those that `moved`, as in IntersectionTest::is_free, marks.
+std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
+                                    const Execution& execution);
 
 /// Primitives of one kind with the tree over them, built when first needed and refitted from then on.
 class Primitives {
  public:
   Primitives(const Surface& surface, CornerList corners);
 
-  /// `moved` as in IntersectionTest::is_free.
-  void update(const std::vector<Bounds>& vertices, const std::vector<unsigned char>& moved, const Execution& execution);
+  /// A primitive is active if one of its vertices is.
+  void update(const std::vector<PackedBox>& vertices, const Execution& execution);
 
   /// From now on the tree's pairs with itself leave out those that share a vertex marked in `free_stars` (N).
   void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution);
