@@ -24,7 +24,8 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start);
-    if (change == SweptVertices::Change::all) {
+    const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
+    if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
       if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
@@ -35,6 +36,10 @@ class PrimitiveTree {
   const Bvh& tree() const { return *tree_; }
 
  private:
+  /// To find the primitives of fewer vertices than one in so many takes less time than to refit all, which several
+  /// threads share.
+  static constexpr std::size_t few = 16;
+
   static std::size_t place(Index index) { return static_cast<std::size_t>(index); }
 
   std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {

@@ -21,6 +21,14 @@ Eigen::VectorXd first_guess(const Eigen::VectorXd& start, Eigen::Index size) {
   return x;
 }
 
+/// B x + b, from the columns of the few rows that carry a multiplier.
+Eigen::VectorXd slack_at(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
+  Eigen::VectorXd slack = b;
+  for (Eigen::Index row = 0; row < x.size(); ++row)
+    if (x[row] != 0) add_multiple(slack, x[row], B.col(row).data());
+  return slack;
+}
+
 /// One sweep over all rows; keeps `slack` = B x + b up to date. Returns the largest change of a multiplier.
 double sweep(const Eigen::MatrixXd& B, Eigen::VectorXd& x, Eigen::VectorXd& slack) {
   double largest_change = 0;
@@ -45,8 +53,9 @@ void solve_active(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, Eigen::Vec
   for (Eigen::Index row = 0; row < x.size(); ++row)
     if (x[row] > 0) active.push_back(row);
   if (active.empty()) return;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(B(active, active));
-  const Eigen::VectorXd pivots = factor.vectorD();
+  const Eigen::LLT<Eigen::MatrixXd> factor(B(active, active));
+  if (factor.info() != Eigen::Success) return;
+  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal().cwiseAbs2();
   if (!(pivots.minCoeff() > least_pivot * pivots.maxCoeff())) return;
   const Eigen::VectorXd from = x(active), to = factor.solve(-b(active));
   if (!to.allFinite()) return;
@@ -63,7 +72,7 @@ Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, co
   Eigen::VectorXd x = first_guess(start, b.size());
   for (Eigen::Index row = 0; row < x.size(); ++row)
     if (!(B(row, row) > 0)) x[row] = 0;
-  Eigen::VectorXd slack = B * x + b;
+  Eigen::VectorXd slack = slack_at(B, b, x);
   int next_solve = sweeps_before_solve;
   for (int k = 1; k <= options.max_sweeps; ++k) {
     if (options.execution != nullptr) options.execution->check();
@@ -72,7 +81,7 @@ Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, co
     if (k < next_solve) continue;
     next_solve *= 2;
     solve_active(B, b, x);
-    slack = B * x + b;
+    slack = slack_at(B, b, x);
   }
   return x;
 }
