@@ -30,12 +30,12 @@ Eigen::VectorXd slack_at(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, con
 }
 
 /// One sweep over all rows; keeps `slack` = B x + b up to date. Returns the largest change of a multiplier.
-double sweep(const Eigen::MatrixXd& B, Eigen::VectorXd& x, Eigen::VectorXd& slack) {
+/// `diagonal`: of B, side by side, since most rows need no more of it.
+double sweep(const Eigen::MatrixXd& B, const Eigen::VectorXd& diagonal, Eigen::VectorXd& x, Eigen::VectorXd& slack) {
   double largest_change = 0;
   for (Eigen::Index row = 0; row < x.size(); ++row) {
-    const double diagonal = B(row, row);
-    if (!(diagonal > 0)) continue;
-    const double change = std::max(0.0, x[row] - slack[row] / diagonal) - x[row];
+    if (!(diagonal[row] > 0)) continue;
+    const double change = std::max(0.0, x[row] - slack[row] / diagonal[row]) - x[row];
     if (change == 0) continue;
     x[row] += change;
     add_multiple(slack, change, B.col(row).data());  // the column of a symmetric matrix: contiguous
@@ -70,13 +70,14 @@ void solve_active(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, Eigen::Vec
 Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, const Eigen::VectorXd& start,
                           const LcpOptions& options) {
   Eigen::VectorXd x = first_guess(start, b.size());
+  const Eigen::VectorXd diagonal = B.diagonal();
   for (Eigen::Index row = 0; row < x.size(); ++row)
-    if (!(B(row, row) > 0)) x[row] = 0;
+    if (!(diagonal[row] > 0)) x[row] = 0;
   Eigen::VectorXd slack = slack_at(B, b, x);
   int next_solve = sweeps_before_solve;
   for (int k = 1; k <= options.max_sweeps; ++k) {
     if (options.execution != nullptr) options.execution->check();
-    const double change = sweep(B, x, slack);
+    const double change = sweep(B, diagonal, x, slack);
     if (change <= options.tolerance * (x.size() > 0 ? x.maxCoeff() : 0)) break;
     if (k < next_solve) continue;
     next_solve *= 2;
