@@ -5,8 +5,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <functional>
-#include <tuple>
 
 #include "detection/candidates.hpp"
 #include "detection/close_pairs.hpp"
@@ -59,9 +59,22 @@ void lower(std::atomic<double>& minimum, double value) {
   }
 }
 
-bool comes_before(const Event& a, const Event& b) {
-  return std::tie(a.kind, a.vertices) < std::tie(b.kind, b.vertices);
-}
+/// An event's place in the order by kind and vertices: less to move about than the event.
+struct Place {
+  std::array<std::uint64_t, 3> key;
+  const Event* event;
+
+  explicit Place(const Event& at)
+      : key{static_cast<std::uint64_t>(at.kind), two(at.vertices[0], at.vertices[1]),
+            two(at.vertices[2], at.vertices[3])},
+        event(&at) {}
+  bool operator<(const Place& other) const { return key < other.key; }
+
+ private:
+  static std::uint64_t two(Index a, Index b) {
+    return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b);
+  }
+};
 
 }  // namespace
 
@@ -178,16 +191,14 @@ class Detector::Implementation {
     };
   };
 
-  static Events collected(std::vector<ChunkResult>& results, Execution& execution) {
-    std::size_t total = 0;
-    for (const ChunkResult& result : results) total += result.events.size();
+  static Events collected(const std::vector<ChunkResult>& results, Execution& execution) {
+    std::vector<Place> places;
+    for (const ChunkResult& result : results)
+      for (const Event& event : result.events) places.emplace_back(event);
+    std::sort(places.begin(), places.end());
     Events events;
-    events.reserve(total);
-    for (ChunkResult& result : results) {
-      events.insert(events.end(), result.events.begin(), result.events.end());
-      result.events = Events();  // there may be millions
-    }
-    std::sort(events.begin(), events.end(), comes_before);
+    events.reserve(places.size());
+    for (const Place& place : places) events.push_back(*place.event);
     execution.counters.events += static_cast<std::int64_t>(events.size());
     return events;
   }
