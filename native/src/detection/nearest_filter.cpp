@@ -36,9 +36,14 @@ HWY_INLINE Point between_rims(const Point* x) {
                  shorter(to_segment(x[1], origin, x[0]), to_segment(x[2], origin, x[0])));
 }
 
+/// With the length of the normal, not the sum of its components: many pairs lie just beyond the separation. The gap is
+/// at most the length's square, a difference of points of both sides: where that vanishes, nothing is apart.
 template <EventKind kind>
 HWY_INLINE Mask rims_apart(const PairStep& step, double separation) {
-  return plane_separates<kind>(between_rims<kind>(step.start), step, clearance_of(step, separation));
+  const Point normal = between_rims<kind>(step.start);
+  const Lanes length = hn::Mul(all(1 + 0x1p-48), hn::Sqrt(dot(normal, normal)));
+  const Lanes kept = hn::Add(hn::Mul(all(separation), length), hn::Mul(rounding_of(step), sum_norm(normal)));
+  return keeps_apart<kind>(normal, step, kept);
 }
 
 void find_rims_apart(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, double separation,

@@ -51,22 +51,21 @@ HWY_INLINE Gaps gaps(Point normal, const Point* x) {
   return {hn::Sub(hn::Min(zero, p1), hn::Max(p2, p3)), hn::Sub(hn::Min(p2, p3), hn::Max(zero, p1))};
 }
 
-/// The bound of rounding is that of RelativeMotion, with the normal's length bounded by the sum of its components. The
-/// comparison is strict and allows for underflow, so that a normal that vanishes separates nothing.
+/// Does the plane keep the sides farther apart, times the length of its normal, for the whole step? The comparison is
+/// strict and allows for underflow, so that a normal that vanishes separates nothing.
 template <EventKind kind>
-HWY_INLINE Mask plane_separates(Point normal, const PairStep& step, Lanes clearance) {
+HWY_INLINE Mask keeps_apart(Point normal, const PairStep& step, Lanes distance) {
   constexpr double underflow = 0x1p-970;  // the least normal number over 2^-52
   const Gaps first = gaps<kind>(normal, step.start), last = gaps<kind>(normal, step.end);
   const Lanes gap = hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
-  return hn::Gt(gap, hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
+  return hn::Gt(gap, hn::Add(distance, all(underflow)));
 }
 
 HWY_INLINE Lanes magnitude_of(const Point* x) { return max3(sum_norm(x[0]), sum_norm(x[1]), sum_norm(x[2])); }
 
-/// What a plane leaves room for: `separation` and all rounding.
-HWY_INLINE Lanes clearance_of(const PairStep& step, double separation) {
-  const Lanes magnitude = hn::Max(magnitude_of(step.start), magnitude_of(step.end));
-  return hn::Add(all(separation), hn::Mul(all(0x1p-46), magnitude));
+/// That of RelativeMotion, for a normal of length one.
+HWY_INLINE Lanes rounding_of(const PairStep& step) {
+  return hn::Mul(all(0x1p-46), hn::Max(magnitude_of(step.start), magnitude_of(step.end)));
 }
 
 /// Writes 1 or 0 for each pair of a block, as `apart(step, separation)` has it for a pair a lane.

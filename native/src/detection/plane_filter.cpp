@@ -11,9 +11,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
+/// The normal's length is bounded by the sum of its components.
+template <EventKind kind>
+HWY_INLINE Mask plane_separates(Point normal, const PairStep& step, Lanes clearance) {
+  return keeps_apart<kind>(normal, step, hn::Mul(clearance, sum_norm(normal)));
+}
+
 template <EventKind kind>
 HWY_INLINE Mask apart(const PairStep& step, double separation) {
-  const Lanes clearance = clearance_of(step, separation);
+  const Lanes clearance = hn::Add(all(separation), rounding_of(step));
   const Mask at_start = plane_separates<kind>(normal_of<kind>(step.start), step, clearance);
   constexpr bool few_lanes = HWY_MAX_BYTES <= 2 * sizeof(double);  // of many, some always need another plane
   if (few_lanes && hn::AllTrue(Doubles(), at_start)) return at_start;
