@@ -42,8 +42,9 @@ template <EventKind kind>
 HWY_INLINE Mask rims_apart(const PairStep& step, double separation) {
   const Point normal = between_rims<kind>(step.start);
   const Lanes length = hn::Mul(all(1 + 0x1p-48), hn::Sqrt(dot(normal, normal)));
-  const Lanes kept = hn::Add(hn::Mul(all(separation), length), hn::Mul(rounding_of(step), sum_norm(normal)));
-  return keeps_apart<kind>(normal, step, kept);
+  const Lanes rounding = hn::Mul(all(16), rounding_of(step));  // more than what an advance ends within
+  return keeps_apart<kind>(normal, step,
+                           hn::Add(hn::Mul(all(separation), length), hn::Mul(rounding, sum_norm(normal))));
 }
 
 void find_rims_apart(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, double separation,

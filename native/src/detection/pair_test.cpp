@@ -12,7 +12,7 @@ namespace stiv {
 
 namespace {
 
-/// In parts of the separation: the narrow phase ends its advance a thousandth before.
+/// In parts of the separation: an advance of the narrow phase ends up to a thousandth before it.
 constexpr double farthest_reported = 1 + 0x1p-9;
 
 PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
