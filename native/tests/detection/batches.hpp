@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <utility>
 #include <vector>
 
 #include "detection/motions.hpp"
 #include "detection/plane_filter.hpp"
+#include "detection/reference.hpp"
+#include "vector_targets.hpp"
 
 namespace stiv {
 
@@ -43,6 +47,33 @@ std::vector<unsigned char> flagged(const Find& find, EventKind kind, const Batch
   PairFlags found{};
   find(kind, batch.block, batch.vertices, separation, found);
   return {found.begin(), found.begin() + static_cast<std::ptrdiff_t>(batch.block.count)};
+}
+
+struct FilterCounts {
+  std::size_t apart = 0, all = 0;
+};
+
+/// Checks that pairs of all sorts which a filter calls apart keep the separation, and that every vector target says the
+/// same.
+template <class Find>
+FilterCounts check_filter(const Find& find, unsigned seed) {
+  MotionMaker make(seed);
+  FilterCounts counts;
+  for (int sort = 0; sort < MotionMaker::sort_count; ++sort)
+    for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{13}, PairBlock::capacity})
+      for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
+        const Batch batch = batch_of(make, sort, count);
+        const double separation = 0.05 * make.number(0, 1);
+        const auto flags = for_each_vector_target([&] { return flagged(find, kind, batch, separation); });
+        for (const auto& other : flags) CHECK(other == flags.front());
+        for (std::size_t k = 0; k < count; ++k) {
+          counts.all += 1;
+          counts.apart += flags.front()[k];
+          if (flags.front()[k] == 0) continue;
+          CHECK(reference::first_time(kind, batch.motions[k], separation, 1e-5L).least > separation);
+        }
+      }
+  return counts;
 }
 
 }  // namespace stiv

@@ -4,7 +4,6 @@
 #include "detection/batches.hpp"
 #include "detection/nearest_filter.hpp"
 #include "detection/reference.hpp"
-#include "vector_targets.hpp"
 
 using namespace stiv;
 
@@ -44,22 +43,7 @@ double distance_at_start(EventKind kind, const PairMotion& motion) {
 }  // namespace
 
 TEST_CASE("nearest filter: what it calls apart keeps the separation, and every vector target says the same") {
-  MotionMaker make(23);
-  std::size_t apart = 0, all = 0;
-  for (int sort = 0; sort < MotionMaker::sort_count; ++sort)
-    for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{13}, PairBlock::capacity})
-      for (const EventKind kind : kinds) {
-        const Batch batch = batch_of(make, sort, count);
-        const double separation = 0.05 * make.number(0, 1);
-        const auto flags = for_each_vector_target([&] { return flagged(find_rims_apart, kind, batch, separation); });
-        for (const auto& other : flags) CHECK(other == flags.front());
-        for (std::size_t k = 0; k < count; ++k) {
-          all += 1;
-          apart += flags.front()[k];
-          if (flags.front()[k] == 0) continue;
-          CHECK(reference::first_time(kind, batch.motions[k], separation, 1e-5L).least > separation);
-        }
-      }
+  const auto [apart, all] = check_filter(find_rims_apart, 23);
   CHECK(apart > all / 8);
   CHECK(apart < all);
 }
