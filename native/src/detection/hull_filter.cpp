@@ -6,6 +6,7 @@
 #include "vector/foreach_target.hpp"
 
 #include "detection/pair_directions-inl.hpp"
+#include "detection/pair_step-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
@@ -15,20 +16,14 @@ struct PairHulls {
   Point start[4], end[4];
 };
 
-HWY_INLINE TwoPoints load_hull(const VertexStep* vertices, const Index* indices) {
-  const double* rows[HWY_MAX_BYTES / sizeof(double)];
-  for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) rows[lane] = vertices[indices[lane]].start;
-  return load_rows(rows);
-}
-
 HWY_INLINE PairHulls load_hulls(const PairBlock& pairs, std::size_t first, const VertexStep* vertices, Point motion) {
-  const TwoPoints origin = load_hull(vertices, pairs.vertices[0].data() + first);
+  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0].data() + first);
   const Point far_origin = origin.first + motion;
   PairHulls hulls;
   hulls.start[0] = {all(0), all(0), all(0)};
   hulls.end[0] = origin.second - far_origin;
   for (std::size_t k = 1; k < 4; ++k) {
-    const TwoPoints vertex = load_hull(vertices, pairs.vertices[k].data() + first);
+    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k].data() + first);
     hulls.start[k] = vertex.first - origin.first;
     hulls.end[k] = vertex.second - far_origin;
   }
