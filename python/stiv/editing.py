@@ -157,7 +157,7 @@ class EditSession:
         """Take ``controls``, (m, 3), accepted earlier, as the accepted ones (undo, cancel).
 
         ``goal``, (m, 3), is taken as the last drag's, from which the increment of the next one counts; None: the
-        controls themselves.
+        controls themselves. What edits give from here on does not depend on those before.
 
         Raises:
             StartIntersectsError: their surface intersects itself; nothing is changed.

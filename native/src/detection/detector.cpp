@@ -12,6 +12,7 @@
 #include "detection/close_pairs.hpp"
 #include "detection/common_motion.hpp"
 #include "detection/joined.hpp"
+#include "detection/kept_pairs.hpp"
 #include "detection/pair_test.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
@@ -26,16 +27,12 @@ enum class Extent {
   manageable  ///< all, or none if they are too many
 };
 
-/// Pairs of each kind to be looked at again, see append_close.
-using ClosePairs = std::array<std::vector<Candidate>, 2>;
-
 /// What is needed of a search to tell its close pairs.
-struct LastSearch {
+struct WholeSearch {
   Vector3 motion;
   double separation = 0;
 };
 
-std::size_t number(EventKind kind) { return static_cast<std::size_t>(kind); }
 std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
 /// What one chunk found.
@@ -108,20 +105,19 @@ class Detector::Implementation {
     check_step(step);
     surface_->check_positions(step.start);
     surface_->check_positions(step.end);
-    if (!last_ || !source_->manageable()) return std::nullopt;
+    if (!keep_last(execution)) return std::nullopt;
     const FloatingPointScope floating_point;
-    const ClosePairs& kept = close_pairs(execution);
     kept_steps_.update(step.start, step.end, execution);
     const PairTest test(*surface_, step, narrow_phase_, kept_steps_);
     constexpr Index size = 1024;
     const auto chunks_of = [&](EventKind kind) {
-      return Execution::chunk_count(static_cast<Index>(kept[number(kind)].size()), size);
+      return Execution::chunk_count(static_cast<Index>(kept_->of(kind).size()), size);
     };
     const Index faces = chunks_of(EventKind::vertex_face), chunks = faces + chunks_of(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
     execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
-      const std::vector<Candidate>& pairs = kept[number(kind)];
+      const std::vector<Candidate>& pairs = kept_->of(kind);
       const Index begin = (chunk < faces ? chunk : chunk - faces) * size,
                   end = std::min(begin + size, static_cast<Index>(pairs.size()));
       std::vector<Candidate> some(pairs.begin() + begin, pairs.begin() + end);
@@ -129,6 +125,19 @@ class Detector::Implementation {
     });
     count(results, execution.counters);
     return collected(results, execution);
+  }
+
+  void leave_kept(const Step& step, Execution& execution) {
+    check_step(step);
+    if (!keep_last(execution)) return;
+    const FloatingPointScope floating_point;
+    kept_steps_.update(step.start, step.end, execution);
+    kept_->leave_close(*surface_, kept_steps_, common_motion(step.start, step.end), step.proximity.separation);
+  }
+
+  void forget_kept() {
+    last_.reset();
+    kept_.reset();
   }
 
   std::optional<double> earliest_time(const Step& step, Extent extent, Execution& execution) {
@@ -155,7 +164,6 @@ class Detector::Implementation {
     const FloatingPointScope floating_point;
     const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end)};
     last_.reset();
-    kept_.reset();
     source_->update(step, execution);
     ++execution.counters.detections;
     if (extent == Extent::manageable && !source_->manageable()) return std::nullopt;
@@ -171,7 +179,7 @@ class Detector::Implementation {
       source_->visit(kind, chunk < faces ? chunk : chunk - faces, std::ref(decide_some));
     });
     count(results, execution.counters);
-    last_ = LastSearch{step.motion, step.proximity.separation};
+    if (source_->manageable()) last_ = WholeSearch{step.motion, step.proximity.separation};
     return results;
   }
 
@@ -203,9 +211,10 @@ class Detector::Implementation {
     return events;
   }
 
-  /// Gathered from what the source still holds of the last search, when first asked for.
-  const ClosePairs& close_pairs(const Execution& execution) {
-    if (kept_) return *kept_;
+  /// Adds the close pairs of the last search to those kept, from what the source still holds of it, when they are first
+  /// asked for. Are any kept?
+  bool keep_last(const Execution& execution) {
+    if (!last_) return kept_.has_value();
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<std::vector<Candidate>> parts(static_cast<std::size_t>(chunks));
@@ -218,7 +227,11 @@ class Detector::Implementation {
       source_->visit(kind, chunk < faces ? chunk : chunk - faces, std::ref(append_some));
     });
     const std::span<const std::vector<Candidate>> all(parts);
-    return kept_.emplace(ClosePairs{joined(all.first(at(faces))), joined(all.subspan(at(faces)))});
+    if (!kept_) kept_.emplace();
+    kept_->add(EventKind::vertex_face, joined(all.first(at(faces))));
+    kept_->add(EventKind::edge_edge, joined(all.subspan(at(faces))));
+    last_.reset();
+    return true;
   }
 
   /// What the numbers are is for the source to check.
@@ -238,8 +251,8 @@ class Detector::Implementation {
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
-  std::optional<LastSearch> last_;  ///< if it was complete
-  std::optional<ClosePairs> kept_;  ///< of that
+  std::optional<WholeSearch> last_;  ///< if it was complete and manageable, and none of its pairs are kept yet
+  std::optional<KeptPairs> kept_;
   VertexSteps kept_steps_;
 };
 
@@ -272,6 +285,13 @@ std::optional<Events> Detector::find_among_kept(const PositionsView& start, cons
                                                 Proximity proximity, Execution& execution) {
   return implementation_->find_among_kept({start, end, proximity}, execution);
 }
+
+void Detector::leave_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
+                          Execution& execution) {
+  implementation_->leave_kept({start, end, proximity}, execution);
+}
+
+void Detector::forget_kept() { implementation_->forget_kept(); }
 
 const Surface& Detector::surface() const { return implementation_->surface(); }
 

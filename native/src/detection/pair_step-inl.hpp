@@ -43,12 +43,22 @@ struct Gaps {
   Lanes beyond, before;
 };
 
+/// Of the projections of the other vertices.
 template <EventKind kind>
-HWY_INLINE Gaps gaps(Point normal, const Point* x) {
-  const Lanes p1 = dot(normal, x[0]), p2 = dot(normal, x[1]), p3 = dot(normal, x[2]);
+HWY_INLINE Gaps gaps_between(Lanes p1, Lanes p2, Lanes p3) {
   if constexpr (kind == EventKind::vertex_face) return {hn::Neg(max3(p1, p2, p3)), min3(p1, p2, p3)};
   const Lanes zero = hn::Zero(Doubles());
   return {hn::Sub(hn::Min(zero, p1), hn::Max(p2, p3)), hn::Sub(hn::Min(p2, p3), hn::Max(zero, p1))};
+}
+
+template <EventKind kind>
+HWY_INLINE Gaps gaps(Point normal, const Point* x) {
+  return gaps_between<kind>(dot(normal, x[0]), dot(normal, x[1]), dot(normal, x[2]));
+}
+
+/// On whichever side, for the whole step.
+HWY_INLINE Lanes least_gap(Gaps first, Gaps last) {
+  return hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
 }
 
 /// Does the plane keep the sides farther apart, times the length of its normal, for the whole step? The comparison is
@@ -56,8 +66,7 @@ HWY_INLINE Gaps gaps(Point normal, const Point* x) {
 template <EventKind kind>
 HWY_INLINE Mask keeps_apart(Point normal, const PairStep& step, Lanes distance) {
   constexpr double underflow = 0x1p-970;  // the least normal number over 2^-52
-  const Gaps first = gaps<kind>(normal, step.start), last = gaps<kind>(normal, step.end);
-  const Lanes gap = hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
+  const Lanes gap = least_gap(gaps<kind>(normal, step.start), gaps<kind>(normal, step.end));
   return hn::Gt(gap, hn::Add(distance, all(underflow)));
 }
 

@@ -20,6 +20,9 @@ struct PairBlock {
     for (std::size_t k = 0; k < 4; ++k) vertices[k][count] = pair[k];
     ++count;
   }
+  std::array<Index, 4> vertices_of(std::size_t k) const {
+    return {vertices[0][k], vertices[1][k], vertices[2][k], vertices[3][k]};
+  }
 };
 
 /// 1 or 0 for each pair of a block.

@@ -136,6 +136,11 @@ std::optional<Events> Problem::find_events_among_kept(const Positions& from, con
   return events;
 }
 
+void Problem::leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution) {
+  const ScopedTimer timer(execution.timings.detection);
+  detector_.leave_kept(centred(from), centred(to), proximity_of_rounds(), execution);
+}
+
 std::optional<Events> Problem::remaining_events(Detector& detector, const Positions& start, const Positions& end,
                                                 Proximity proximity, bool at_any_cost, Execution& execution) const {
   std::optional<Events> events = at_any_cost ? detector.find(start, end, proximity, execution)

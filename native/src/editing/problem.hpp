@@ -39,7 +39,7 @@ struct RoundProgress {
   Controls p;  ///< next candidate, before it is rounded
   bool accumulate = true;
   int round = 0;
-  bool searched = false;                       ///< all pairs, from this start
+  bool begun = false;                          ///< the pairs kept are those near this goal's way
   std::optional<Events> found = std::nullopt;  ///< on the way to the candidate, and not yet responded to
   bool constrained = false;                    ///< their constraints are among those kept
 };
@@ -88,9 +88,12 @@ class Problem {
   /// Events on the way from one surface to the other, and the earliest time of any. Nothing if the way is too far to
   /// be looked at in bounded time and memory; `at_any_cost`: never so.
   std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
-  /// Events among the pairs that the last search of all brought near each other: perhaps not all that there are.
-  /// Nothing if no pairs are kept.
+  /// Events among the pairs that searches of all brought near each other: perhaps not all that there are. Nothing if no
+  /// pairs are kept.
   std::optional<Events> find_events_among_kept(const Positions& from, const Positions& to, Execution& execution);
+  /// Drops kept pairs that lie far from this way, where rounds toward another goal begin; or all.
+  void leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution);
+  void forget_kept_pairs() { detector_.forget_kept(); }
   std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
                                       Execution& execution);
   /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`,

@@ -71,7 +71,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
   RoundOutcome outcome;
   outcome.at_any_cost = at_any_cost;
   RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
-  auto& [from, to, kind, kept, p, accumulate, round, searched, found, constrained] = progress;
+  auto& [from, to, kind, kept, p, accumulate, round, begun, found, constrained] = progress;
   for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
@@ -80,10 +80,9 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (round == options.max_rounds) return outcome;
     if (!found) {
       std::optional<Events> events;
-      if (searched) events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
+      events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
       if (!events || events->empty())
         events = problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
-      searched = true;
       outcome.too_far = !events;
       if (outcome.too_far) return outcome;
       found = std::move(events);  // only now: a search that is interrupted has found nothing out

@@ -50,6 +50,7 @@ class EditSession::Implementation {
     if (!problem_.is_empty() && !known) problem_.check_start(state.surface, execution);
     checked_ = controls;
     problem_.unfinished_rounds().reset();
+    problem_.forget_kept_pairs();
     goal_ = {goal, problem_.surface_at(goal, execution)};
     followed_ = goal_;
     stride_ = std::numeric_limits<double>::infinity();
@@ -176,6 +177,7 @@ class EditSession::Implementation {
         if (status == EditStatus::cancelled) {
           accepted_ = before;
           followed_ = followed_before;
+          problem_.forget_kept_pairs();
           report.path.clear();
         } else {
           goal_ = target;
@@ -187,6 +189,7 @@ class EditSession::Implementation {
         accepted_ = before;
         followed_ = followed_before;
         problem_.unfinished_rounds().reset();
+        problem_.forget_kept_pairs();
         throw;
       }
       if (!resumable) problem_.unfinished_rounds().reset();

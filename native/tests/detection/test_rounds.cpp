@@ -86,6 +86,8 @@ TEST_CASE("rounds: events among the pairs kept are those of a whole search, of t
   std::size_t found = 0, missed = 0;
   for (const Positions& first : ends_of_rounds(scene, random)) {
     Detector fresh(scene.surface);
+    detector.forget_kept();
+    grid.forget_kept();
     const Events before = found_by(detector, scene.start, first, 1);
     found_by(fresh, scene.start, first, 2);
     found_by(grid, scene.start, first, 1);
@@ -111,11 +113,55 @@ TEST_CASE("rounds: events among the pairs kept are those of a whole search, of t
   CHECK(missed > 0);
 }
 
-TEST_CASE("rounds: nothing is kept before the first search") {
+TEST_CASE("rounds: pairs of several searches are kept, each once, until a step leaves them far") {
+  const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
+  std::mt19937 random(11);
+  const std::vector<Positions> ends = ends_of_rounds(scene, random);
+  Detector detector(scene.surface), grid(scene.surface, {.broad_phase = BroadPhase::hash_grid});
+  Execution execution(1);
+  const auto kept_of = [&](Detector& some, const Positions& end) {
+    const std::optional<Events> events = some.find_among_kept(scene.start, end, proximity, execution);
+    REQUIRE(events.has_value());
+    return *events;
+  };
+  std::vector<Events> of_searches;
+  for (const Positions& end : ends) {
+    of_searches.push_back(found_by(detector, scene.start, end, 1));
+    found_by(grid, scene.start, end, 2);
+    for (std::size_t k = 0; k < of_searches.size(); ++k) {  // nothing that was found is forgotten, or comes twice
+      CHECK(same_bits(kept_of(detector, ends[k]), of_searches[k]));
+      CHECK(same_bits(kept_of(grid, ends[k]), of_searches[k]));
+    }
+  }
+  const Positions& last = ends.front();  // a part of the way: closer than most others
+  for (Detector* const some : {&detector, &grid}) some->leave_kept(scene.start, last, proximity, execution);
+  CHECK(same_bits(kept_of(detector, last), of_searches.front()));
+  std::size_t left = 0, all = 0;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const Events events = kept_of(detector, ends[k]);
+    CHECK(same_bits(events, kept_of(grid, ends[k])));
+    left += events.size();
+    all += of_searches[k].size();
+  }
+  CHECK(left > 0);
+  CHECK(left < all);
+}
+
+TEST_CASE("rounds: nothing is kept before the first search, or when all is forgotten") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   Execution execution(1);
   Detector detector(scene.surface);
   CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
+  detector.leave_kept(scene.start, scene.end, proximity, execution);
+  CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
+  found_by(detector, scene.start, scene.end, 1);
+  CHECK(detector.find_among_kept(scene.start, scene.end, proximity, execution));
+  for (const bool asked : {false, true}) {
+    found_by(detector, scene.start, scene.end, 1);
+    if (asked) detector.find_among_kept(scene.start, scene.end, proximity, execution);
+    detector.forget_kept();
+    CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
+  }
 }
 
 TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {

@@ -47,12 +47,18 @@ class Detector {
   std::optional<Events> find_if_manageable(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                            Execution& execution);
 
-  /// The events of a step among the few pairs that the step of the last search, or one that leads each vertex a part of
-  /// its way, may bring within the separation, and no others: for rounds of an edit whose answers are looked at again
-  /// anyway. Depends on that step and this one alone. Nothing if there was no complete search before, or if its step
-  /// was not manageable.
+  /// The events of a step among the few pairs kept, and no others: for rounds of an edit whose answers are looked at
+  /// again anyway. Kept are those that the step of a whole search, or one that leads each vertex a part of its way, may
+  /// bring within the separation: of all searches since the session began, less what `leave_kept` dropped. Depends on
+  /// these steps and this one alone. Nothing if no search was complete, and its step manageable.
   std::optional<Events> find_among_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                         Execution& execution);
+
+  /// Drops kept pairs that this step does not bring close in the same sense: where another edit begins.
+  void leave_kept(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
+
+  /// Drops all of them.
+  void forget_kept();
 
   /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
   double earliest_time(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);

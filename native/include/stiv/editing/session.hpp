@@ -63,7 +63,8 @@ class EditSession {
   EditResult settle(Execution& execution);
 
   /// Take a state that was accepted before (undo, Esc) as the accepted one, and `goal` as the goal of the last drag,
-  /// from which the next increment counts. @throws StartIntersectsError
+  /// from which the next increment counts. Pairs that edits brought close, and that rounds ask first, are forgotten:
+  /// what comes next does not depend on what came before. @throws StartIntersectsError
   void restore(const Controls& controls, const Controls& goal);
   void restore(const Controls& controls) { restore(controls, controls); }
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/kept_pairs.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "detection/common_motion.hpp"
+#include "detection/relevance.hpp"
+#include "detection/scenes.hpp"
+
+using namespace stiv;
+
+namespace {
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+const EventKind kinds[] = {EventKind::vertex_face, EventKind::edge_edge};
+
+Pairs kept_in(const KeptPairs& kept, EventKind kind) {
+  Pairs pairs;
+  for (const Candidate& pair : kept.of(kind)) pairs.emplace_back(pair.first, pair.second);
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("kept pairs: each once and in ascending order, two edges whichever comes first") {
+  KeptPairs kept;
+  kept.add(EventKind::edge_edge, {{7, 3}, {2, 9}, {3, 4}});
+  kept.add(EventKind::edge_edge, {{9, 2}, {3, 7}, {1, 1000000}});
+  CHECK(kept_in(kept, EventKind::edge_edge) == Pairs{{1, 1000000}, {2, 9}, {3, 4}, {3, 7}});
+  CHECK(kept.of(EventKind::vertex_face).empty());
+  kept.add(EventKind::vertex_face, {{7, 3}, {3, 7}});  // another vertex, another face
+  CHECK(kept_in(kept, EventKind::vertex_face) == Pairs{{3, 7}, {7, 3}});
+  kept.add(EventKind::vertex_face, {});
+  CHECK(kept.of(EventKind::vertex_face).size() == 2);
+}
+
+TEST_CASE("kept pairs: of all pairs, a step leaves those that meet on its way, and few others") {
+  const MovingScene scene = stirred_sheets(5, 2, 0.1, 3);
+  const auto count = [](const auto& rows) { return static_cast<Index>(rows.rows()); };
+  KeptPairs kept;
+  std::vector<Candidate> faces, edges;
+  for (Index vertex = 0; vertex < scene.surface->vertex_count(); ++vertex)
+    for (Index face = 0; face < count(scene.surface->triangles()); ++face) faces.push_back({vertex, face});
+  for (Index first = 0; first < count(scene.surface->edges()); ++first)
+    for (Index second = first + 1; second < count(scene.surface->edges()); ++second) edges.push_back({first, second});
+  kept.add(EventKind::vertex_face, faces);
+  kept.add(EventKind::edge_edge, edges);
+  constexpr double separation = 0.004;
+  VertexSteps steps;
+  steps.update(scene.start, scene.end, Execution(1));
+  kept.leave_close(*scene.surface, steps, common_motion(scene.start, scene.end), separation);
+  CHECK(kept.of(EventKind::vertex_face).size() < faces.size() / 8);
+  CHECK(kept.of(EventKind::edge_edge).size() < edges.size() / 8);
+  Detector all(scene.surface, {.broad_phase = BroadPhase::brute_force});
+  Execution execution(1);
+  std::set<std::array<Index, 4>> left;
+  for (const EventKind kind : kinds)
+    for (const Candidate& pair : kept.of(kind)) left.insert(vertices_of(*scene.surface, kind, pair));
+  const Events events = all.find(scene.start, scene.end, {separation, 0.5}, execution);
+  CHECK(events.size() > 20);
+  for (const Event& event : events) CHECK(left.count(event.vertices) == 1);
+}
