@@ -19,10 +19,10 @@ struct RoundOutcome {
 /// with all constraints kept and projecting from the goal again, one a patch at first and one a contact where few are
 /// left (or from the start, where the metric is local), then Algorithm 1 from where that came to; or that alone, see
 /// Projection.
-/// The pairs that searches of all pairs brought near each other, in edits before too, are asked first, and all pairs only
-/// if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs.
-/// Candidates are rounded as they will be stored *before* they are looked at, so that the round without events is
-/// itself the check of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
+/// The pairs that searches of all pairs brought near each other, in edits before too, are asked first, and all pairs
+/// only if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs. Candidates
+/// are rounded as they will be stored *before* they are looked at, so that the round without events is itself the check
+/// of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
                         bool at_any_cost, Execution& execution);
 
