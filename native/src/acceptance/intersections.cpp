@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "acceptance/pair_examination.hpp"
+#include "acceptance/point_rows.hpp"
 #include "acceptance/stars.hpp"
 
 namespace stiv {
@@ -23,8 +24,8 @@ GroupTable meeting_bodies(const Surface& surface) {
 class Search {
  public:
   Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
-         const PositionsView& q)
-      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q) {
+         const PositionsView& q, const PointRows& points)
+      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q), points_(points) {
     if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
   }
 
@@ -55,7 +56,7 @@ class Search {
   /// Calls `report(pair)` for what intersects, until it returns false.
   template <class Report>
   void scan(const Bvh::Task& task, const Report& report) const {
-    PairExamination examination(surface_, first_, second_, q_, report);
+    PairExamination examination(surface_, first_, second_, q_, points_, report);
     PairBuffer candidates;
     bool more = true;
     candidates.limit = 4096;
@@ -82,6 +83,7 @@ class Search {
   const Primitives &first_, &second_;
   const GroupTable& bodies_;
   PositionsView q_;
+  const PointRows& points_;
   std::vector<Bvh::Task> tasks_;
 };
 
@@ -110,20 +112,21 @@ class IntersectionTest::Implementation {
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
     update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
     for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
-      if (Search(*surface_, *first, triangles_, bodies_, q).any(execution)) return false;
+      if (Search(*surface_, *first, triangles_, bodies_, q, points_).any(execution)) return false;
     return true;
   }
 
  private:
   IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
     update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
-    return Search(*surface_, first, triangles_, bodies_, q).all(execution);
+    return Search(*surface_, first, triangles_, bodies_, q, points_).all(execution);
   }
 
   using Kinds = std::vector<Primitives*>;
 
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
+    points_ = point_rows(q, execution);
     const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
     for (Primitives* kind : kinds) kind->update(boxes, execution);
     triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution), execution);
@@ -133,6 +136,7 @@ class IntersectionTest::Implementation {
   Primitives triangles_, loose_edges_, loose_vertices_;
   Stars stars_;
   GroupTable bodies_;
+  PointRows points_;  ///< of the update
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)

@@ -18,8 +18,8 @@ bool share_corner(const std::array<Index, 3>& a, const std::array<Index, 3>& b) 
 }  // namespace
 
 PairExamination::PairExamination(const Surface& surface, const Primitives& first, const Primitives& second,
-                                 const PositionsView& q, Report report)
-    : surface_(surface), first_(first), second_(second), q_(q), report_(std::move(report)) {}
+                                 const PositionsView& q, const PointRows& points, Report report)
+    : surface_(surface), first_(first), second_(second), q_(q), points_(points), report_(std::move(report)) {}
 
 bool PairExamination::take(const PrimitivePair& pair) {
   const auto &a = first_.corners(pair.first), &b = second_.corners(pair.second);
@@ -31,7 +31,7 @@ bool PairExamination::take(const PrimitivePair& pair) {
 
 bool PairExamination::finish() {
   TriangleFlags separated;
-  find_separated(waiting_, q_, separated);
+  find_separated(waiting_, points_, separated);
   const std::size_t count = std::exchange(waiting_.count, 0);
   for (std::size_t k = 0; k < count; ++k)
     if (!separated[k] && meet(pairs_[k]) && !report_(pairs_[k])) return false;

@@ -15,8 +15,9 @@ class PairExamination {
   /// Returns whether to go on.
   using Report = std::function<bool(const PrimitivePair&)>;
 
+  /// @param points the same as `q`
   PairExamination(const Surface& surface, const Primitives& first, const Primitives& second, const PositionsView& q,
-                  Report report);
+                  const PointRows& points, Report report);
 
   /// Takes a candidate. False: no more are wanted.
   bool take(const PrimitivePair& pair);
@@ -30,6 +31,7 @@ class PairExamination {
   const Surface& surface_;
   const Primitives &first_, &second_;
   PositionsView q_;
+  const PointRows& points_;
   Report report_;
   TrianglePairs waiting_;
   std::array<PrimitivePair, TrianglePairs::capacity> pairs_;

@@ -19,20 +19,18 @@ struct Pair {
 HWY_INLINE Point magnitude(Point a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
 HWY_INLINE Point larger(Point a, Point b) { return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)}; }
 
-/// Rows of an array of points, (N, 3) doubles.
-HWY_INLINE Point gather_points(const double* rows, const std::int32_t* indices) {
-  const hn::RebindToSigned<Doubles> wide;
-  const auto index = hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::int32_t, Doubles>(), indices));
-  const auto offset = hn::Add(hn::Add(index, index), index);
-  const Doubles d;
-  return {hn::GatherIndex(d, rows, offset), hn::GatherIndex(d, rows + 1, offset), hn::GatherIndex(d, rows + 2, offset)};
+HWY_INLINE Point load_corners(const TrianglePairs& pairs, std::size_t corner, std::size_t at, const PointRow* points) {
+  const double* rows[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane)
+    rows[lane] = points[pairs.corners[corner][at + lane]].coordinates;
+  return load_points(rows);
 }
 
-HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const double* q) {
-  const Point origin = gather_points(q, pairs.corners[0].data() + at);
+HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const PointRow* points) {
+  const Point origin = load_corners(pairs, 0, at, points);
   Pair pair;
-  for (std::size_t k = 0; k < 2; ++k) pair.first[k] = gather_points(q, pairs.corners[k + 1].data() + at) - origin;
-  for (std::size_t k = 0; k < 3; ++k) pair.second[k] = gather_points(q, pairs.corners[k + 3].data() + at) - origin;
+  for (std::size_t k = 0; k < 2; ++k) pair.first[k] = load_corners(pairs, k + 1, at, points) - origin;
+  for (std::size_t k = 0; k < 3; ++k) pair.second[k] = load_corners(pairs, k + 3, at, points) - origin;
   pair.reach = larger(magnitude(pair.first[0]), magnitude(pair.first[1]));
   for (const Point& corner : pair.second) pair.reach = larger(pair.reach, magnitude(corner));
   return pair;
@@ -71,13 +69,13 @@ HWY_INLINE Mask separated(const Pair& pair) {
   return hn::Or(quick, upright);
 }
 
-void find_separated(const TrianglePairs& pairs, const double* q, unsigned char* result) {
+void find_separated(const TrianglePairs& pairs, const PointRow* points, unsigned char* result) {
   const Doubles d;
   const std::size_t width = hn::Lanes(d);
   static_assert(TrianglePairs::capacity % HWY_MAX_BYTES == 0);
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t at = 0; at < pairs.count; at += width) {
-    hn::Store(hn::IfThenElseZero(separated(load(pairs, at, q)), all(1)), d, flags);
+    hn::Store(hn::IfThenElseZero(separated(load(pairs, at, points)), all(1)), d, flags);
     for (std::size_t lane = 0; lane < width; ++lane) result[at + lane] = flags[lane] != 0;
   }
 }
@@ -88,8 +86,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_separated(const TrianglePairs& pairs, const PositionsView& q, TriangleFlags& separated) {
-  STIV_FOR_VECTOR_TARGET(find_separated)(pairs, q.data(), separated.data());
+void find_separated(const TrianglePairs& pairs, const PointRows& points, TriangleFlags& separated) {
+  STIV_FOR_VECTOR_TARGET(find_separated)(pairs, points.data(), separated.data());
 }
 
 }  // namespace stiv

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "stiv/types.hpp"
+#include "acceptance/point_rows.hpp"
 
 namespace stiv {
 
@@ -29,6 +29,6 @@ using TriangleFlags = std::array<unsigned char, TrianglePairs::capacity>;
 
 /// 1 for each pair that a plane separates strictly, beyond all rounding: across the line that joins the centres, in
 /// parallel to one of the triangles, or upright on one over one of its edges. True is certain; false means nothing.
-void find_separated(const TrianglePairs& pairs, const PositionsView& q, TriangleFlags& separated);
+void find_separated(const TrianglePairs& pairs, const PointRows& points, TriangleFlags& separated);
 
 }  // namespace stiv

@@ -8,6 +8,7 @@
 
 #include "deformation/checks.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv {
 
@@ -132,6 +133,25 @@ class Concatenation final : public Deformation {
     Positions q = start_;
     for (std::size_t part = 0; part < parts_.size(); ++part)
       place(parts_[part].deformation->surface(rows_of_part(p, control_starts_, part), execution), part, q, execution);
+    return q;
+  }
+
+  Positions surface_rows(const Controls& p, std::span<const Index> vertices,
+                         const Execution& execution) const override {
+    check_control_rows(p, control_count());
+    Positions q = rows_of(start_, vertices);
+    std::vector<std::vector<Index>> places(parts_.size()), rows(parts_.size());
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const auto vertex = static_cast<std::size_t>(vertices[k]);
+      if (vertex_places_.part[vertex] < 0) continue;
+      const auto part = static_cast<std::size_t>(vertex_places_.part[vertex]);
+      places[part].push_back(static_cast<Index>(k));
+      rows[part].push_back(vertex_places_.row[vertex]);
+    }
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+      if (!rows[part].empty())
+        put_rows(q, places[part],
+                 parts_[part].deformation->surface_rows(rows_of_part(p, control_starts_, part), rows[part], execution));
     return q;
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/deformation/deformation.hpp"
 
+#include "stiv/position_rows.hpp"
+
 namespace stiv {
 
 namespace {
@@ -8,6 +10,11 @@ namespace {
 constexpr Index covectors_per_chunk = 16;
 
 }  // namespace
+
+Positions Deformation::surface_rows(const Controls& p, std::span<const Index> vertices,
+                                    const Execution& execution) const {
+  return rows_of(surface(p, execution), vertices);
+}
 
 std::vector<SparseField> Deformation::pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                                     const Execution& execution) const {

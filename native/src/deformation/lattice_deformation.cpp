@@ -4,6 +4,7 @@
 #include "deformation/checks.hpp"
 #include "deformation/lattice_sums.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv {
 
@@ -23,6 +24,12 @@ class Lattice final : public LinearDeformation {
     Positions q = sums_.sum(p, execution);
     q += offset();
     return q;
+  }
+
+  Positions surface_rows(const Controls& p, std::span<const Index> vertices,
+                         const Execution& execution) const override {
+    check_control_rows(p, control_count());
+    return sums_.sum(p, vertices, execution) + rows_of(offset(), vertices);
   }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return linear_->pull_back(p, g); }

@@ -21,6 +21,7 @@ struct LatticeProduct {
   const double* weights;
   const double* points;
   std::ptrdiff_t row, layer;  ///< numbers from a point to the next along v, and along w
+  const Index* vertices;      ///< of the sums; null: all
   double* sums;               ///< (n, 3)
 };
 
@@ -61,12 +62,13 @@ HWY_INLINE void add_rows(const LatticeProduct& p, const double* first, const dou
 }
 
 void add_points(const LatticeProduct& p, Index begin, Index end) {
-  for (Index vertex = begin; vertex < end; ++vertex) {
+  for (Index place = begin; place < end; ++place) {
+    const Index vertex = p.vertices == nullptr ? place : p.vertices[place];
     const double* const first = p.points + 4 * static_cast<std::ptrdiff_t>(p.starts[vertex]);
     const double* const weights = p.weights + 12 * static_cast<std::ptrdiff_t>(vertex);
     double values[four_points];
     for (std::size_t k = 0; k < four_points; k += vectors * lane_count) add_rows(p, first + k, weights, values + k);
-    double* const sum = p.sums + 3 * static_cast<std::ptrdiff_t>(vertex);
+    double* const sum = p.sums + 3 * static_cast<std::ptrdiff_t>(place);
     for (std::size_t axis = 0; axis < 3; ++axis)
       sum[axis] = (weights[0] * values[axis] + weights[1] * values[4 + axis]) +
                   (weights[2] * values[8 + axis] + weights[3] * values[12 + axis]);
@@ -107,14 +109,23 @@ LatticeSums::LatticeSums(const std::array<LatticeAxis, 3>& axes, const Positions
 }
 
 Positions LatticeSums::sum(const Controls& p, const Execution& execution) const {
+  return sum(p, nullptr, static_cast<Index>(starts_.size()), execution);
+}
+
+Positions LatticeSums::sum(const Controls& p, std::span<const Index> vertices, const Execution& execution) const {
+  return sum(p, vertices.data(), static_cast<Index>(vertices.size()), execution);
+}
+
+/// Of `count` vertices: those of `vertices`, or, where it is null, all.
+Positions LatticeSums::sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const {
   constexpr Index rows_per_chunk = 2048;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> points(static_cast<Index>(points_.size()), 4);
   for (Index place = 0; place < points.rows(); ++place)
     points.row(place) << p.row(points_[static_cast<std::size_t>(place)]), 0;
-  const auto count = static_cast<Index>(starts_.size());
   Positions sums(count, 3);
   const std::ptrdiff_t row = 4 * axes_[0].count;
-  const LatticeProduct product{starts_.data(), weights_.data(), points.data(), row, row * axes_[1].count, sums.data()};
+  const LatticeProduct product{starts_.data(),       weights_.data(), points.data(), row,
+                               row * axes_[1].count, vertices,        sums.data()};
   execution.for_chunks(count, rows_per_chunk, [&](Index begin, Index end, Index) {
     STIV_FOR_VECTOR_TARGET(add_points)(product, begin, end);
   });

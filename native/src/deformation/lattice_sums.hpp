@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "deformation/lattice_axes.hpp"
@@ -20,11 +21,15 @@ class LatticeSums {
   /// W p, (n, 3): along w, then v, then u, none fused: the same bits whatever the width of vectors and the number of
   /// threads.
   Positions sum(const Controls& p, const Execution& execution) const;
+  /// Rows of that, (k, 3).
+  Positions sum(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
 
  private:
   struct Axis {
     Index first = 0, count = 0;  ///< the places along an axis that act on any vertex, those beyond the ends among them
   };
+
+  Positions sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const;
 
   std::array<Axis, 3> axes_;
   std::vector<Index> points_;    ///< the lattice's point at each place, u fastest

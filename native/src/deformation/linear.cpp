@@ -10,6 +10,7 @@
 #include "deformation/linear_metric.hpp"
 #include "deformation/weighted_sums.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv {
 
@@ -29,6 +30,14 @@ class Linear final : public LinearDeformation {
     check_control_rows(p, control_count());
     Positions q = weighted_sums(matrix_, p, execution);
     if (offset_.rows() > 0) q += offset_;
+    return q;
+  }
+
+  Positions surface_rows(const Controls& p, std::span<const Index> vertices,
+                         const Execution& execution) const override {
+    check_control_rows(p, control_count());
+    Positions q = weighted_sums(matrix_, vertices, p, execution);
+    if (offset_.rows() > 0) q += rows_of(offset_, vertices);
     return q;
   }
 

@@ -20,7 +20,8 @@ struct WeightedSums {
   const Index* columns;
   const double* weights;
   const double* controls;
-  double* sums;  ///< (rows, 3)
+  const Index* rows;  ///< of the sums; null: all
+  double* sums;       ///< (rows, 3)
 };
 
 }  // namespace stiv
@@ -42,8 +43,9 @@ HWY_INLINE Some with_entry(const WeightedSums& s, Index entry, std::size_t axis,
 }
 
 /// Four sums side by side: an addition need not wait for the one before.
-HWY_INLINE void add_row(const WeightedSums& s, Index row, std::size_t axis) {
+HWY_INLINE void add_row(const WeightedSums& s, Index place, std::size_t axis) {
   const Coordinates d;
+  const Index row = s.rows == nullptr ? place : s.rows[place];
   const Index end = s.starts[row + 1];
   Index entry = s.starts[row];
   Some a = hn::Zero(d), b = a, c = a, e = a;
@@ -56,13 +58,13 @@ HWY_INLINE void add_row(const WeightedSums& s, Index row, std::size_t axis) {
   for (; entry < end; ++entry) a = with_entry(s, entry, axis, a);
   HWY_ALIGN double values[4];
   hn::Store(hn::Add(hn::Add(a, b), hn::Add(c, e)), d, values);
-  double* const sums = s.sums + 3 * static_cast<std::ptrdiff_t>(row);
+  double* const sums = s.sums + 3 * static_cast<std::ptrdiff_t>(place);
   for (std::size_t k = axis; k < 3 && k < axis + hn::Lanes(d); ++k) sums[k] = values[k - axis];
 }
 
 void add_rows(const WeightedSums& s, Index begin, Index end) {
-  for (Index row = begin; row < end; ++row)
-    for (std::size_t axis = 0; axis < 3; axis += hn::Lanes(Coordinates())) add_row(s, row, axis);
+  for (Index place = begin; place < end; ++place)
+    for (std::size_t axis = 0; axis < 3; axis += hn::Lanes(Coordinates())) add_row(s, place, axis);
 }
 
 }  // namespace stiv::HWY_NAMESPACE
@@ -71,17 +73,33 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution) {
+namespace {
+
+/// Of `count` rows: those of `rows`, or, where it is null, all.
+Positions sums_of(const WeightMatrix& matrix, const Index* rows, Index count, const Controls& x,
+                  const Execution& execution) {
   constexpr Index rows_per_chunk = 1024;
   using Padded = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
   Padded controls = Padded::Zero(x.rows(), 4);
   controls.leftCols<3>() = x;
-  Positions sums(matrix.rows(), 3);
-  const WeightedSums s{matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), controls.data(), sums.data()};
-  execution.for_chunks(static_cast<Index>(matrix.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+  Positions sums(count, 3);
+  const WeightedSums s{
+      matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), controls.data(), rows, sums.data()};
+  execution.for_chunks(count, rows_per_chunk, [&](Index begin, Index end, Index) {
     STIV_FOR_VECTOR_TARGET(add_rows)(s, begin, end);
   });
   return sums;
+}
+
+}  // namespace
+
+Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution) {
+  return sums_of(matrix, nullptr, static_cast<Index>(matrix.rows()), x, execution);
+}
+
+Positions weighted_sums(const WeightMatrix& matrix, std::span<const Index> rows, const Controls& x,
+                        const Execution& execution) {
+  return sums_of(matrix, rows.data(), static_cast<Index>(rows.size()), x, execution);
 }
 
 }  // namespace stiv

@@ -16,6 +16,7 @@
 #include "detection/pair_test.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv {
 
@@ -101,23 +102,24 @@ class Detector::Implementation {
     return collected(*results, execution);
   }
 
-  std::optional<Events> find_among_kept(const Step& step, Execution& execution) {
-    check_step(step);
-    surface_->check_positions(step.start);
-    surface_->check_positions(step.end);
-    if (!keep_last(execution)) return std::nullopt;
+  const std::vector<Index>& kept_vertices(const Execution& execution) {
+    if (last_) kept_.add(*surface_, last_close(execution));
+    return kept_.vertices();
+  }
+
+  Events find_among_kept(const Step& rows, Execution& execution) {
     const FloatingPointScope floating_point;
-    kept_steps_.update(step.start, step.end, execution);
-    const PairTest test(*surface_, step, narrow_phase_, kept_steps_);
+    take_kept(rows, execution);
+    const PairTest test(*surface_, kept_steps_, rows.proximity, narrow_phase_);
     constexpr Index size = 1024;
     const auto chunks_of = [&](EventKind kind) {
-      return Execution::chunk_count(static_cast<Index>(kept_->of(kind).size()), size);
+      return Execution::chunk_count(static_cast<Index>(kept_.of(kind).size()), size);
     };
     const Index faces = chunks_of(EventKind::vertex_face), chunks = faces + chunks_of(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
     execution.for_chunks(chunks, 1, [&](Index chunk, Index, Index) {
       const EventKind kind = chunk < faces ? EventKind::vertex_face : EventKind::edge_edge;
-      const std::vector<Candidate>& pairs = kept_->of(kind);
+      const std::vector<Candidate>& pairs = kept_.of(kind);
       const Index begin = (chunk < faces ? chunk : chunk - faces) * size,
                   end = std::min(begin + size, static_cast<Index>(pairs.size()));
       std::vector<Candidate> some(pairs.begin() + begin, pairs.begin() + end);
@@ -127,17 +129,17 @@ class Detector::Implementation {
     return collected(results, execution);
   }
 
-  void leave_kept(const Step& step, Execution& execution) {
+  void leave_kept(const Step& step, const Execution& execution) {
     check_step(step);
-    if (!keep_last(execution)) return;
     const FloatingPointScope floating_point;
     kept_steps_.update(step.start, step.end, execution);
-    kept_->leave_close(*surface_, kept_steps_, common_motion(step.start, step.end), step.proximity.separation);
+    kept_.add_and_leave_close(*surface_, last_close(execution), kept_steps_, common_motion(step.start, step.end),
+                              step.proximity.separation);
   }
 
   void forget_kept() {
     last_.reset();
-    kept_.reset();
+    kept_ = {};
   }
 
   std::optional<double> earliest_time(const Step& step, Extent extent, Execution& execution) {
@@ -167,7 +169,7 @@ class Detector::Implementation {
     source_->update(step, execution);
     ++execution.counters.detections;
     if (extent == Extent::manageable && !source_->manageable()) return std::nullopt;
-    const PairTest test(*surface_, step, narrow_phase_, source_->vertex_steps());
+    const PairTest test(*surface_, source_->vertex_steps(), step.proximity, narrow_phase_);
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<ChunkResult> results(static_cast<std::size_t>(chunks));
@@ -211,10 +213,9 @@ class Detector::Implementation {
     return events;
   }
 
-  /// Adds the close pairs of the last search to those kept, from what the source still holds of it, when they are first
-  /// asked for. Are any kept?
-  bool keep_last(const Execution& execution) {
-    if (!last_) return kept_.has_value();
+  /// The close pairs of the last search, if they have not been asked for: from what the source still holds of it.
+  ClosePairs last_close(const Execution& execution) {
+    if (!last_) return {};
     const Index faces = source_->chunk_count(EventKind::vertex_face);
     const Index chunks = faces + source_->chunk_count(EventKind::edge_edge);
     std::vector<std::vector<Candidate>> parts(static_cast<std::size_t>(chunks));
@@ -226,12 +227,24 @@ class Detector::Implementation {
       };
       source_->visit(kind, chunk < faces ? chunk : chunk - faces, std::ref(append_some));
     });
-    const std::span<const std::vector<Candidate>> all(parts);
-    if (!kept_) kept_.emplace();
-    kept_->add(EventKind::vertex_face, joined(all.first(at(faces))));
-    kept_->add(EventKind::edge_edge, joined(all.subspan(at(faces))));
     last_.reset();
-    return true;
+    const std::span<const std::vector<Candidate>> all(parts);
+    return {joined(all.first(at(faces))), joined(all.subspan(at(faces)))};
+  }
+
+  /// Takes a step of the kept vertices.
+  void take_kept(const Step& rows, const Execution& execution) {
+    check_proximity(rows.proximity);
+    const std::vector<Index>& vertices = kept_vertices(execution);
+    for (const PositionsView* positions : {&rows.start, &rows.end}) {
+      if (positions->rows() != static_cast<Index>(vertices.size()))
+        throw InputError("there are " + std::to_string(vertices.size()) + " vertices of kept pairs, and positions of " +
+                         std::to_string(positions->rows()) + ": give one row for each");
+      for (Index row = 0; row < positions->rows(); ++row)
+        if (!positions->row(row).allFinite())
+          throw InputError(surface_->describe_vertex(vertices[at(row)]) + ": coordinate is not finite");
+    }
+    kept_steps_.update_rows(rows.start, rows.end, vertices, surface_->vertex_count());
   }
 
   /// What the numbers are is for the source to check.
@@ -252,8 +265,8 @@ class Detector::Implementation {
   NarrowPhase narrow_phase_;
   std::unique_ptr<CandidateSource> source_;
   std::optional<WholeSearch> last_;  ///< if it was complete and manageable, and none of its pairs are kept yet
-  std::optional<KeptPairs> kept_;
-  VertexSteps kept_steps_;
+  KeptPairs kept_;
+  VertexSteps kept_steps_;  ///< of their vertices
 };
 
 Detector::Detector(std::shared_ptr<const Surface> surface, DetectorOptions options)
@@ -281,13 +294,17 @@ std::optional<double> Detector::earliest_time_if_manageable(const PositionsView&
   return implementation_->earliest_time({start, end, proximity}, Extent::manageable, execution);
 }
 
-std::optional<Events> Detector::find_among_kept(const PositionsView& start, const PositionsView& end,
-                                                Proximity proximity, Execution& execution) {
+const std::vector<Index>& Detector::kept_vertices(const Execution& execution) {
+  return implementation_->kept_vertices(execution);
+}
+
+Events Detector::find_among_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
+                                 Execution& execution) {
   return implementation_->find_among_kept({start, end, proximity}, execution);
 }
 
 void Detector::leave_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
-                          Execution& execution) {
+                          const Execution& execution) {
   implementation_->leave_kept({start, end, proximity}, execution);
 }
 

@@ -8,6 +8,9 @@
 
 namespace stiv {
 
+/// Pairs of each kind.
+using ClosePairs = std::array<std::vector<Candidate>, 2>;
+
 /// Pairs of each kind that steps brought close, see append_close: few of all that a search looks at. What is kept
 /// depends on those steps alone, not on the broad phase that found the pairs.
 class KeptPairs {
@@ -15,14 +18,22 @@ class KeptPairs {
   /// In ascending order.
   const std::vector<Candidate>& of(EventKind kind) const { return pairs_[static_cast<std::size_t>(kind)]; }
 
-  /// Adds pairs, each given once and in any order; those that are kept already stay as they are.
-  void add(EventKind kind, std::vector<Candidate> pairs);
+  /// Of all pairs, ascending.
+  const std::vector<Index>& vertices() const { return vertices_; }
 
-  /// Leaves those that a step may bring close. `motion` is that of Step.
-  void leave_close(const Surface& surface, const VertexSteps& vertices, const Vector3& motion, double separation);
+  /// Adds pairs, each given once and in any order; those that are kept already stay as they are.
+  void add(const Surface& surface, ClosePairs pairs);
+
+  /// The same of those of them that a step may bring close, and leaves only such of those kept before. `motion` is that
+  /// of Step.
+  void add_and_leave_close(const Surface& surface, ClosePairs pairs, const VertexSteps& vertices, const Vector3& motion,
+                           double separation);
 
  private:
-  std::array<std::vector<Candidate>, 2> pairs_;
+  void list_vertices(const Surface& surface);
+
+  ClosePairs pairs_;
+  std::vector<Index> vertices_;
 };
 
 }  // namespace stiv

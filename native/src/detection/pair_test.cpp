@@ -15,13 +15,12 @@ namespace {
 /// In parts of the separation: an advance of the narrow phase ends up to a thousandth before it.
 constexpr double farthest_reported = 1 + 0x1p-9;
 
-PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
+PairMotion motion_of(const VertexStep* vertices, const Positions* reference, const std::array<Index, 4>& v) {
   PairMotion motion;
   for (std::size_t k = 0; k < 4; ++k) {
-    motion.start[k] = step.start.row(v[k]);
-    motion.end[k] = step.end.row(v[k]);
+    motion.start[k] = Eigen::Map<const Vector3>(vertices[v[k]].start);
+    motion.end[k] = Eigen::Map<const Vector3>(vertices[v[k]].end);
   }
-  const Positions* reference = step.proximity.reference;
   if (reference == nullptr) return motion;
   motion.reference.emplace();
   for (std::size_t k = 0; k < 4; ++k) (*motion.reference)[k] = reference->row(v[k]);
@@ -30,8 +29,9 @@ PairMotion motion_of(const Step& step, const std::array<Index, 4>& v) {
 
 }  // namespace
 
-PairTest::PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase, const VertexSteps& vertices)
-    : surface_(surface), step_(step), narrow_phase_(narrow_phase), vertices_(vertices) {}
+PairTest::PairTest(const Surface& surface, const VertexSteps& vertices, const Proximity& proximity,
+                   NarrowPhase narrow_phase)
+    : surface_(surface), vertices_(vertices), proximity_(proximity), narrow_phase_(narrow_phase) {}
 
 /// Those that `find(kind, block, vertices, separation, flags)` does not flag, moved to the front.
 template <class Find>
@@ -55,7 +55,7 @@ std::span<Candidate> PairTest::without(EventKind kind, std::span<Candidate> cand
 }
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
-  const double separation = step_.proximity.separation;
+  const double separation = proximity_.separation;
   const std::span<Candidate> left = without(kind, candidates, separation, find_apart);
   return without(kind, left, farthest_reported * separation, find_rims_apart);
 }
@@ -73,8 +73,9 @@ std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& mo
 
 std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate, double latest) const {
   const std::array<Index, 4> v = vertices_of(surface_, kind, candidate);
-  const Proximity proximity = step_.proximity.between(surface_.body_of(v[0]), surface_.body_of(v[3]));
-  const std::optional<Contact> contact = contact_of(kind, motion_of(step_, v), proximity, latest);
+  const Proximity proximity = proximity_.between(surface_.body_of(v[0]), surface_.body_of(v[3]));
+  const PairMotion motion = motion_of(vertices_.data(), proximity_.reference, v);
+  const std::optional<Contact> contact = contact_of(kind, motion, proximity, latest);
   if (!contact) return std::nullopt;
   return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->keeping};
 }

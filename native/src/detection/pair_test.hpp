@@ -15,8 +15,8 @@ namespace stiv {
 /// out, and the narrow phase decides the rest.
 class PairTest {
  public:
-  /// @param vertices the same step, for vector code
-  PairTest(const Surface& surface, const Step& step, NarrowPhase narrow_phase, const VertexSteps& vertices);
+  /// @param vertices the step: of all vertices, or of those of all candidates
+  PairTest(const Surface& surface, const VertexSteps& vertices, const Proximity& proximity, NarrowPhase narrow_phase);
 
   /// Moves the candidates that need the narrow phase to the front and returns them.
   std::span<Candidate> reduce(EventKind kind, std::span<Candidate> candidates) const;
@@ -31,9 +31,9 @@ class PairTest {
   std::optional<Contact> contact_of(EventKind kind, const PairMotion& motion, Proximity proximity, double latest) const;
 
   const Surface& surface_;
-  const Step& step_;
-  NarrowPhase narrow_phase_;
   const VertexSteps& vertices_;
+  const Proximity& proximity_;
+  NarrowPhase narrow_phase_;
 };
 
 }  // namespace stiv

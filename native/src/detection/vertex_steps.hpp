@@ -23,10 +23,14 @@ class VertexSteps {
   void update(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
               const Execution& execution);
 
+  /// Takes a step of which only the rows of some vertices are given, (k, 3) each; the others stay what they were.
+  void update_rows(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
+                   Index vertex_count);
+
   const VertexStep* data() const { return rows_.data(); }
 
  private:
-  void take(const PositionsView& start, const PositionsView& end, Index vertex);
+  void take(const PositionsView& start, const PositionsView& end, Index row, Index vertex);
 
   std::vector<VertexStep> rows_;
 };

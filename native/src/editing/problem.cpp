@@ -6,6 +6,7 @@
 #include "editing/validation.hpp"
 #include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv {
 
@@ -126,17 +127,32 @@ std::optional<Events> Problem::find_events(const Positions& from, const Position
   return remaining_events(detector, start, end, proximity_of_rounds(), at_any_cost, execution);
 }
 
-std::optional<Events> Problem::find_events_among_kept(const Positions& from, const Positions& to,
-                                                      Execution& execution) {
-  if (round_detector_) return std::nullopt;
+const std::vector<Index>& Problem::kept_vertices(Execution& execution) {
+  static const std::vector<Index> none;
+  if (round_detector_) return none;
   const ScopedTimer timer(execution.timings.detection);
-  std::optional<Events> events =
-      detector_.find_among_kept(centred(from), centred(to), proximity_of_rounds(), execution);
-  if (events) excluded_.remove_from(*events);
+  return detector_.kept_vertices(execution);
+}
+
+Positions Problem::surface_rows(const Controls& controls, std::span<const Index> vertices, Execution& execution) const {
+  const ScopedTimer timer(execution.timings.deformation);
+  return deformation_->surface_rows(controls, vertices, execution);
+}
+
+Events Problem::find_events_among_kept(const Positions& from, State& to, Execution& execution) {
+  const std::vector<Index>& vertices = kept_vertices(execution);
+  if (vertices.empty()) return {};
+  const Positions end = surface_rows(to.controls, vertices, execution);
+  const ScopedTimer timer(execution.timings.detection);
+  put_rows(to.surface, vertices, end);
+  Events events =
+      detector_.find_among_kept(centred(rows_of(from, vertices)), centred(end), proximity_of_rounds(), execution);
+  excluded_.remove_from(events);
   return events;
 }
 
 void Problem::leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution) {
+  if (round_detector_) return;
   const ScopedTimer timer(execution.timings.detection);
   detector_.leave_kept(centred(from), centred(to), proximity_of_rounds(), execution);
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -88,10 +89,10 @@ class Problem {
   /// Events on the way from one surface to the other, and the earliest time of any. Nothing if the way is too far to
   /// be looked at in bounded time and memory; `at_any_cost`: never so.
   std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
-  /// Events among the pairs that searches of all brought near each other: perhaps not all that there are. Nothing if no
-  /// pairs are kept.
-  std::optional<Events> find_events_among_kept(const Positions& from, const Positions& to, Execution& execution);
-  /// Drops kept pairs that lie far from this way, where rounds toward another goal begin; or all.
+  /// Events among the pairs that searches of all brought near each other: perhaps not all that there are, and none if
+  /// no pairs are kept. Brings `to.surface` up to date where these pairs are, and nowhere else.
+  Events find_events_among_kept(const Positions& from, State& to, Execution& execution);
+  /// Drops kept pairs that lie far from the way, where rounds toward another goal begin; or all.
   void leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution);
   void forget_kept_pairs() { detector_.forget_kept(); }
   std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
@@ -103,6 +104,9 @@ class Problem {
   bool is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution);
 
  private:
+  /// None where rounds look at pairs in a way of their own.
+  const std::vector<Index>& kept_vertices(Execution& execution);
+  Positions surface_rows(const Controls& controls, std::span<const Index> vertices, Execution& execution) const;
   void set_proximity(const MovingExtent& extent, double least);
   /// All but those of excluded pairs.
   std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,

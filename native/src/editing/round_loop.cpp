@@ -56,6 +56,22 @@ bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& a
   return true;
 }
 
+/// Events on the way to the candidate: of the pairs kept, or, if none of these interferes, of all. Its surface is up to
+/// date where they are; everywhere, if there are none. Nothing if the way is too far.
+std::optional<Events> find_some(Problem& problem, const State& accepted, RoundOutcome& outcome, RoundProgress& progress,
+                                Execution& execution) {
+  State& candidate = outcome.candidate;
+  if (!progress.begun) {
+    candidate.surface = problem.surface_at(candidate.controls, execution);
+    problem.leave_kept_pairs(accepted.surface, candidate.surface, execution);
+    progress.begun = true;
+  }
+  Events events = problem.find_events_among_kept(accepted.surface, candidate, execution);
+  if (!events.empty()) return events;
+  candidate.surface = problem.surface_at(candidate.controls, execution);
+  return problem.find_events(accepted.surface, candidate.surface, outcome.at_any_cost, execution);
+}
+
 }  // namespace
 
 bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
@@ -70,19 +86,18 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
   outcome.at_any_cost = at_any_cost;
+  outcome.candidate.surface = accepted.surface;
   RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
   auto& [from, to, kind, kept, p, accumulate, round, begun, found, constrained] = progress;
   for (;; ++round) {
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);
-    outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
+    if (round == options.max_rounds || found)
+      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
     if (round == options.max_rounds) return outcome;
     if (!found) {
-      std::optional<Events> events;
-      events = problem.find_events_among_kept(accepted.surface, outcome.candidate.surface, execution);
-      if (!events || events->empty())
-        events = problem.find_events(accepted.surface, outcome.candidate.surface, at_any_cost, execution);
+      std::optional<Events> events = find_some(problem, accepted, outcome, progress, execution);
       outcome.too_far = !events;
       if (outcome.too_far) return outcome;
       found = std::move(events);  // only now: a search that is interrupted has found nothing out
@@ -92,6 +107,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (outcome.clear) return outcome;
     if (!constrained && !constrain(problem, accepted, areas, *found, outcome, progress, execution)) {
       outcome.events = *found;  // a call that takes these rounds up again asks for them once more
+      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
       return outcome;
     }
     constrained = true;  // what ends here is not to add them twice

@@ -48,6 +48,8 @@ struct TwoPoints {
   Point first, second;
 };
 
+// load_rows gives both, load_points the first of them; rows begin at a multiple of their size.
+
 #if HWY_MAX_BYTES == 64
 // Pairs of rows are interleaved, which leaves blocks of two lanes (x x | z z | x' x' | z' z') and (y y | - | y' y' | -)
 // for each pair of rows, and then the blocks of four pairs are transposed.
@@ -72,6 +74,15 @@ HWY_INLINE TwoPoints load_rows(const double* const* rows) {
   return {{first_blocks(low02, low13), first_blocks(y02, y13), second_blocks(low02, low13)},
           {first_blocks(high02, high13), first_blocks(z02, z13), second_blocks(high02, high13)}};
 }
+HWY_INLINE Point load_points(const double* const* rows) {
+  const Doubles d;
+  const hn::Half<Doubles> half;
+  Lanes two[4];  // rows k and k + 4
+  for (int k = 0; k < 4; ++k) two[k] = hn::Combine(d, hn::Load(half, rows[k + 4]), hn::Load(half, rows[k]));
+  const Lanes xz01 = hn::InterleaveLower(d, two[0], two[1]), xz23 = hn::InterleaveLower(d, two[2], two[3]);
+  const Lanes y01 = hn::InterleaveUpper(d, two[0], two[1]), y23 = hn::InterleaveUpper(d, two[2], two[3]);
+  return {first_blocks(xz01, xz23), first_blocks(y01, y23), second_blocks(xz01, xz23)};
+}
 #elif HWY_MAX_BYTES == 32
 HWY_INLINE Point load_four(const double* const* rows, std::size_t offset) {
   const Doubles d;
@@ -82,6 +93,7 @@ HWY_INLINE Point load_four(const double* const* rows, std::size_t offset) {
   return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01), hn::ConcatUpperUpper(d, xz23, xz01)};
 }
 HWY_INLINE TwoPoints load_rows(const double* const* rows) { return {load_four(rows, 0), load_four(rows, 4)}; }
+HWY_INLINE Point load_points(const double* const* rows) { return load_four(rows, 0); }
 #else
 HWY_INLINE Lanes load_column(const double* const* rows, std::size_t column) {
   const Doubles d;
@@ -92,6 +104,9 @@ HWY_INLINE Lanes load_column(const double* const* rows, std::size_t column) {
 HWY_INLINE TwoPoints load_rows(const double* const* rows) {
   return {{load_column(rows, 0), load_column(rows, 1), load_column(rows, 2)},
           {load_column(rows, 4), load_column(rows, 5), load_column(rows, 6)}};
+}
+HWY_INLINE Point load_points(const double* const* rows) {
+  return {load_column(rows, 0), load_column(rows, 1), load_column(rows, 2)};
 }
 #endif
 

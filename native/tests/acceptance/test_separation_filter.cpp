@@ -35,7 +35,7 @@ Positions random_corners(std::mt19937& random, int reach, bool integer) {
 
 std::vector<unsigned char> separated(const Batch& batch) {
   TriangleFlags flags{};
-  find_separated(batch.pairs, batch.q, flags);
+  find_separated(batch.pairs, point_rows(batch.q, Execution(1)), flags);
   return {flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(batch.pairs.count)};
 }
 

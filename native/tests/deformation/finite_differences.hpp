@@ -3,9 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "stiv/deformation/deformation.hpp"
+#include "stiv/position_rows.hpp"
 
 namespace stiv::testing {
 
@@ -44,9 +47,22 @@ inline Positions difference(const Deformation& deformation, const Controls& p, I
   return (deformation.surface(forward) - deformation.surface(backward)) / (2 * step);
 }
 
+/// Rows of the surface against the whole of it, bit by bit: some, in an order of their own, none, and all.
+inline void check_rows(const Deformation& deformation, const Controls& p) {
+  const Positions q = deformation.surface(p);
+  std::vector<Index> rows(static_cast<std::size_t>(q.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  std::shuffle(rows.begin(), rows.end(), std::mt19937(5));
+  for (const std::size_t count : {rows.size(), rows.size() / 2, std::size_t{0}}) {
+    rows.resize(count);
+    for (const int threads : {1, 2}) CHECK(deformation.surface_rows(p, rows, Execution(threads)) == rows_of(q, rows));
+  }
+}
+
 /// push_forward and pull_back against central differences of `surface`, control by control, axis by axis; and the
-/// support of each control against what the differences show to move.
+/// support of each control against what the differences show to move; and check_rows.
 inline void check_derivatives(const Deformation& deformation, const Controls& p, double tolerance = 1e-7) {
+  check_rows(deformation, p);
   const Index m = deformation.control_count(), n = deformation.vertex_count();
   REQUIRE(p.rows() == m);
   const SparseField g = random_field(n, 2, 7);

@@ -79,6 +79,7 @@ TEST_CASE("lattice: the deformation is that of its weights, the same bits for an
       CHECK((deformation->push_forward(p, d) - weights * d).cwiseAbs().maxCoeff() < 1e-13);
       for (const Positions& other : for_each_vector_target([&] { return deformation->surface(p, Execution(3)); }))
         CHECK(other == q);
+      check_rows(*deformation, p);
     }
 }
 

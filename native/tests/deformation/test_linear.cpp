@@ -42,6 +42,7 @@ TEST_CASE("linear: the surface has the same bits for any number of threads") {
   const auto linear = make_linear(banded_weights(5000, 300), random_positions(5000, 3));
   const Controls p = random_positions(300, 1);
   for (const int threads : {2, 5}) CHECK(linear->surface(p, Execution(threads)) == linear->surface(p));
+  check_rows(*linear, p);
 }
 
 TEST_CASE("linear: metric of few controls") { check_linear_metric(*make_linear(banded_weights(60, 25)), 25); }

@@ -27,16 +27,23 @@ Pairs kept_in(const KeptPairs& kept, EventKind kind) {
 
 }  // namespace
 
-TEST_CASE("kept pairs: each once and in ascending order, two edges whichever comes first") {
+TEST_CASE("kept pairs: each once and in ascending order, two edges whichever comes first, with all their vertices") {
+  const MovingScene scene = stirred_sheets(5, 2, 0.1, 3);
+  const Surface& surface = *scene.surface;
   KeptPairs kept;
-  kept.add(EventKind::edge_edge, {{7, 3}, {2, 9}, {3, 4}});
-  kept.add(EventKind::edge_edge, {{9, 2}, {3, 7}, {1, 1000000}});
-  CHECK(kept_in(kept, EventKind::edge_edge) == Pairs{{1, 1000000}, {2, 9}, {3, 4}, {3, 7}});
+  kept.add(surface, {{{}, {{7, 3}, {2, 9}, {3, 4}}}});
+  kept.add(surface, {{{}, {{9, 2}, {3, 7}, {1, 60}}}});
+  CHECK(kept_in(kept, EventKind::edge_edge) == Pairs{{1, 60}, {2, 9}, {3, 4}, {3, 7}});
   CHECK(kept.of(EventKind::vertex_face).empty());
-  kept.add(EventKind::vertex_face, {{7, 3}, {3, 7}});  // another vertex, another face
+  kept.add(surface, {{{{7, 3}, {3, 7}}, {}}});  // another vertex, another face
   CHECK(kept_in(kept, EventKind::vertex_face) == Pairs{{3, 7}, {7, 3}});
-  kept.add(EventKind::vertex_face, {});
+  kept.add(surface, {});
   CHECK(kept.of(EventKind::vertex_face).size() == 2);
+  std::set<Index> vertices{3, 7};
+  for (const Index edge : {1, 2, 3, 4, 7, 9, 60}) vertices.insert({surface.edges()(edge, 0), surface.edges()(edge, 1)});
+  for (const Index face : {3, 7})
+    for (Index corner = 0; corner < 3; ++corner) vertices.insert(surface.triangles()(face, corner));
+  CHECK(kept.vertices() == std::vector<Index>(vertices.begin(), vertices.end()));
 }
 
 TEST_CASE("kept pairs: of all pairs, a step leaves those that meet on its way, and few others") {
@@ -48,12 +55,17 @@ TEST_CASE("kept pairs: of all pairs, a step leaves those that meet on its way, a
     for (Index face = 0; face < count(scene.surface->triangles()); ++face) faces.push_back({vertex, face});
   for (Index first = 0; first < count(scene.surface->edges()); ++first)
     for (Index second = first + 1; second < count(scene.surface->edges()); ++second) edges.push_back({first, second});
-  kept.add(EventKind::vertex_face, faces);
-  kept.add(EventKind::edge_edge, edges);
   constexpr double separation = 0.004;
   VertexSteps steps;
   steps.update(scene.start, scene.end, Execution(1));
-  kept.leave_close(*scene.surface, steps, common_motion(scene.start, scene.end), separation);
+  // Half of them are there before, half come.
+  const auto half = [](const std::vector<Candidate>& pairs, bool second) {
+    const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2);
+    return second ? std::vector<Candidate>(middle, pairs.end()) : std::vector<Candidate>(pairs.begin(), middle);
+  };
+  kept.add(*scene.surface, {half(faces, false), half(edges, true)});
+  kept.add_and_leave_close(*scene.surface, {half(faces, true), half(edges, false)}, steps,
+                           common_motion(scene.start, scene.end), separation);
   CHECK(kept.of(EventKind::vertex_face).size() < faces.size() / 8);
   CHECK(kept.of(EventKind::edge_edge).size() < edges.size() / 8);
   Detector all(scene.surface, {.broad_phase = BroadPhase::brute_force});

@@ -7,6 +7,7 @@
 #include "detection/scenes.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/error.hpp"
+#include "stiv/position_rows.hpp"
 
 using namespace stiv;
 
@@ -17,6 +18,16 @@ constexpr Proximity proximity{0.004, 0.5};
 Events found_by(Detector& detector, const Positions& start, const Positions& end, int threads) {
   Execution execution(threads);
   return detector.find(start, end, proximity, execution);
+}
+
+Events found_among_kept(Detector& detector, const Positions& start, const Positions& end, int threads = 1) {
+  Execution execution(threads);
+  const std::vector<Index>& vertices = detector.kept_vertices(execution);
+  return detector.find_among_kept(rows_of(start, vertices), rows_of(end, vertices), proximity, execution);
+}
+
+void leave_kept(Detector& detector, const Positions& start, const Positions& end) {
+  detector.leave_kept(start, end, proximity, Execution(1));
 }
 
 Events expected(const MovingScene& scene, const Positions& start, const Positions& end) {
@@ -92,21 +103,19 @@ TEST_CASE("rounds: events among the pairs kept are those of a whole search, of t
     found_by(fresh, scene.start, first, 2);
     found_by(grid, scene.start, first, 1);
     for (const Positions& end : ends_of_rounds(scene, random)) {
-      Execution execution(1), threads(2);
-      const std::optional<Events> kept = detector.find_among_kept(scene.start, end, proximity, execution);
-      REQUIRE(kept.has_value());
-      CHECK(same_bits(*kept, *fresh.find_among_kept(scene.start, end, proximity, threads)));
-      CHECK(same_bits(*kept, *grid.find_among_kept(scene.start, end, proximity, execution)));
+      const Events kept = found_among_kept(detector, scene.start, end);
+      CHECK(same_bits(kept, found_among_kept(fresh, scene.start, end, 2)));
+      CHECK(same_bits(kept, found_among_kept(grid, scene.start, end)));
       const Events all = expected(scene, scene.start, end);
-      for (const Event& event : *kept) {
+      for (const Event& event : kept) {
         const Event* const same = event_of_pair(all, event);
         REQUIRE(same != nullptr);
         CHECK(same_bits({event}, {*same}));
       }
       for (const Event& event : all)
-        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(*kept, event) != nullptr);
-      found += kept->size();
-      missed += all.size() - kept->size();
+        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(kept, event) != nullptr);
+      found += kept.size();
+      missed += all.size() - kept.size();
     }
   }
   CHECK(found > 100);
@@ -118,12 +127,7 @@ TEST_CASE("rounds: pairs of several searches are kept, each once, until a step l
   std::mt19937 random(11);
   const std::vector<Positions> ends = ends_of_rounds(scene, random);
   Detector detector(scene.surface), grid(scene.surface, {.broad_phase = BroadPhase::hash_grid});
-  Execution execution(1);
-  const auto kept_of = [&](Detector& some, const Positions& end) {
-    const std::optional<Events> events = some.find_among_kept(scene.start, end, proximity, execution);
-    REQUIRE(events.has_value());
-    return *events;
-  };
+  const auto kept_of = [&](Detector& some, const Positions& end) { return found_among_kept(some, scene.start, end); };
   std::vector<Events> of_searches;
   for (const Positions& end : ends) {
     of_searches.push_back(found_by(detector, scene.start, end, 1));
@@ -134,7 +138,7 @@ TEST_CASE("rounds: pairs of several searches are kept, each once, until a step l
     }
   }
   const Positions& last = ends.front();  // a part of the way: closer than most others
-  for (Detector* const some : {&detector, &grid}) some->leave_kept(scene.start, last, proximity, execution);
+  for (Detector* const some : {&detector, &grid}) leave_kept(*some, scene.start, last);
   CHECK(same_bits(kept_of(detector, last), of_searches.front()));
   std::size_t left = 0, all = 0;
   for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -149,19 +153,33 @@ TEST_CASE("rounds: pairs of several searches are kept, each once, until a step l
 
 TEST_CASE("rounds: nothing is kept before the first search, or when all is forgotten") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
+  const Execution execution(1);
+  Detector detector(scene.surface);
+  CHECK(detector.kept_vertices(execution).empty());
+  CHECK(found_among_kept(detector, scene.start, scene.end).empty());
+  for (const bool asked : {false, true}) {
+    CHECK(found_by(detector, scene.start, scene.end, 1).size() > 10);
+    if (asked) CHECK(found_among_kept(detector, scene.start, scene.end).size() > 10);
+    detector.forget_kept();
+    CHECK(detector.kept_vertices(execution).empty());
+    CHECK(found_among_kept(detector, scene.start, scene.end).empty());
+  }
+}
+
+TEST_CASE("rounds: rows of kept vertices that are too few or not finite are refused by name") {
+  const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   Execution execution(1);
   Detector detector(scene.surface);
-  CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
-  detector.leave_kept(scene.start, scene.end, proximity, execution);
-  CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
   found_by(detector, scene.start, scene.end, 1);
-  CHECK(detector.find_among_kept(scene.start, scene.end, proximity, execution));
-  for (const bool asked : {false, true}) {
-    found_by(detector, scene.start, scene.end, 1);
-    if (asked) detector.find_among_kept(scene.start, scene.end, proximity, execution);
-    detector.forget_kept();
-    CHECK(!detector.find_among_kept(scene.start, scene.end, proximity, execution));
-  }
+  const std::vector<Index> vertices = detector.kept_vertices(execution);
+  REQUIRE(vertices.size() > 3);
+  const Positions start = rows_of(scene.start, vertices);
+  Positions end = rows_of(scene.end, vertices);
+  CHECK_THROWS_AS(detector.find_among_kept(start, end.topRows(2), proximity, execution), InputError);
+  CHECK_THROWS_AS(detector.leave_kept(scene.start, end, proximity, execution), InputError);
+  end(3, 1) = never;
+  const std::string name = scene.surface->describe_vertex(vertices[3]) + ": coordinate is not finite";
+  CHECK_THROWS_WITH_AS(detector.find_among_kept(start, end, proximity, execution), name.c_str(), InputError);
 }
 
 TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {

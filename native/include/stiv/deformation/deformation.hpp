@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "stiv/deformation/metric.hpp"
@@ -22,6 +23,10 @@ class Deformation {
   /// q = f(p): (m, 3) -> (n, 3), on the threads of `execution`, which may interrupt it.
   virtual Positions surface(const Controls& p, const Execution& execution) const = 0;
   Positions surface(const Controls& p) const { return surface(p, Execution(1)); }
+
+  /// Rows of that, those of some vertices: (k, 3), bit by bit the same. Here of the whole; others make only what is
+  /// asked for.
+  virtual Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.
   virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "stiv/detection/event.hpp"
 #include "stiv/detection/proximity.hpp"
@@ -47,15 +48,20 @@ class Detector {
   std::optional<Events> find_if_manageable(const PositionsView& start, const PositionsView& end, Proximity proximity,
                                            Execution& execution);
 
-  /// The events of a step among the few pairs kept, and no others: for rounds of an edit whose answers are looked at
-  /// again anyway. Kept are those that the step of a whole search, or one that leads each vertex a part of its way, may
-  /// bring within the separation: of all searches since the session began, less what `leave_kept` dropped. Depends on
-  /// these steps and this one alone. Nothing if no search was complete, and its step manageable.
-  std::optional<Events> find_among_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
-                                        Execution& execution);
+  /// Vertices of the few pairs kept, ascending. Kept are those that the step of a whole search, or one that leads each
+  /// vertex a part of its way, may bring within the separation: of all searches that were complete, and their steps
+  /// manageable, less what `leave_kept` and `forget_kept` dropped. Depends on these steps alone.
+  const std::vector<Index>& kept_vertices(const Execution& execution);
 
-  /// Drops kept pairs that this step does not bring close in the same sense: where another edit begins.
-  void leave_kept(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
+  /// The events of a step among the pairs kept, and no others: for rounds of an edit whose answers are looked at again
+  /// anyway. Of the step only the rows of `kept_vertices` are given, (k, 3) each.
+  /// @throws InputError if they are not so many, or not finite
+  Events find_among_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
+                         Execution& execution);
+
+  /// Drops kept pairs that a step, given whole, does not bring close in the same sense: where another edit begins.
+  void leave_kept(const PositionsView& start, const PositionsView& end, Proximity proximity,
+                  const Execution& execution);
 
   /// Drops all of them.
   void forget_kept();
