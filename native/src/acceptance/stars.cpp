@@ -93,7 +93,7 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   for (Index vertex = 0; vertex < vertex_count; ++vertex) {
     start_.push_back(static_cast<Index>(rims_.size()));
     const std::span<Spoke> spokes = table.of(vertex);
-    if (!chain(spokes)) continue;
+    if (spokes.size() < 2 || !chain(spokes)) continue;  // of one triangle alone, nothing is to be left out
     for (const Spoke& spoke : spokes) rims_.push_back(spoke.from);
     rims_.push_back(spokes.back().to);
   }
