@@ -103,7 +103,7 @@ class Detector::Implementation {
   }
 
   const std::vector<Index>& kept_vertices(const Execution& execution) {
-    if (last_) kept_.add(*surface_, last_close(execution));
+    if (last_) kept_.add(*surface_, last_close(execution), execution);
     return kept_.vertices();
   }
 
@@ -134,7 +134,7 @@ class Detector::Implementation {
     const FloatingPointScope floating_point;
     kept_steps_.update(step.start, step.end, execution);
     kept_.add_and_leave_close(*surface_, last_close(execution), kept_steps_, common_motion(step.start, step.end),
-                              step.proximity.separation);
+                              step.proximity.separation, execution);
   }
 
   void forget_kept() {

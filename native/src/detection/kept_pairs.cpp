@@ -22,42 +22,53 @@ std::uint64_t key(const Candidate& pair) {
 
 constexpr auto before = [](const Candidate& a, const Candidate& b) { return key(a) < key(b); };
 
-/// Adds pairs to sorted ones.
-void unite(std::vector<Candidate>& kept, std::vector<Candidate> pairs) {
-  std::sort(pairs.begin(), pairs.end(), before);
+/// Sorted pairs and others, each once.
+std::vector<Candidate> united(const std::vector<Candidate>& sorted, std::vector<Candidate> others) {
+  std::sort(others.begin(), others.end(), before);
   std::vector<Candidate> all;
-  all.reserve(kept.size() + pairs.size());
-  std::set_union(kept.begin(), kept.end(), pairs.begin(), pairs.end(), std::back_inserter(all), before);
-  kept = std::move(all);
+  all.reserve(sorted.size() + others.size());
+  std::set_union(sorted.begin(), sorted.end(), others.begin(), others.end(), std::back_inserter(all), before);
+  return all;
+}
+
+/// Of both kinds. Which of two edges comes first depends on the order of a tree: here the lower one.
+ClosePairs united(const ClosePairs& sorted, ClosePairs others, const Execution& execution) {
+  for (Candidate& pair : others[1])
+    if (pair.second < pair.first) std::swap(pair.first, pair.second);
+  ClosePairs all;
+  execution.for_chunks(2, 1, [&](Index, Index, Index number) {
+    const auto kind = static_cast<std::size_t>(number);
+    all[kind] = united(sorted[kind], std::move(others[kind]));
+  });
+  return all;
 }
 
 }  // namespace
 
-void KeptPairs::add(const Surface& surface, ClosePairs pairs) {
-  for (Candidate& pair : pairs[1])  // which of two edges comes first depends on the order of a tree
-    if (pair.second < pair.first) std::swap(pair.first, pair.second);
-  for (std::size_t kind = 0; kind < pairs.size(); ++kind) unite(pairs_[kind], std::move(pairs[kind]));
-  list_vertices(surface);
+void KeptPairs::add(const Surface& surface, ClosePairs pairs, const Execution& execution) {
+  take(surface, united(pairs_, std::move(pairs), execution));
 }
 
 // What is far goes first: it is most of what a search gives, and need not be sorted.
-void KeptPairs::add_and_leave_close(const Surface& surface, ClosePairs pairs, const VertexSteps& vertices,
-                                    const Vector3& motion, double separation) {
-  for (ClosePairs* const all : {&pairs_, &pairs})
-    for (const EventKind kind : kinds) {
-      std::vector<Candidate>& some = (*all)[static_cast<std::size_t>(kind)];
-      std::vector<Candidate> close;
-      append_close(surface, kind, some, vertices, motion, separation, close);
-      some = std::move(close);
-    }
-  add(surface, std::move(pairs));
+void KeptPairs::add_and_leave_close(const Surface& surface, const ClosePairs& pairs, const VertexSteps& vertices,
+                                    const Vector3& motion, double separation, const Execution& execution) {
+  ClosePairs kept, added;
+  execution.for_chunks(4, 1, [&](Index, Index, Index number) {
+    const auto kind = static_cast<std::size_t>(number % 2);
+    const bool first = number < 2;
+    append_close(surface, kinds[kind], (first ? pairs_ : pairs)[kind], vertices, motion, separation,
+                 (first ? kept : added)[kind]);
+  });
+  take(surface, united(kept, std::move(added), execution));
 }
 
-void KeptPairs::list_vertices(const Surface& surface) {
+/// Only here anything changes: what comes before may be interrupted.
+void KeptPairs::take(const Surface& surface, ClosePairs pairs) {
   std::vector<unsigned char> listed(static_cast<std::size_t>(surface.vertex_count()), 0);
-  for (const EventKind kind : kinds)
-    for (const Candidate& pair : of(kind))
-      for (const Index vertex : vertices_of(surface, kind, pair)) listed[static_cast<std::size_t>(vertex)] = 1;
+  for (std::size_t kind = 0; kind < pairs.size(); ++kind)
+    for (const Candidate& pair : pairs[kind])
+      for (const Index vertex : vertices_of(surface, kinds[kind], pair)) listed[static_cast<std::size_t>(vertex)] = 1;
+  pairs_ = std::move(pairs);
   vertices_.clear();
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
     if (listed[static_cast<std::size_t>(vertex)] != 0) vertices_.push_back(vertex);

@@ -22,15 +22,16 @@ class KeptPairs {
   const std::vector<Index>& vertices() const { return vertices_; }
 
   /// Adds pairs, each given once and in any order; those that are kept already stay as they are.
-  void add(const Surface& surface, ClosePairs pairs);
+  /// @throws Interrupted with nothing changed, as the other
+  void add(const Surface& surface, ClosePairs pairs, const Execution& execution);
 
   /// The same of those of them that a step may bring close, and leaves only such of those kept before. `motion` is that
   /// of Step.
-  void add_and_leave_close(const Surface& surface, ClosePairs pairs, const VertexSteps& vertices, const Vector3& motion,
-                           double separation);
+  void add_and_leave_close(const Surface& surface, const ClosePairs& pairs, const VertexSteps& vertices,
+                           const Vector3& motion, double separation, const Execution& execution);
 
  private:
-  void list_vertices(const Surface& surface);
+  void take(const Surface& surface, ClosePairs pairs);
 
   ClosePairs pairs_;
   std::vector<Index> vertices_;

@@ -61,14 +61,15 @@ bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& a
 std::optional<Events> find_some(Problem& problem, const State& accepted, RoundOutcome& outcome, RoundProgress& progress,
                                 Execution& execution) {
   State& candidate = outcome.candidate;
-  if (!progress.begun) {
+  const bool begins = !progress.begun;
+  if (begins) {
     candidate.surface = problem.surface_at(candidate.controls, execution);
     problem.leave_kept_pairs(accepted.surface, candidate.surface, execution);
     progress.begun = true;
   }
   Events events = problem.find_events_among_kept(accepted.surface, candidate, execution);
   if (!events.empty()) return events;
-  candidate.surface = problem.surface_at(candidate.controls, execution);
+  if (!begins) candidate.surface = problem.surface_at(candidate.controls, execution);
   return problem.find_events(accepted.surface, candidate.surface, outcome.at_any_cost, execution);
 }
 

@@ -31,13 +31,13 @@ TEST_CASE("kept pairs: each once and in ascending order, two edges whichever com
   const MovingScene scene = stirred_sheets(5, 2, 0.1, 3);
   const Surface& surface = *scene.surface;
   KeptPairs kept;
-  kept.add(surface, {{{}, {{7, 3}, {2, 9}, {3, 4}}}});
-  kept.add(surface, {{{}, {{9, 2}, {3, 7}, {1, 60}}}});
+  kept.add(surface, {{{}, {{7, 3}, {2, 9}, {3, 4}}}}, Execution(1));
+  kept.add(surface, {{{}, {{9, 2}, {3, 7}, {1, 60}}}}, Execution(1));
   CHECK(kept_in(kept, EventKind::edge_edge) == Pairs{{1, 60}, {2, 9}, {3, 4}, {3, 7}});
   CHECK(kept.of(EventKind::vertex_face).empty());
-  kept.add(surface, {{{{7, 3}, {3, 7}}, {}}});  // another vertex, another face
+  kept.add(surface, {{{{7, 3}, {3, 7}}, {}}}, Execution(1));  // another vertex, another face
   CHECK(kept_in(kept, EventKind::vertex_face) == Pairs{{3, 7}, {7, 3}});
-  kept.add(surface, {});
+  kept.add(surface, {}, Execution(1));
   CHECK(kept.of(EventKind::vertex_face).size() == 2);
   std::set<Index> vertices{3, 7};
   for (const Index edge : {1, 2, 3, 4, 7, 9, 60}) vertices.insert({surface.edges()(edge, 0), surface.edges()(edge, 1)});
@@ -63,9 +63,9 @@ TEST_CASE("kept pairs: of all pairs, a step leaves those that meet on its way, a
     const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2);
     return second ? std::vector<Candidate>(middle, pairs.end()) : std::vector<Candidate>(pairs.begin(), middle);
   };
-  kept.add(*scene.surface, {half(faces, false), half(edges, true)});
+  kept.add(*scene.surface, {half(faces, false), half(edges, true)}, Execution(1));
   kept.add_and_leave_close(*scene.surface, {half(faces, true), half(edges, false)}, steps,
-                           common_motion(scene.start, scene.end), separation);
+                           common_motion(scene.start, scene.end), separation, Execution(1));
   CHECK(kept.of(EventKind::vertex_face).size() < faces.size() / 8);
   CHECK(kept.of(EventKind::edge_edge).size() < edges.size() / 8);
   Detector all(scene.surface, {.broad_phase = BroadPhase::brute_force});
