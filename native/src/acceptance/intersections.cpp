@@ -129,7 +129,7 @@ class IntersectionTest::Implementation {
     points_ = point_rows(q, execution);
     const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
     for (Primitives* kind : kinds) kind->update(boxes, execution);
-    triangles_.leave_out_neighbours(stars_.find_free(q, moved, execution), execution);
+    triangles_.leave_out_neighbours(stars_.find_free(points_, moved, execution), execution);
   }
 
   std::shared_ptr<const Surface> surface_;

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivation: docs/mathematics.md, "Stars".
 #include "acceptance/stars.hpp"
 
 #include <algorithm>
 #include <array>
 #include <span>
 
+#include "acceptance/star_proof.hpp"
+
 namespace stiv {
 
 namespace {
-
-/// Stars of more triangles are left to the tests of pairs, which are more work by then in any case.
-constexpr std::size_t most_triangles = 32;
-
-// A determinant of two differences and an exact direction: each of its six products carries at most seven roundings.
-// 32 u times a bound of their magnitudes covers that, and the rounding of the bound itself.
-constexpr double rounding = 32 * 0x1p-53;
-// More than what underflow can take from a determinant.
-constexpr double underflow = 0x1p-960;
 
 std::size_t at(Index index) { return static_cast<std::size_t>(index); }
 
@@ -50,7 +42,6 @@ struct SpokeTable {
 /// Puts spokes into the order in which each begins where the one before ends. False if they are not one such chain, in
 /// which no vertex begins or ends two.
 bool chain(std::span<Spoke> spokes) {
-  if (spokes.empty() || spokes.size() > most_triangles) return false;
   for (std::size_t k = 0; k < spokes.size(); ++k)
     for (std::size_t other = 0; other < spokes.size(); ++other)
       if (other != k && (spokes[k].from == spokes[other].from || spokes[k].to == spokes[other].to)) return false;
@@ -68,21 +59,11 @@ bool chain(std::span<Spoke> spokes) {
   return true;
 }
 
-double largest(const Vector3& vector) { return vector.cwiseAbs().maxCoeff(); }
-
-/// Signs of the turns between directions from a vertex, seen along `view`; 0 where rounding leaves them open.
-struct Turns {
-  Vector3 view;
-  double scale;
-
-  explicit Turns(const Vector3& along) : view(along), scale(rounding * 6 * largest(along)) {}
-
-  int sign(const Vector3& from, double from_size, const Vector3& to, double to_size) const {
-    const double turn = view.dot(from.cross(to));
-    const double error = scale * from_size * to_size + underflow;
-    return (turn > error) - (turn < -error);
-  }
-};
+/// Of one triangle alone, nothing is to be left out; stars of many are left to the tests of pairs, which are more work
+/// by then in any case.
+bool may_be_proven(std::span<Spoke> spokes) {
+  return spokes.size() > 1 && spokes.size() <= StarBlock::most_triangles && chain(spokes);
+}
 
 }  // namespace
 
@@ -93,54 +74,48 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   for (Index vertex = 0; vertex < vertex_count; ++vertex) {
     start_.push_back(static_cast<Index>(rims_.size()));
     const std::span<Spoke> spokes = table.of(vertex);
-    if (spokes.size() < 2 || !chain(spokes)) continue;  // of one triangle alone, nothing is to be left out
+    if (!may_be_proven(spokes)) continue;
+    stars_.push_back(vertex);
     for (const Spoke& spoke : spokes) rims_.push_back(spoke.from);
     rims_.push_back(spokes.back().to);
   }
   start_.push_back(static_cast<Index>(rims_.size()));
+  std::stable_sort(stars_.begin(), stars_.end(), [this](Index a, Index b) { return shape(a) < shape(b); });
 }
 
-bool Stars::proven_free(Index vertex, const PositionsView& q) const {
-  const std::span<const Index> rim = this->rim(vertex);
-  if (rim.empty()) return false;
-  const std::size_t count = rim.size() - 1;
-  const bool closed = rim.front() == rim.back();
-
-  std::array<Vector3, most_triangles + 1> arm;
-  std::array<double, most_triangles + 1> size;
-  for (std::size_t k = 0; k <= count; ++k) {
-    arm[k] = (q.row(rim[k]) - q.row(vertex)).transpose();
-    size[k] = largest(arm[k]);
-  }
-  Vector3 view = Vector3::Zero();
-  for (std::size_t k = 0; k < count; ++k) view += arm[k].cross(arm[k + 1]);
-
-  const Turns turns(view);
-  int before = 1;  // of the turn from the first arm to arm k: the first triangle begins there
-  for (std::size_t k = 0; k < count; ++k) {
-    if (turns.sign(arm[k], size[k], arm[k + 1], size[k + 1]) <= 0) return false;
-    const int after = turns.sign(arm[0], size[0], arm[k + 1], size[k + 1]);
-    // Does triangle k hold the first arm, on which it neither begins nor ends?
-    const bool on_it = k == 0 || (closed && k + 1 == count);
-    if (!on_it && before <= 0 && after >= 0) return false;
-    before = after;
-  }
-  return true;
-}
-
-std::vector<unsigned char> Stars::find_free(const PositionsView& q, const std::vector<unsigned char>& moved,
+std::vector<unsigned char> Stars::find_free(const PointRows& points, const std::vector<unsigned char>& moved,
                                             const Execution& execution) const {
   constexpr Index chunk_size = 4096;
-  std::vector<unsigned char> free(at(static_cast<Index>(q.rows())), 0);
+  std::vector<unsigned char> free(points.size(), 0);
   const auto has_moved = [&](Index vertex) { return moved[at(vertex)] != 0; };
-  execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
-    for (Index vertex = begin; vertex < end; ++vertex) {
+  execution.for_chunks(static_cast<Index>(stars_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    StarBlock block;
+    const auto prove = [&] {
+      if (block.count == 0) return;
+      const auto proven = prove_free(block, points);
+      for (std::size_t k = 0; k < block.count; ++k) free[at(block.vertices[k])] = proven[k];
+      block.count = 0;
+    };
+    for (std::size_t k = at(begin); k < at(end); ++k) {
+      const Index vertex = stars_[k];
       const std::span<const Index> around = rim(vertex);
-      if (moved.empty() || has_moved(vertex) || std::any_of(around.begin(), around.end(), has_moved))
-        free[at(vertex)] = proven_free(vertex, q);
+      if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) continue;
+      const auto [triangles, closed] = shape(vertex);
+      if (block.count == StarBlock::capacity || triangles != block.triangles || closed != block.closed) prove();
+      block.triangles = triangles;
+      block.closed = closed;
+      block.vertices[block.count] = vertex;
+      block.rims[block.count] = around.data();
+      ++block.count;
     }
+    prove();
   });
   return free;
+}
+
+std::pair<std::size_t, bool> Stars::shape(Index vertex) const {
+  const std::span<const Index> around = rim(vertex);
+  return {around.size() - 1, around.front() == around.back()};
 }
 
 std::span<const Index> Stars::rim(Index vertex) const {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "stiv/execution.hpp"
-#include "stiv/types.hpp"
+#include "acceptance/point_rows.hpp"
 
 namespace stiv {
 
@@ -19,12 +20,9 @@ class Stars {
   /// @param triangles (F, 3) corners, repeated ones allowed
   Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
 
-  /// Is the star of `vertex` proven free at positions q? True is certain; false means nothing.
-  bool proven_free(Index vertex, const PositionsView& q) const;
-
-  /// 1 for each vertex whose star is proven free. `moved` as in IntersectionTest::is_free: stars in which nothing moved
-  /// are not asked for, and get 0.
-  std::vector<unsigned char> find_free(const PositionsView& q, const std::vector<unsigned char>& moved,
+  /// 1 for each vertex whose star is proven free, which is certain; 0 means nothing. `moved` as in
+  /// IntersectionTest::is_free: stars in which nothing moved are not asked for, and get 0.
+  std::vector<unsigned char> find_free(const PointRows& points, const std::vector<unsigned char>& moved,
                                        const Execution& execution) const;
 
  private:
@@ -32,8 +30,12 @@ class Stars {
   /// first. Empty: the triangles are not a single fan, or too many.
   std::span<const Index> rim(Index vertex) const;
 
+  /// How many triangles, and whether they are closed.
+  std::pair<std::size_t, bool> shape(Index vertex) const;
+
   std::vector<Index> start_;  // of each rim, (N + 1)
   std::vector<Index> rims_;
+  std::vector<Index> stars_;  // vertices with a rim, those of one shape next to each other
 };
 
 }  // namespace stiv

@@ -8,6 +8,7 @@
 
 #include "acceptance/stars.hpp"
 #include "stiv/acceptance/intersections.hpp"
+#include "vector_targets.hpp"
 
 using namespace stiv;
 
@@ -47,8 +48,17 @@ bool any_pair_intersects(const CornerRows& triangles, const Positions& q) {
   return false;
 }
 
+std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, const std::vector<unsigned char>& moved) {
+  const Execution execution(2);
+  return stars.find_free(point_rows(q, execution), moved, execution);
+}
+
+/// The star of vertex 0, by whatever vector target.
 bool proven(const CornerRows& triangles, const Positions& q) {
-  return Stars(triangles, static_cast<Index>(q.rows())).proven_free(0, q);
+  const Stars stars(triangles, static_cast<Index>(q.rows()));
+  const auto results = for_each_vector_target([&] { return find_free(stars, q, {})[0]; });
+  for (const unsigned char result : results) CHECK(result == results.front());
+  return results.front() != 0;
 }
 
 }  // namespace
@@ -122,11 +132,36 @@ TEST_CASE("stars: what is proven free has no pair that intersects") {
 TEST_CASE("stars: only those of which a vertex moved are asked for") {
   Positions q = around(6, 1);
   const Stars stars(fan(6, true), 7);
-  const Execution execution(2);
-  const std::vector<unsigned char> all = stars.find_free(q, {}, execution);
+  const std::vector<unsigned char> all = find_free(stars, q, {});
   CHECK(all == std::vector<unsigned char>(7, 1));
-  CHECK(stars.find_free(q, std::vector<unsigned char>(7, 0), execution) == std::vector<unsigned char>(7, 0));
+  CHECK(find_free(stars, q, std::vector<unsigned char>(7, 0)) == std::vector<unsigned char>(7, 0));
   std::vector<unsigned char> moved(7, 0);
   moved[1] = 1;  // its own star, the centre's and those of both neighbours
-  CHECK(stars.find_free(q, moved, execution) == std::vector<unsigned char>{1, 1, 1, 0, 0, 0, 1});
+  CHECK(find_free(stars, q, moved) == std::vector<unsigned char>{1, 1, 1, 0, 0, 0, 1});
+}
+
+TEST_CASE("stars: many of several shapes at once are proven as each by itself") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  CornerRows all;
+  std::vector<unsigned char> expected;
+  Positions q(0, 3);
+  std::vector<Index> centres;
+  for (int star = 0; star < 300; ++star) {
+    const auto count = static_cast<Index>(3 + random() % 6), first = static_cast<Index>(q.rows());
+    const CornerRows triangles = fan(count, random() % 2 == 0);
+    Positions own = around(count, 1);
+    for (Index row = 0; row <= count; ++row)
+      own.row(row) += (star % 3) * 0.4 * Eigen::RowVector3d(number(random), number(random), number(random));
+    expected.push_back(proven(triangles, own));
+    centres.push_back(first);
+    for (const auto& [a, b, c] : triangles) all.push_back({first + a, first + b, first + c});
+    q.conservativeResize(first + own.rows(), 3);
+    q.bottomRows(own.rows()) = own;
+  }
+  const std::vector<unsigned char> found = find_free(Stars(all, static_cast<Index>(q.rows())), q, {});
+  for (std::size_t star = 0; star < centres.size(); ++star)
+    CHECK(found[static_cast<std::size_t>(centres[star])] == expected[star]);
+  CHECK(std::count(expected.begin(), expected.end(), 1) > 100);
+  CHECK(std::count(expected.begin(), expected.end(), 0) > 50);
 }
