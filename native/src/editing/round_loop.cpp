@@ -40,7 +40,7 @@ bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& a
   const EditOptions& options = problem.options();
   ConstraintSet& kept = progress.kept;
   ++execution.counters.rounds;
-  if (kept.size() > most_constraints(problem) / 2) kept.drop_inactive();
+  if (kept.size() > most_constraints(problem) / 4) kept.drop_inactive();
   const Measurement measured = measure(problem, {events, accepted.surface, outcome.candidate.surface, areas},
                                        progress.round, kept.size(), execution);
   outcome.patches = measured.patches;
