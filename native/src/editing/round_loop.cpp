@@ -16,6 +16,9 @@ namespace {
 /// Where even this part of the way has too many pairs near each other, it is not the motion that makes them.
 constexpr double shortest_part = 0x1p-16;
 
+/// So often a candidate is placed whole to ask whether to give up.
+constexpr int rounds_of_hope = 6;
+
 /// Those that the time budget ended, if they are of the same sub-edit; new ones else.
 RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
   if (!has_begun_rounds(problem, accepted, goal, projection))
@@ -81,7 +84,7 @@ bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& g
 }
 
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
-                        bool at_any_cost, Execution& execution) {
+                        bool at_any_cost, const StatePredicate& hopeless, Execution& execution) {
   const EditOptions& options = problem.options();
   const bool is_lcp = options.solver == ConstraintSolver::lcp;
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
@@ -97,6 +100,11 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     if (round == options.max_rounds || found)
       outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
     if (round == options.max_rounds) return outcome;
+    if (hopeless && round > 0 && round % rounds_of_hope == 0 && accumulate) {
+      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
+      outcome.given_up = hopeless(outcome.candidate);
+      if (outcome.given_up) return outcome;
+    }
     if (!found) {
       std::optional<Events> events = find_some(problem, accepted, outcome, progress, execution);
       outcome.too_far = !events;
@@ -123,19 +131,20 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
 }
 
 RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
-                                     Projection projection, double& part, Execution& execution) {
+                                     Projection projection, double& part, const StatePredicate& hopeless,
+                                     Execution& execution) {
   const auto aim_at = [&](double share) {
     return interpolate(accepted.controls, goal, share, problem.rotation_rows());
   };
   for (part = begun_part(problem, accepted, projection, std::min(1.0, 2 * part), aim_at); part >= shortest_part;
        part /= 2) {
     const Controls aim = aim_at(part);
-    RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, execution);
+    RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, hopeless, execution);
     if (!outcome.too_far) return outcome;
     rounds_toward(problem, accepted, aim_at(part / 2), projection);
     execution.note_gain();  // a call that ends here is taken up with the half
   }
-  return run_rounds(problem, accepted, aim_at(part), projection, true, execution);
+  return run_rounds(problem, accepted, aim_at(part), projection, true, hopeless, execution);
 }
 
 }  // namespace stiv

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+
 #include "editing/problem.hpp"
 
 namespace stiv {
+
+using StatePredicate = std::function<bool(const State&)>;
 
 /// What the rounds of one sub-edit came to.
 struct RoundOutcome {
@@ -11,6 +15,7 @@ struct RoundOutcome {
   bool clear = false;        ///< the step from the accepted state to the candidate was detected to be without events
   bool too_far = false;      ///< the step to the candidate was too far to be looked at: no round took place
   bool at_any_cost = false;  ///< steps were looked at however far
+  bool given_up = false;     ///< as the caller wished
   Events events;             ///< of the last round that had any
   Index patches = 0;
 };
@@ -23,13 +28,15 @@ struct RoundOutcome {
 /// only if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs. Candidates
 /// are rounded as they will be stored *before* they are looked at, so that the round without events is itself the check
 /// of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
+/// `hopeless`, if given, is asked of some candidates whether to give up there.
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
-                        bool at_any_cost, Execution& execution);
+                        bool at_any_cost, const StatePredicate& hopeless, Execution& execution);
 
 /// The same toward `part` of the way to the goal: of twice the part given, or of half, a quarter and so on of that, the
 /// farthest that detection can look at in bounded time and memory, so that no motion, however far, exceeds them.
 RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
-                                     Projection projection, double& part, Execution& execution);
+                                     Projection projection, double& part, const StatePredicate& hopeless,
+                                     Execution& execution);
 
 /// Did a call that the time budget ended begin these rounds?
 bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection);

@@ -45,23 +45,27 @@ bool moves_pinned_controls(const Problem& problem, const Controls& from, const C
 
 /// The first answer of an edit. Constraints that are kept were linearised at other candidates, and may together lead
 /// far away, where the surface folds a lot on the way to the goal: one that raises the energy though nothing pinned
-/// pushes is compared with that of Algorithm 1, which keeps none. The better one is taken.
+/// pushes is compared with that of Algorithm 1, which keeps none. The better one is taken. More constraints raise it
+/// only further, so that such rounds are given up early, and taken to their end only if the others come to nothing.
 RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& aim, double& part, Execution& execution) {
   const auto energy_of = [&](const RoundOutcome& outcome) { return energy(outcome.candidate.surface, aim.surface); };
-  const auto rounds = [&](Projection projection) {
-    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, execution);
+  const auto rounds = [&](Projection projection, const StatePredicate& hopeless = {}) {
+    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, hopeless, execution);
   };
   if (has_begun_rounds(problem, accepted, aim.controls, Projection::from_last_round))
     return rounds(Projection::from_last_round);
-  RoundOutcome outcome = rounds(Projection::from_goal);
-  const bool kept = problem.options().accumulated_rounds > 0;
-  const bool strayed = kept && outcome.clear && part == 1 &&
-                       energy_of(outcome) > energy(accepted.surface, aim.surface) &&
-                       !moves_pinned_controls(problem, accepted.controls, aim.controls);
+  const bool may_stray =
+      problem.options().accumulated_rounds > 0 && !moves_pinned_controls(problem, accepted.controls, aim.controls);
+  if (!may_stray) return rounds(Projection::from_goal);
+  const double before = energy(accepted.surface, aim.surface);
+  const auto strays = [&](const State& state) { return part == 1 && energy(state.surface, aim.surface) > before; };
+  RoundOutcome outcome = rounds(Projection::from_goal, strays);
+  const bool strayed = outcome.given_up || (outcome.clear && strays(outcome.candidate));
   if (!strayed) return outcome;
   RoundOutcome other = rounds(Projection::from_last_round);
-  if (other.clear && energy_of(other) < energy_of(outcome)) return other;
-  return outcome;
+  if (other.clear && (outcome.given_up ? !strays(other.candidate) : energy_of(other) < energy_of(outcome)))
+    return other;
+  return outcome.given_up ? rounds(Projection::from_goal) : outcome;
 }
 
 }  // namespace
@@ -74,7 +78,7 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
     RoundOutcome outcome =
         sub_edit == 0 && !aim.must_improve
             ? first_answer(problem, accepted, aim, part, execution)
-            : run_rounds_within_reach(problem, accepted, aim.controls, Projection::from_goal, part, execution);
+            : run_rounds_within_reach(problem, accepted, aim.controls, Projection::from_goal, part, {}, execution);
     // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
     const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
     const auto agreeable = [&](const State& state) {
