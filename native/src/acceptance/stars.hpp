@@ -27,7 +27,7 @@ class Stars {
 
  private:
   /// The vertices around, in order: triangle k is (vertex, rim k, rim k + 1); around a closed star the last is the
-  /// first. Empty: the triangles are not a single fan, or too many.
+  /// first. Empty: the triangles are not a single fan, or one alone, or too many.
   std::span<const Index> rim(Index vertex) const;
 
   /// How many triangles, and whether they are closed.

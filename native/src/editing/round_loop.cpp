@@ -97,14 +97,11 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     execution.check();
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);
-    if (round == options.max_rounds || found)
-      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-    if (round == options.max_rounds) return outcome;
-    if (hopeless && round > 0 && round % rounds_of_hope == 0 && accumulate) {
-      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-      outcome.given_up = hopeless(outcome.candidate);
-      if (outcome.given_up) return outcome;
-    }
+    const bool last = round == options.max_rounds;
+    const bool asks = hopeless && accumulate && round > 0 && round % rounds_of_hope == 0;
+    if (last || asks || found) outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
+    outcome.given_up = !last && asks && hopeless(outcome.candidate);
+    if (last || outcome.given_up) return outcome;
     if (!found) {
       std::optional<Events> events = find_some(problem, accepted, outcome, progress, execution);
       outcome.too_far = !events;

@@ -46,7 +46,7 @@ bool moves_pinned_controls(const Problem& problem, const Controls& from, const C
 /// The first answer of an edit. Constraints that are kept were linearised at other candidates, and may together lead
 /// far away, where the surface folds a lot on the way to the goal: one that raises the energy though nothing pinned
 /// pushes is compared with that of Algorithm 1, which keeps none. The better one is taken. More constraints raise it
-/// only further, so that such rounds are given up early, and taken to their end only if the others come to nothing.
+/// further, so that such rounds are given up early, and taken to their end only if the others stray as well.
 RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& aim, double& part, Execution& execution) {
   const auto energy_of = [&](const RoundOutcome& outcome) { return energy(outcome.candidate.surface, aim.surface); };
   const auto rounds = [&](Projection projection, const StatePredicate& hopeless = {}) {
@@ -63,9 +63,9 @@ RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& ai
   const bool strayed = outcome.given_up || (outcome.clear && strays(outcome.candidate));
   if (!strayed) return outcome;
   RoundOutcome other = rounds(Projection::from_last_round);
-  if (other.clear && (outcome.given_up ? !strays(other.candidate) : energy_of(other) < energy_of(outcome)))
-    return other;
-  return outcome.given_up ? rounds(Projection::from_goal) : outcome;
+  if (other.clear && !strays(other.candidate)) return other;
+  if (outcome.given_up) outcome = rounds(Projection::from_goal);
+  return other.clear && energy_of(other) < energy_of(outcome) ? other : outcome;
 }
 
 }  // namespace
