@@ -28,7 +28,6 @@ class PrimitiveTree {
     if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
-      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
       tree_->refit_some(incidence_->rows_with(swept.changed()), box_of);
     }
   }
@@ -59,6 +58,8 @@ class PrimitiveTree {
       bodies[place(primitive)] = surface_.body_of(row(primitive)[0]);
     }
     tree_.emplace(centres, bodies, CornerRows{rows_, size});
+    // Needed once few vertices move; made here all the same, so that a long session's memory does not grow by it late.
+    if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
     spread_ = spread(start);
   }
 
