@@ -13,6 +13,7 @@
 #include "detection/common_motion.hpp"
 #include "detection/joined.hpp"
 #include "detection/kept_pairs.hpp"
+#include "detection/pair_key.hpp"
 #include "detection/pair_test.hpp"
 #include "detection/relevance.hpp"
 #include "stiv/error.hpp"
@@ -63,15 +64,10 @@ struct Place {
   const Event* event;
 
   explicit Place(const Event& at)
-      : key{static_cast<std::uint64_t>(at.kind), two(at.vertices[0], at.vertices[1]),
-            two(at.vertices[2], at.vertices[3])},
+      : key{static_cast<std::uint64_t>(at.kind), pair_key(at.vertices[0], at.vertices[1]),
+            pair_key(at.vertices[2], at.vertices[3])},
         event(&at) {}
   bool operator<(const Place& other) const { return key < other.key; }
-
- private:
-  static std::uint64_t two(Index a, Index b) {
-    return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b);
-  }
 };
 
 }  // namespace

@@ -2,11 +2,11 @@
 #include "detection/kept_pairs.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 #include <utility>
 
 #include "detection/close_pairs.hpp"
+#include "detection/pair_key.hpp"
 #include "detection/relevance.hpp"
 
 namespace stiv {
@@ -15,12 +15,9 @@ namespace {
 
 constexpr EventKind kinds[] = {EventKind::vertex_face, EventKind::edge_edge};
 
-/// Indices are not negative: both as one number.
-std::uint64_t key(const Candidate& pair) {
-  return static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
-}
-
-constexpr auto before = [](const Candidate& a, const Candidate& b) { return key(a) < key(b); };
+constexpr auto before = [](const Candidate& a, const Candidate& b) {
+  return pair_key(a.first, a.second) < pair_key(b.first, b.second);
+};
 
 /// Sorted pairs and others, each once.
 std::vector<Candidate> united(const std::vector<Candidate>& sorted, std::vector<Candidate> others) {
