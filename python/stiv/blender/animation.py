@@ -14,7 +14,7 @@ def controlled_paths(data: bpy.types.ID) -> set[str]:
         return set()
     paths = {driver.data_path for driver in animation.drivers if not driver.mute}
     for action in _actions(animation):
-        paths.update(curve.data_path for curve in _curves(action) if not curve.mute)
+        paths.update(curve.data_path for curve in channel_curves(action) if not curve.mute)
     return paths
 
 
@@ -28,7 +28,7 @@ def _actions(animation: bpy.types.AnimData) -> Iterator[bpy.types.Action]:
                     yield strip.action
 
 
-def _curves(action: Any) -> Iterator[Any]:
+def channel_curves(action: Any) -> Iterator[Any]:
     """Curves of an action: by layers where Blender has them (4.4 and later), else its plain list."""
     if not hasattr(action, "layers"):
         yield from action.fcurves

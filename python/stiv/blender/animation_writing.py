@@ -18,7 +18,9 @@ from stiv.blender.animation_parts import MovingPart, stored_placement
 from stiv.blender.animation_poses import Track
 from stiv.blender.animation_resolving import Key, Resolved
 from stiv.blender.arrays import Floats, Singles, transform_points
+from stiv.blender.fixed_triangulation import flipped_faces, split_faces
 from stiv.blender.frame_checking import go_to
+from stiv.blender.mesh_reading import evaluated_mesh
 
 
 def write_animation(context: bpy.types.Context, tracks: Sequence[Track], resolved: Resolved) -> None:
@@ -38,7 +40,26 @@ def write_animation(context: bpy.types.Context, tracks: Sequence[Track], resolve
                 _write_placements(part, tracks, keys)
             else:
                 _write_shape(part, tracks[part.tracks[0]], meshes[part.tracks[0]], keys)
+    _fix_triangulations(context, tracks, resolved)
     go_to(context.scene, resolved.keys[0].frame)
+
+
+def _fix_triangulations(context: bpy.types.Context, tracks: Sequence[Track], resolved: Resolved) -> None:
+    """Splits the faces that Blender would triangulate otherwise at a key than at the first frame.
+
+    What was solved for are the triangles of the first frame; others may intersect.
+    """
+    shapes = [tracks[part.tracks[0]].mesh for part in resolved.parts if part.frame is not None]
+    flipped: list[set[int]] = [set() for _ in shapes]
+    for key in resolved.keys if shapes else ():
+        go_to(context.scene, key.frame)
+        graph = context.evaluated_depsgraph_get()
+        for shape, faces in zip(shapes, flipped, strict=True):
+            with evaluated_mesh(shape.owner.find().evaluated_get(graph)) as mesh:
+                faces.update(flipped_faces(mesh, shape.triangles).tolist())
+    for shape, faces in zip(shapes, flipped, strict=True):
+        if faces:
+            split_faces(shape.owner.find().data, sorted(faces), shape.triangles, shape.faces)
 
 
 def _evaluated_meshes(

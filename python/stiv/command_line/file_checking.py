@@ -63,12 +63,12 @@ def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
         context = files.open_blend(path)
     checking = require_blender("stiv.blender.frame_checking", path)
     try:
-        yield from checking.check_frames(context, _frames(choices, checking, context), choices.objects)
+        yield from checking.check_frames(context, _frames(path, choices, checking, context), choices.objects)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 
 
-def _frames(choices: Choices, checking: Any, context: Any) -> list[float]:
+def _frames(path: Path, choices: Choices, checking: Any, context: Any) -> list[float]:
     if choices.frames is None:
         return []
     chosen = choices.frames
@@ -76,7 +76,9 @@ def _frames(choices: Choices, checking: Any, context: Any) -> list[float]:
     count = (last - first) * choices.subframes // step
     if count >= MAX_FRAMES:
         raise InputError(f"{count} frames; at most {MAX_FRAMES} are checked")
-    return [first + number * step / choices.subframes for number in range(count + 1)]
+    frames = [first + number * step / choices.subframes for number in range(count + 1)]
+    keyed: list[float] = require_blender("stiv.blender.keyed_frames", path).with_subframe_keys(frames)
+    return keyed
 
 
 def _summed(

@@ -77,10 +77,13 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dict[str, Any]]]:
     """What Blender shows to meet in the result, and what each frame came to; writes the file if nothing meets."""
     scene = arguments.scene
-    files, poses, resolving, writing, checking = (
+    files, poses, resolving, writing, checking, keyed = (
         require_blender(f"stiv.blender.{name}", scene)
-        for name in ("blend_files", "animation_poses", "animation_resolving", "animation_writing", "frame_checking")
-    )
+        for name in (
+            "blend_files", "animation_poses", "animation_resolving", "animation_writing", "frame_checking",
+            "keyed_frames",
+        )
+    )  # fmt: skip
     context = files.open_blend(scene)
     chosen = arguments.frames
     first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
@@ -98,13 +101,19 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
     try:
         with written_atomically(arguments.output) as temporary:
             files.save_blend(temporary)
-            looks = checking.check_frames(files.open_blend(temporary), [key.frame for key in resolved.keys])
+            looks = checking.check_frames(files.open_blend(temporary), _tested(frames, keyed))
             left = [found for look in looks for found in look.findings if not _keeps(found, alike)]
             if left:
                 raise _NotFreeError
     except _NotFreeError:
         pass
     return left, resolved.frames
+
+
+def _tested(frames: Sequence[int], keyed: Any) -> list[float]:
+    """What `stiv check` looks at without options: all frames, those between two that were solved too, and all keys."""
+    found: list[float] = keyed.with_subframe_keys(range(frames[0], frames[-1] + 1))
+    return found
 
 
 class _NotFreeError(Exception):
