@@ -10,8 +10,6 @@ import bpy
 
 from stiv.blender.animation import channel_curves
 
-Action = bpy.types.Action
-
 
 def with_subframe_keys(frames: Sequence[float]) -> list[float]:
     """The frames, ascending, with all keys of the file's animations that lie between two of them, off whole frames.
@@ -44,7 +42,7 @@ def _animations() -> Iterator[bpy.types.AnimData]:
         yield from (block.animation_data for block in collection if block.animation_data is not None)
 
 
-def _times(action: Action) -> Iterator[float]:
+def _times(action: bpy.types.Action) -> Iterator[float]:
     for curve in channel_curves(action):
         if not curve.mute:
             yield from (key.co[0] for key in curve.keyframe_points)

@@ -16,7 +16,7 @@ from stiv.blender.lattice_points import check_lattice, lattice_part
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
 from stiv.blender.references import ObjectReference
-from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlookers, rigid_groups
+from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlookers, rigid_groups, with_passengers
 from stiv.blender.rigid_placement import rigid_part
 from stiv.blender.settings import EditSettings
 from stiv.blender.soft_handles import soft_parts
@@ -37,6 +37,7 @@ def make_parts(
     groups = rigid_groups(movers)
     bent = {mover.reference: _bent_by(mover.reference, meshes) for mover in movers if mover.role == "lattice"}
     _check_independent(movers, groups, bent, meshes)
+    groups = with_passengers(groups, {mesh.owner.name for mesh in meshes})
     parts = [_rigid(group, meshes, settings, kind) for group in groups]
     for mover in movers:
         if mover.role == "cage":

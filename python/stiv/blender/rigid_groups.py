@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects that move as one: a selected object, all that hangs on it, and what their modifiers tie together."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 import bpy
@@ -37,6 +37,23 @@ def rigid_groups(movers: list[Mover]) -> list[RigidGroup]:
                 "not move along; select that as well, apply the modifier, or deform the object instead"
             )
     return groups
+
+
+def with_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:
+    """The groups with a surface; the first selected one takes selected groups without surface along.
+
+    shown: names of the objects with a surface. A group without surface meets nothing and cannot be solved for.
+    """
+    solid = [group for group in groups if not group.members.isdisjoint(shown)]
+    first = next((group for group in solid if group.roots[0].selected), None)
+    if first is None:
+        return solid
+    passengers = [group for group in groups if group not in solid and group.roots[0].selected]
+    whole = RigidGroup(
+        tuple(root for group in (first, *passengers) for root in group.roots),
+        frozenset().union(*(group.members for group in (first, *passengers))),
+    )
+    return [whole if group is first else group for group in solid]
 
 
 def check_onlookers(moved: Iterable[str], names: Iterable[str]) -> None:

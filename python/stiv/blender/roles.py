@@ -116,6 +116,10 @@ def once(movers: list[Mover]) -> list[Mover]:
 
 
 def has_surface(ob: bpy.types.Object) -> bool:
-    """Can the object or what hangs on it have a surface? Lattices are kept, to be refused or moved with their mesh."""
+    """Can the object or what hangs on it have a surface?
+
+    Lattices are kept, to be refused or moved with their mesh; volumes, to be carried along.
+    """
     family = [ob, *ob.children_recursive]
-    return any(each.type in SURFACE_TYPES or each.type == "LATTICE" or each.instance_type != "NONE" for each in family)
+    types = SURFACE_TYPES | {"LATTICE", "VOLUME"}
+    return any(each.type in types or each.instance_type != "NONE" for each in family)
