@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects an object's modifiers and constraints look at."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import bpy
+
+from stiv.blender.evaluations import VIEWPORT, is_active
 
 
 @dataclass(frozen=True)
@@ -17,19 +19,14 @@ class Dependency:
     through: str
 
 
-def is_active(modifier: bpy.types.Modifier, ob: bpy.types.Object) -> bool:
-    """Does the modifier act in the viewport, in the object's mode?"""
-    return bool(modifier.show_viewport and (ob.mode != "EDIT" or modifier.show_in_editmode))
-
-
-def dependencies(ob: bpy.types.Object) -> Iterator[Dependency]:
-    """What the active modifiers and constraints of an object look at, the object itself left out."""
+def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,)) -> Iterator[Dependency]:
+    """What modifiers active in an evaluation, and constraints, of an object look at, the object itself left out."""
     for modifier in ob.modifiers:
-        if is_active(modifier, ob):
-            yield from _named(ob, f'modifier "{modifier.name}"', _looked_at(modifier))
+        if any(is_active(modifier, ob, evaluation) for evaluation in evaluations):
+            yield from _named(ob, f'modifier "{modifier.name}"', looked_at(modifier))
     for constraint in ob.constraints:
         if not constraint.mute:
-            yield from _named(ob, f'constraint "{constraint.name}"', _looked_at(constraint))
+            yield from _named(ob, f'constraint "{constraint.name}"', looked_at(constraint))
 
 
 def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[Dependency]:
@@ -38,7 +35,8 @@ def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[
             yield Dependency(ob.name, other.name, through)
 
 
-def _looked_at(owner: Any) -> Iterator[bpy.types.Object]:
+def looked_at(owner: Any) -> Iterator[bpy.types.Object]:
+    """Objects that a modifier or constraint looks at."""
     values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
     if isinstance(owner, bpy.types.NodesModifier):
         values += _inputs(owner)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that is visible, as Blender evaluates it, in world space."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
 import bpy
@@ -9,9 +10,19 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, Singles, as_matrix, transform_points
+from stiv.blender.evaluations import (
+    EVALUATIONS,
+    RENDER,
+    SHOWN,
+    VIEWPORT,
+    Differences,
+    find_differences,
+    rendered_objects,
+)
 from stiv.blender.mesh_reading import evaluated_mesh, read_edges, read_loose_numbers, read_positions, read_triangles
 from stiv.blender.near_faces import NearFaces, read_near_faces
 from stiv.blender.references import ObjectReference
+from stiv.blender.twins import Twins, open_twins
 
 SURFACE_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"})
 
@@ -30,6 +41,8 @@ class VisibleMesh:
         loose_edges: edges of no face, (l, 2).
         loose_numbers: their numbers among all edges, (l,).
         near: which part of Blender's mesh this is; None: all of it.
+        read_in: the evaluation that it was read from.
+        exists_in: the evaluations that show exactly this mesh.
     """
 
     owner: ObjectReference
@@ -41,6 +54,8 @@ class VisibleMesh:
     loose_edges: Indices
     loose_numbers: Indices
     near: NearFaces | None = None
+    read_in: str = SHOWN
+    exists_in: frozenset[str] = frozenset(EVALUATIONS)
 
     @property
     def is_instance(self) -> bool:
@@ -86,33 +101,115 @@ class Placed:
         return Placed(self.owner, self.local[vertices], self.matrix)
 
 
+class Opened:
+    """Evaluations of a scene that can be read, for as long as `open_evaluations` lasts."""
+
+    def __init__(self, context: bpy.types.Context, wanted: Collection[str], differences: Differences) -> None:
+        """Use `open_evaluations`."""
+        self._context = context
+        self._wanted = frozenset(wanted)
+        self._differences = differences
+        self.twins: dict[str, Twins] = {}
+
+    @property
+    def read_in(self) -> tuple[str, ...]:
+        """The evaluations that have to be read."""
+        return (SHOWN, *self.twins)
+
+    def exists_in(self, read_in: str, number: int) -> frozenset[str]:
+        """The wanted evaluations that show what this one shows of an object, by its session number."""
+        different, found = self._differences, {read_in}
+        if read_in == SHOWN and number not in different.viewport:
+            found.add(VIEWPORT)
+        if VIEWPORT in found and number in different.rendered and number not in different.render:
+            found.add(RENDER)
+        return frozenset(found & self._wanted)
+
+    def instances(
+        self, read_in: str, is_wanted: Callable[[bpy.types.Object], bool]
+    ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Object, bpy.types.Object]]:
+        """Each mesh that an evaluation shows, the object that it belongs to, and the one whose data it is."""
+        twins = self.twins.get(read_in)
+        graph = self._context.evaluated_depsgraph_get() if twins is None else twins.depsgraph
+        for instance in graph.object_instances:
+            if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
+                continue
+            owner = instance.parent.original if instance.is_instance else instance.object.original
+            source = instance.instance_object.original if instance.is_instance else owner
+            if twins is not None:
+                owner, source = twins.owner(owner), twins.owner(source)
+            if is_wanted(owner):
+                yield instance, owner, source
+
+    def evaluated(self, read_in: str, owner: ObjectReference) -> bpy.types.Object:
+        """An object as evaluated."""
+        if read_in in self.twins:
+            return self.twins[read_in].evaluated(owner)
+        return owner.find().evaluated_get(self._context.evaluated_depsgraph_get())
+
+
+@contextmanager
+def open_evaluations(context: bpy.types.Context, wanted: Collection[str]) -> Iterator[Opened]:
+    """Make evaluations readable: the one shown now, and copies of the objects that differ in another one."""
+    differences = find_differences(context, wanted)
+    opened = Opened(context, wanted, differences)
+    with ExitStack() as stack:
+        for evaluation, numbers in ((VIEWPORT, differences.viewport), (RENDER, differences.render)):
+            objects = [ob for ob in bpy.data.objects if ob.session_uid in numbers] if evaluation in wanted else []
+            if objects:
+                shown = _rendered(differences) if evaluation == RENDER else (lambda ob: is_visible(context, ob))
+                opened.twins[evaluation] = stack.enter_context(open_twins(context, evaluation, objects, shown))
+        yield opened
+
+
+def _rendered(differences: Differences) -> Callable[[bpy.types.Object], bool]:
+    return lambda ob: ob.session_uid in differences.rendered
+
+
 def read_scene(
     context: bpy.types.Context,
     accept: Callable[[str], bool] = lambda name: True,
     box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
+    evaluations: Collection[str] = (SHOWN,),
 ) -> EvaluatedScene:
-    """Read every visible mesh whose owner's name is accepted; with a box of the world, (3,) and (3,), what touches it.
+    """Read every mesh whose owner's name is accepted; with a box of the world, (3,) and (3,), what touches it.
 
+    evaluations: which ones to read; a mesh that several of them show comes once, and says in which it exists.
     Curves, text, surfaces, metaballs and instances come as the meshes they show. Local view is respected where the
-    context has a 3D view. Raises InputError naming object and vertex when a coordinate is not finite.
+    context has a 3D view, but not by the render. Raises InputError naming object and vertex when a coordinate is not
+    finite.
     """
     shown: dict[int, bool] = {}
 
     def is_shown(owner: bpy.types.Object) -> bool:
         if owner.session_uid not in shown:
-            shown[owner.session_uid] = accept(owner.name) and is_visible(context, owner)
+            shown[owner.session_uid] = is_visible(context, owner)
         return shown[owner.session_uid]
 
-    meshes = [_read_mesh(instance, owner, box_of(owner.name)) for instance, owner in _mesh_instances(context, is_shown)]
-    return EvaluatedScene(tuple(meshes), _hidden_count(context))
+    meshes: list[VisibleMesh] = []
+    with open_evaluations(context, evaluations) as opened:
+        for read_in in opened.read_in:
+
+            def is_wanted(owner: bpy.types.Object, read_in: str = read_in) -> bool:
+                exists = opened.exists_in(read_in, owner.session_uid)
+                return bool(exists) and accept(owner.name) and (read_in == RENDER or is_shown(owner))
+
+            for instance, owner, source in opened.instances(read_in, is_wanted):
+                exists_in = opened.exists_in(read_in, owner.session_uid)
+                meshes.append(_read_mesh(instance, owner, source, box_of(owner.name), read_in, exists_in))
+    return EvaluatedScene(tuple(meshes), _left_out_count(context, evaluations))
 
 
-def read_placed(context: bpy.types.Context, owners: frozenset[int]) -> list[Placed]:
+def read_placed(
+    context: bpy.types.Context, owners: frozenset[int], opened: Opened | None = None, read_in: str = SHOWN
+) -> list[Placed]:
     """Positions of what these owners (session numbers) show, in the order of `read_scene`; much cheaper than all."""
+    source = opened or Opened(context, (SHOWN,), Differences())
     placed = []
-    for instance, owner in _mesh_instances(context, lambda ob: ob.session_uid in owners):
+    for instance, owner, _ in source.instances(read_in, lambda ob: ob.session_uid in owners):
         with evaluated_mesh(instance.object) as mesh:
-            placed.append(Placed(owner, read_positions(mesh), as_matrix(instance.matrix_world)))
+            matrix = as_matrix(instance.matrix_world)
+            placed.append(Placed(ObjectReference.of(owner), read_positions(mesh), matrix))
     return placed
 
 
@@ -126,34 +223,26 @@ def _local_view(context: bpy.types.Context) -> bpy.types.SpaceView3D | None:
     return space if isinstance(space, bpy.types.SpaceView3D) and space.local_view is not None else None
 
 
-def _mesh_instances(
-    context: bpy.types.Context, is_shown: Callable[[bpy.types.Object], bool]
-) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, ObjectReference]]:
-    for instance in context.evaluated_depsgraph_get().object_instances:
-        if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
-            continue
-        owner = instance.parent.original if instance.is_instance else instance.object.original
-        if is_shown(owner):
-            yield instance, ObjectReference.of(owner)
-
-
 def _read_mesh(
-    instance: bpy.types.DepsgraphObjectInstance, owner: ObjectReference, box: tuple[Floats, Floats] | None
+    instance: bpy.types.DepsgraphObjectInstance,
+    shown_by: bpy.types.Object,
+    data_of: bpy.types.Object,
+    box: tuple[Floats, Floats] | None,
+    read_in: str,
+    exists_in: frozenset[str],
 ) -> VisibleMesh:
-    source = instance.instance_object.original.name if instance.is_instance else owner.name
+    owner, source, near = ObjectReference.of(shown_by), data_of.name, None
     matrix = as_matrix(instance.matrix_world)
     with evaluated_mesh(instance.object) as mesh:
         if box is not None:
             near = read_near_faces(mesh, matrix, *box)
-            found = VisibleMesh(
-                owner, source, near.local, matrix, near.triangles, near.faces, near.loose_edges, near.loose_numbers,
-                near,
-            )  # fmt: skip
+            data = (near.local, matrix, near.triangles, near.faces, near.loose_edges, near.loose_numbers)
         else:
             triangles, faces = read_triangles(mesh)
             loose = read_loose_numbers(mesh)
             edges = read_edges(mesh)[loose] if len(loose) else np.empty((0, 2), np.int32)
-            found = VisibleMesh(owner, source, read_positions(mesh), matrix, triangles, faces, edges, loose)
+            data = (read_positions(mesh), matrix, triangles, faces, edges, loose)
+    found = VisibleMesh(owner, source, *data, near, read_in, exists_in)
     _check_finite(found)
     return found
 
@@ -167,6 +256,11 @@ def _check_finite(mesh: VisibleMesh) -> None:
         raise InputError(f'object "{mesh.owner.name}", vertex {vertex}: coordinate is not finite')
 
 
-def _hidden_count(context: bpy.types.Context) -> int:
-    shown = {ob.session_uid for ob in context.view_layer.objects if is_visible(context, ob)}
+def _left_out_count(context: bpy.types.Context, evaluations: Collection[str]) -> int:
+    """Objects with a surface that none of the evaluations shows."""
+    shown: set[int] = set()
+    if SHOWN in evaluations or VIEWPORT in evaluations:
+        shown |= {ob.session_uid for ob in context.view_layer.objects if is_visible(context, ob)}
+    if RENDER in evaluations:
+        shown |= rendered_objects(context.view_layer)
     return sum(ob.type in SURFACE_TYPES and ob.session_uid not in shown for ob in context.scene.objects)

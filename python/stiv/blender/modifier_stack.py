@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 
 from stiv import InputError
-from stiv.blender.dependencies import is_active
+from stiv.blender.evaluations import is_active
 from stiv.blender.references import ObjectReference
 
 # Leave every position as it is, and the vertices' number and order.

@@ -10,8 +10,8 @@ from stiv import InputError
 from stiv.blender.arrays import Floats
 from stiv.blender.bending import bent_mesh, stacked
 from stiv.blender.cage import cage_part
-from stiv.blender.dependencies import is_active
 from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.evaluations import is_active
 from stiv.blender.lattice_points import check_lattice, lattice_part
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part

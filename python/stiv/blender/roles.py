@@ -5,8 +5,8 @@ import bpy
 
 from stiv import InputError
 from stiv.blender.automatic_responders import automatic_responders
-from stiv.blender.dependencies import is_active
 from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
+from stiv.blender.evaluations import is_active
 from stiv.blender.movers import Mover
 from stiv.blender.references import ObjectReference
 from stiv.blender.settings import EditSettings
