@@ -13,7 +13,7 @@ using WeightColumns = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 /// The metric of q = M p + c: M'M of the controls that may respond and move something, with eps times its mean
 /// diagonal added to the diagonal. Few controls are solved by an explicit inverse, of which a sparse right-hand side
-/// touches few columns; many by a sparse factor. [DESIGN 3, "Metric"]
+/// touches few columns; many by a sparse factor. (mathematics.md, "Metric")
 std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options);
 
 }  // namespace stiv

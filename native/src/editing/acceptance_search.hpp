@@ -15,7 +15,8 @@ struct Acceptance {
 
 /// The largest fraction s of the step from the accepted state to the candidate whose controls, as stored, pass the
 /// continuous check of the path, the exact static test, and `agreeable`: s = 1, then 0.9 times the time of the first
-/// contact, or half. A settled candidate that is not agreeable is left at once: there is nothing to gain. [DESIGN 4]
+/// contact, or half. A settled candidate that is not agreeable is left at once: there is nothing to gain.
+/// (mathematics.md, "The loop")
 Acceptance accept_largest(Problem& problem, const State& accepted, const RoundOutcome& outcome,
                           const std::function<bool(const State&)>& agreeable, Execution& execution);
 

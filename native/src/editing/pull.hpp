@@ -16,7 +16,7 @@ struct PullLimits {
 };
 
 /// One sub-edit toward `aim` that moves no vertex of the goal farther than `limit`, and accepts only what lowers the
-/// energy. [DESIGN 4, "Deep goals"]
+/// energy. (mathematics.md, "Deep goals")
 void pull(Problem& problem, State& accepted, const Aim& aim, double limit, SolveReport& report, Execution& execution);
 
 /// Pulls until the energy no longer falls by enough for the rounds that it takes.

@@ -27,7 +27,7 @@ struct RoundOutcome {
 /// The pairs that searches of all pairs brought near each other, in edits before too, are asked first, and all pairs
 /// only if none of these interferes: so a few searches serve many rounds, and the last one is of all pairs. Candidates
 /// are rounded as they will be stored *before* they are looked at, so that the round without events is itself the check
-/// of the path of the state to be accepted. [P3.2, Algorithm 1; DESIGN 4; mathematics.md, "The loop"]
+/// of the path of the state to be accepted. [P3.2, Algorithm 1; mathematics.md, "The loop"]
 /// `hopeless`, if given, is asked of some candidates whether to give up there.
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
                         bool at_any_cost, const StatePredicate& hopeless, Execution& execution);

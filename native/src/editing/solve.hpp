@@ -22,7 +22,8 @@ struct SolveReport {
 };
 
 /// The loop of an edit: sub-edits of rounds and acceptance, until the response settles or nothing is gained. `accepted`
-/// changes at each acceptance and only then, so it is valid even when Interrupted is thrown. [DESIGN 4]
+/// changes at each acceptance and only then, so it is valid even when Interrupted is thrown. (mathematics.md,
+/// "The loop and its guarantee")
 void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution);
 
 /// The same toward a goal that may lie many turns away: rotations are cut into steps of at most 0.3 rad, because

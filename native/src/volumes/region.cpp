@@ -12,7 +12,7 @@ namespace stiv {
 namespace {
 
 /// A normal tells a way out only if the two sides approach each other along it. Below this cosine the sides slide, and
-/// the sign of n . Drho is rounding. [DESIGN 4, "Traps"]
+/// the sign of n . Drho is rounding. (mathematics.md, "Regions")
 constexpr double least_cosine = 1e-8;
 
 template <class Field>

@@ -18,7 +18,7 @@ struct StorageFrame {
 
 /// The controls as they will be read back after storing, (m, 3); those that storing changes by no more than the
 /// rounding of doubles, and those in no frame, stay as they are bit by bit. So it is idempotent, and what has been read
-/// from storage does not change. [DESIGN 4, "values as stored"]
+/// from storage does not change. (mathematics.md, "Values as stored")
 /// @throws InputError naming the controls: a frame that is singular, not affine or not finite; rows that there are not;
 ///         a local coordinate that single precision cannot hold.
 Controls as_stored(const Controls& p, const std::vector<StorageFrame>& frames);

@@ -22,7 +22,7 @@ struct MetricOptions {
 };
 
 /// The inverse metric of the controls, W^1/2 (J'J + damping)^-1 W^1/2 restricted to controls with w > 0: steps along
-/// it are steepest for E = 1/2 |f(p) - q~|^2. [DESIGN 3, "Metric"]
+/// it are steepest for E = 1/2 |f(p) - q~|^2. (mathematics.md, "Metric")
 class Metric {
  public:
   virtual ~Metric() = default;

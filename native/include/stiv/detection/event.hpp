@@ -15,7 +15,8 @@ enum class EventKind : std::uint8_t {
   edge_edge     ///< vertices: a0, a1 of one edge, b0, b1 of the other
 };
 
-/// Two primitives that come as near as the separation at `time` in [0, 1] of a step. [P3.1, DESIGN 3]
+/// Two primitives that come as near as the separation at `time` in [0, 1] of a step. [P3.1; mathematics.md,
+/// "Continuous detection"]
 /// With the weights w: sum_k w_k = 0 and sum_k w_k x_k(time) is the separation vector, from second to first side.
 struct Event {
   EventKind kind = EventKind::vertex_face;

@@ -32,7 +32,7 @@ struct Keeping {
   double ease = 0;       ///< how far beyond that it may be pushed, so that what rounding takes is no new contact
 };
 
-/// From when on two primitives count as interfering. [DESIGN 3, "Events at a distance"]
+/// From when on two primitives count as interfering. (mathematics.md, "Separation")
 struct Proximity {
   double separation = 0;  ///< h >= 0, in the units of the positions; the largest one where they differ by bodies
   double keep = 0.5;      ///< in (0, 1): pairs nearer than h at the reference keep this fraction of that distance;

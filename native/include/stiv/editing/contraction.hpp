@@ -50,7 +50,7 @@ struct ContractionResult {
 };
 
 /// Steps of the cage until nothing of the surface intersects, or until intersections grow: contraction can create some.
-/// [P5.2; DESIGN 4, "Traps"]
+/// [P5.2; mathematics.md, "Contraction"]
 /// @param p (m, 3) controls
 /// @param moves (m) as for contraction_system of the cage
 /// @throws InputError for shapes and options that do not fit; Interrupted

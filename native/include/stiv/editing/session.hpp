@@ -39,8 +39,8 @@ struct EditResult {
 };
 
 /// An editing session: a surface, the deformation that moves it, and the last accepted controls. Every accepted state
-/// is free of intersections, and reachable from the one before without passing through. [DESIGN 4] Not for use from two
-/// threads at once; different sessions are independent.
+/// is free of intersections, and reachable from the one before without passing through. (mathematics.md, "Guarantee")
+/// Not for use from two threads at once; different sessions are independent.
 class EditSession {
  public:
   /// @throws InputError for shapes and values that do not fit; StartIntersectsError if f(controls) intersects itself
@@ -55,8 +55,8 @@ class EditSession {
   EditResult edit(const Controls& goal, Execution& execution);
 
   /// One mouse move of a drag: the increment since the last move's goal, then a pull toward the absolute goal, so that
-  /// deep goals neither drag sideways nor lose travel, and the shape comes back with the mouse. [DESIGN 4, "Deep
-  /// goals"]
+  /// deep goals neither drag sideways nor lose travel, and the shape comes back with the mouse. (mathematics.md,
+  /// "Deep goals")
   EditResult drag(const Controls& goal, Execution& execution);
 
   /// Solve again from the accepted state toward the last goal until E no longer falls: never a larger E.

@@ -16,7 +16,7 @@ struct Stiv {
   SparseField gradient;  ///< sum_i A_i w_k n at vertex k
 };
 
-/// The STIVs of a step, one a patch. [P3.1 Eq. 1, P4 Eq. 3; DESIGN 3 "Gradient"]
+/// The STIVs of a step, one a patch. [P3.1, Eq. 1; P4, Eq. 3; mathematics.md, "Gradient"]
 /// @param end    q1, (N, 3)
 /// @param areas  A_i, (N), held constant through an edit
 std::vector<Stiv> interference_volumes(const Events& events, const std::vector<Region>& regions,
