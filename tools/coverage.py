@@ -21,7 +21,7 @@ def lines_by_file(build: Path) -> dict[str, tuple[int, int]]:
 
 
 def folder_of(file: str) -> str:
-    """native/src/detection/bvh.cpp and native/include/stiv/detection/bvh.hpp belong to detection."""
+    """native/src/detection/detector.cpp and native/include/stiv/detection/detector.hpp belong to detection."""
     parts = Path(file).parts
     inner = parts[2:-1] if parts[1] == "src" else parts[3:-1]
     return inner[0] if inner else "core"

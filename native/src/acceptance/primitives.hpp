@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "stiv/detection/bvh.hpp"
+#include "detection/broad_phase/bvh.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "deformation/checks.hpp"
+#include "position_rows.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/deformation/deformation.hpp"
 
-#include "stiv/position_rows.hpp"
+#include "position_rows.hpp"
 
 namespace stiv {
 

@@ -3,8 +3,8 @@
 
 #include "deformation/checks.hpp"
 #include "deformation/lattice_sums.hpp"
+#include "position_rows.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv {
 

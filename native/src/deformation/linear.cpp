@@ -9,8 +9,8 @@
 #include "deformation/checks.hpp"
 #include "deformation/linear_metric.hpp"
 #include "deformation/weighted_sums.hpp"
+#include "position_rows.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "detection/box_filter.hpp"
-#include "detection/hull_filter.hpp"
-#include "detection/relevance.hpp"
+#include "detection/broad_phase/relevance.hpp"
+#include "detection/filters/box_filter.hpp"
+#include "detection/filters/hull_filter.hpp"
 
 namespace stiv {
 

@@ -8,16 +8,16 @@
 #include <cstdint>
 #include <functional>
 
-#include "detection/candidates.hpp"
+#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/relevance.hpp"
 #include "detection/close_pairs.hpp"
-#include "detection/common_motion.hpp"
 #include "detection/joined.hpp"
 #include "detection/kept_pairs.hpp"
+#include "detection/narrow_phase/pair_test.hpp"
 #include "detection/pair_key.hpp"
-#include "detection/pair_test.hpp"
-#include "detection/relevance.hpp"
+#include "position_rows.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv {
 

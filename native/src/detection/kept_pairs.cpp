@@ -5,9 +5,9 @@
 #include <iterator>
 #include <utility>
 
+#include "detection/broad_phase/relevance.hpp"
 #include "detection/close_pairs.hpp"
 #include "detection/pair_key.hpp"
-#include "detection/relevance.hpp"
 
 namespace stiv {
 

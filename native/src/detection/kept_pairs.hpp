@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "detection/candidates.hpp"
+#include "detection/broad_phase/candidates.hpp"
 
 namespace stiv {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "editing/validation.hpp"
+#include "position_rows.hpp"
 #include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv {
 

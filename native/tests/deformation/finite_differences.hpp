@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "position_rows.hpp"
 #include "stiv/deformation/deformation.hpp"
-#include "stiv/position_rows.hpp"
 
 namespace stiv::testing {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "detection/filters/plane_filter.hpp"
 #include "detection/motions.hpp"
-#include "detection/plane_filter.hpp"
 #include "detection/reference.hpp"
 #include "vector_targets.hpp"
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "detection/common_motion.hpp"
-#include "detection/relevance.hpp"
+#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/relevance.hpp"
 #include "detection/scenes.hpp"
 
 using namespace stiv;

@@ -5,9 +5,9 @@
 
 #include "detection/event_bits.hpp"
 #include "detection/scenes.hpp"
+#include "position_rows.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/error.hpp"
-#include "stiv/position_rows.hpp"
 
 using namespace stiv;
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/broad_phase/block_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+
+#include "detection/broad_phase/median_split.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+/// The first half is as large a power of two times `run` as fits, so that the halves of all sizes end where nodes of
+/// the tree end.
+void order_spatially(std::span<NumberedPoint> items, std::size_t run) {
+  if (items.size() <= run) return;
+  std::size_t half = run;
+  while (2 * half < items.size()) half *= 2;
+  halve(items, half);
+  order_spatially(items.first(half), run);
+  order_spatially(items.subspan(half), run);
+}
+
+void order_spatially(std::span<Index> numbers, const Points& centres, std::size_t run) {
+  std::vector<NumberedPoint> items;
+  items.reserve(numbers.size());
+  for (const Index number : numbers) {
+    const Eigen::Vector3f& centre = centres[at(number)];
+    items.push_back({{centre[0], centre[1], centre[2]}, number});
+  }
+  order_spatially(items, run);
+  std::transform(items.begin(), items.end(), numbers.begin(), [](const NumberedPoint& item) { return item.number; });
+}
+
+/// Numbers of the items, group by group.
+std::vector<Index> by_group(std::size_t count, const std::vector<Index>& groups) {
+  std::vector<Index> items(count);
+  std::iota(items.begin(), items.end(), 0);
+  const auto before = [&](Index a, Index b) { return groups[at(a)] < groups[at(b)]; };
+  if (!std::is_sorted(groups.begin(), groups.end())) std::stable_sort(items.begin(), items.end(), before);
+  return items;
+}
+
+/// Boxes of each group in spatial order, one group after the other, each filled up to whole blocks.
+std::vector<Index> order_in_groups(const Points& centres, const std::vector<Index>& groups, std::size_t block) {
+  const auto group = [&](Index item) { return groups.empty() ? 0 : groups[at(item)]; };
+  std::vector<Index> items = by_group(centres.size(), groups);
+  std::vector<Index> places;
+  for (auto begin = items.begin(); begin != items.end();) {
+    const Index common = group(*begin);
+    const auto end = std::find_if(begin, items.end(), [&](Index item) { return group(item) != common; });
+    order_spatially({begin, end}, centres, block);
+    places.insert(places.end(), begin, end);
+    places.resize((places.size() + block - 1) / block * block, -1);
+    begin = end;
+  }
+  return places;
+}
+
+Points centres_of_blocks(const std::vector<Index>& places, const Points& centres, std::size_t block) {
+  Points result;
+  for (std::size_t first = 0; first < places.size(); first += block) {
+    Eigen::AlignedBox3f box;
+    for (std::size_t place = first; place < first + block; ++place)
+      if (places[place] >= 0) box.extend(centres[at(places[place])]);
+    result.push_back(box.center());
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Index> block_order(const Points& centres, const std::vector<Index>& groups, Index block) {
+  const std::vector<Index> places = order_in_groups(centres, groups, at(block));
+  const Points block_centres = centres_of_blocks(places, centres, at(block));
+  std::vector<Index> blocks(block_centres.size());
+  std::iota(blocks.begin(), blocks.end(), 0);
+  order_spatially(blocks, block_centres, at(block));
+  std::vector<Index> order;
+  order.reserve(places.size());
+  for (const Index first : blocks)
+    order.insert(order.end(), places.begin() + first * block, places.begin() + (first + 1) * block);
+  return order;
+}
+
+}  // namespace stiv

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/broad_phase/bvh.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "detection/broad_phase/block_order.hpp"
+#include "detection/broad_phase/bvh_traversal.hpp"
+
+namespace stiv {
+
+namespace {
+
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+/// Tasks from the pair of roots on, level by level.
+class TaskList {
+ public:
+  TaskList(const Bvh& a, const Bvh& b, const GroupTable& groups) : a_(a), b_(b), groups_(groups) {}
+
+  std::vector<Bvh::Task> make(std::size_t about) {
+    std::vector<Bvh::Task> tasks;
+    if (a_.size() == 0 || b_.size() == 0) return tasks;
+    add(tasks, {static_cast<Index>(a_.levels().size()) - 1, 0, static_cast<Index>(b_.levels().size()) - 1, 0});
+    while (tasks.size() < about) {
+      std::vector<Bvh::Task> next;
+      bool divided = false;
+      for (const Bvh::Task& task : tasks) divided |= divide(task, next);
+      tasks = std::move(next);
+      if (!divided) break;
+    }
+    return tasks;
+  }
+
+ private:
+  void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
+    const Bvh::Level &a = a_.levels()[at(task.level)], &b = b_.levels()[at(task.other_level)];
+    const Index group = a.groups[at(task.node)], other = b.groups[at(task.other_node)];
+    if (group != Bvh::mixed && other != Bvh::mixed && !groups_.meet(group, other)) return;
+    if (may_meet(a.boxes[at(task.node)], b.boxes[at(task.other_node)])) tasks.push_back(task);
+  }
+
+  /// Both subtrees give way to their children, or the higher one does. False if they are blocks.
+  bool divide(const Bvh::Task& task, std::vector<Bvh::Task>& tasks) const {
+    if (task.level == 0 && task.other_level == 0) {
+      tasks.push_back(task);
+      return false;
+    }
+    const bool same = &a_ == &b_ && task.level == task.other_level && task.node == task.other_node;
+    const Index level = task.level >= task.other_level ? task.level - 1 : task.level;
+    const Index other_level = task.other_level >= task.level ? task.other_level - 1 : task.other_level;
+    const auto [begin, end] = children(a_, task.level, task.node, level);
+    const auto [other_begin, other_end] = children(b_, task.other_level, task.other_node, other_level);
+    for (Index node = begin; node < end; ++node)
+      for (Index other = same ? node : other_begin; other < other_end; ++other)
+        add(tasks, {level, node, other_level, other});
+    return true;
+  }
+
+  static std::pair<Index, Index> children(const Bvh& tree, Index level, Index node, Index down_to) {
+    if (level == down_to) return {node, node + 1};
+    const auto count = static_cast<Index>(tree.levels()[at(down_to)].nodes.size());
+    return {node * Bvh::width, std::min(count, (node + 1) * Bvh::width)};
+  }
+
+  const Bvh &a_, &b_;
+  const GroupTable& groups_;
+};
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
+  std::vector<Eigen::Vector3f> centres(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float middle = boxes[k].low[axis] / 2 + boxes[k].high[axis] / 2;
+      centres[k][static_cast<Index>(axis)] = std::isfinite(middle) ? middle : 0;
+    }
+  return centres;
+}
+
+Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners)
+    : size_(static_cast<Index>(centres.size())), order_(block_order(centres, groups, width)), places_(centres.size()) {
+  for (std::size_t place = 0; place < order_.size(); ++place)
+    if (order_[place] >= 0) places_[at(order_[place])] = static_cast<Index>(place);
+  reserve_levels(groups);
+  set_corners(corners, Execution(1));
+}
+
+Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
+    : Bvh(centres_of(boxes), groups, corners) {
+  refit(boxes);
+}
+
+void Bvh::reserve_levels(const std::vector<Index>& groups) {
+  for (std::size_t count = order_.size() / width; count > 0; count = (count + width - 1) / width) {
+    levels_.push_back({std::vector<Node>(count), std::vector<PackedBox>(count), std::vector<Index>(count, 0)});
+    if (count == 1) break;
+  }
+  if (groups.empty()) return;
+  for (std::size_t block = 0; block < order_.size() / width; ++block)
+    levels_[0].groups[block] = groups[at(order_[block * width])];
+  for (std::size_t level = 1; level < levels_.size(); ++level)
+    for (std::size_t child = 0; child < levels_[level - 1].groups.size(); ++child) {
+      Index& group = levels_[level].groups[child / width];
+      const Index below = levels_[level - 1].groups[child];
+      group = child % width == 0 || group == below ? below : mixed;
+    }
+}
+
+void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
+  constexpr Index chunk_size = 8192;
+  corner_size_ = corners.size;
+  const std::size_t size = at(corners.size);
+  corners_.resize(order_.size() * size);
+  execution.for_chunks(static_cast<Index>(order_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (std::size_t place = at(begin); place < at(end); ++place) {
+      const Index primitive = order_[place];
+      for (std::size_t k = 0; k < size; ++k)
+        corners_[(place / width * size + k) * width + place % width] =
+            primitive >= 0 ? corners.rows[at(primitive) * size + k] : -1;
+    }
+  });
+}
+
+void Bvh::refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active) {
+  const auto box_of = [&](Index primitive) {
+    return PackedBox::of(boxes[at(primitive)], active.empty() || active[at(primitive)] != 0);
+  };
+  refit(box_of, Execution(1));
+}
+
+void Bvh::summarise(std::size_t level, std::size_t node) {
+  const std::vector<PackedBox>& below = levels_[level - 1].boxes;
+  PackedBox all = PackedBox::empty();
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    const std::size_t child = node * width + lane;
+    const PackedBox box = child < below.size() ? below[child] : PackedBox::empty();
+    for (std::size_t k = 0; k < 7; ++k) levels_[level].nodes[node].planes[k][lane] = box.values[k];
+    all.include(box);
+  }
+  levels_[level].boxes[node] = all;
+}
+
+std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupTable& groups, std::size_t about) const {
+  return TaskList(*this, other, groups).make(about);
+}
+
+void Bvh::overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const {
+  traverse(task, *this, other, groups, found);
+}
+
+std::vector<std::pair<Index, Index>> Bvh::overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution) {
+  const std::vector<Task> tasks = a.tasks(b, {});
+  std::vector<PairBuffer> found(tasks.size());
+  execution.for_chunks(static_cast<Index>(tasks.size()), 1,
+                       [&](Index task, Index, Index) { a.overlaps(tasks[at(task)], b, {}, found[at(task)]); });
+  std::vector<std::pair<Index, Index>> pairs;
+  for (const PairBuffer& buffer : found)
+    for (std::size_t k = 0; k < buffer.count; ++k) pairs.emplace_back(buffer.first[k], buffer.second[k]);
+  return pairs;
+}
+
+std::vector<std::pair<Index, Index>> Bvh::overlapping_pairs(const Bvh& tree, const Execution& execution) {
+  return overlapping_pairs(tree, tree, execution);
+}
+
+}  // namespace stiv

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "detection/broad_phase/packed_box.hpp"
+#include "stiv/execution.hpp"
+
+namespace stiv {
+
+/// Numbers of two primitives.
+struct PrimitivePair {
+  Index first = 0;
+  Index second = 0;
+};
+
+/// Which groups of primitives can form a pair that matters. Symmetric; empty: all.
+class GroupTable {
+ public:
+  GroupTable() = default;
+  GroupTable(Index groups, std::vector<unsigned char> meets) : groups_(groups), meets_(std::move(meets)) {}
+
+  bool empty() const { return meets_.empty(); }
+  bool meet(Index a, Index b) const { return empty() || meets_[static_cast<std::size_t>(a * groups_ + b)] != 0; }
+
+ private:
+  Index groups_ = 0;
+  std::vector<unsigned char> meets_;  // (groups, groups)
+};
+
+/// Pairs that a traversal found, as one array a side; grows, and is used again.
+struct PairBuffer {
+  std::vector<Index> first, second;
+  std::size_t count = 0;
+
+  /// From so many pairs on, `full(*this)` is called now and then: it may take them out, or raise the limit, and returns
+  /// whether to go on.
+  std::size_t limit = std::numeric_limits<std::size_t>::max();
+  std::function<bool(PairBuffer&)> full;
+
+  PrimitivePair operator[](std::size_t k) const { return {first[k], second[k]}; }
+};
+
+/// Primitives as rows of vertices, so that a traversal can leave out pairs that share one.
+struct CornerRows {
+  const Index* rows = nullptr;  ///< (n, size)
+  Index size = 0;               ///< 1, 2 or 3; 0: none are given
+};
+
+/// A bounding-volume hierarchy over boxes, built once and refitted when they move.
+///
+/// Eight boxes form a node, kept as arrays over the eight so that all of them are compared at once; leaves ("blocks")
+/// hold eight primitives. The nodes of a level follow each other, so that the children of node i are the nodes 8i to
+/// 8i + 7 of the level below, and no links are needed.
+class Bvh {
+ public:
+  static constexpr Index width = 8;
+
+  /// Builds over the centres of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
+  /// a block, and subtrees of groups that do not meet are not compared.
+  explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
+  /// Builds over finite points and is without boxes until the first refit.
+  explicit Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups = {},
+               const CornerRows& corners = {});
+
+  Index size() const { return size_; }
+
+  /// New boxes, same number and order. `active[i]` (empty: all) tells whether primitive i can be part of a pair that
+  /// matters; two subtrees without any active primitive are never compared.
+  void refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active = {});
+
+  /// The same with `box_of(primitive)`, a PackedBox, on several threads.
+  template <class BoxOf>
+  void refit(const BoxOf& box_of, const Execution& execution);
+
+  /// The same for some primitives, each listed at least once; costs what those cost.
+  template <class BoxOf>
+  void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
+
+  /// Other corners for the same primitives.
+  void set_corners(const CornerRows& corners, const Execution& execution);
+
+  /// Two subtrees to be compared, a unit of work.
+  struct Task {
+    Index level, node;              ///< of the tree asked
+    Index other_level, other_node;  ///< of the other tree
+  };
+
+  /// Work for about so many turns, of the same trees always the same: together all pairs (i of this tree, j of `other`)
+  /// whose boxes overlap and of which one is active, but those of groups that do not meet and, if both trees know their
+  /// corners, those that share one. Within one tree each unordered pair comes once, and i != j.
+  std::vector<Task> tasks(const Bvh& other, const GroupTable& groups, std::size_t about = 256) const;
+
+  /// Appends the pairs of one task, in an order that depends on the trees alone.
+  void overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const;
+
+  /// All pairs at once. Several threads work; the pairs come out the same for any number of them.
+  static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution);
+  static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& tree, const Execution& execution);
+
+  /// What a traversal reads of a tree.
+  struct Node {
+    alignas(32) float planes[7][width];  ///< PackedBox::values of eight children, absent ones empty
+  };
+  struct Level {
+    std::vector<Node> nodes;
+    std::vector<PackedBox> boxes;  ///< of each node
+    std::vector<Index> groups;     ///< of all primitives below each node, or Bvh::mixed
+  };
+  const std::vector<Level>& levels() const { return levels_; }
+  const std::vector<Index>& order() const { return order_; }
+  const std::vector<Index>& corners() const { return corners_; }  ///< (blocks, corner_size, width)
+  Index corner_size() const { return corner_size_; }
+
+  static constexpr Index mixed = -1;
+
+ private:
+  void set_child(Level& level, std::size_t child, const PackedBox& box);
+  void finish_node(Level& level, std::size_t node);
+  void summarise(std::size_t level, std::size_t node);
+  void reserve_levels(const std::vector<Index>& groups);
+
+  template <class BoxOf>
+  void refit_block(std::size_t block, const BoxOf& box_of);
+
+  Index size_ = 0;
+  std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
+  std::vector<Index> places_;  // place of each primitive
+  std::vector<Level> levels_;  // blocks first, the root last
+  std::vector<Index> corners_;
+  Index corner_size_ = 0;
+  std::vector<Index> touched_, parents_;  // work space of refit_some
+};
+
+/// Centres of boxes, zero where one is infinite.
+std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes);
+
+template <class BoxOf>
+void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
+  Level& blocks = levels_[0];
+  PackedBox all = PackedBox::empty();
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    const Index primitive = order_[block * width + lane];
+    const PackedBox box = primitive >= 0 ? box_of(primitive) : PackedBox::empty();
+    for (std::size_t k = 0; k < 7; ++k) blocks.nodes[block].planes[k][lane] = box.values[k];
+    all.include(box);
+  }
+  blocks.boxes[block] = all;
+}
+
+template <class BoxOf>
+void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
+  constexpr Index chunk_size = 512;
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const auto count = static_cast<Index>(levels_[level].nodes.size());
+    execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
+      for (Index node = begin; node < end; ++node)
+        if (level == 0)
+          refit_block(static_cast<std::size_t>(node), box_of);
+        else
+          summarise(level, static_cast<std::size_t>(node));
+    });
+  }
+}
+
+template <class BoxOf>
+void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
+  // Marks of what is listed are kept nowhere: neighbours in the list mostly share a block, and to refit one twice is
+  // harmless.
+  touched_.clear();
+  for (const Index primitive : primitives) {
+    const Index block = places_[static_cast<std::size_t>(primitive)] / width;
+    if (touched_.empty() || touched_.back() != block) touched_.push_back(block);
+  }
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  for (const Index block : touched_) refit_block(static_cast<std::size_t>(block), box_of);
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    parents_.clear();
+    for (const Index node : touched_)
+      if (parents_.empty() || parents_.back() != node / width) parents_.push_back(node / width);
+    for (const Index node : parents_) summarise(level, static_cast<std::size_t>(node));
+    std::swap(touched_, parents_);
+  }
+}
+
+}  // namespace stiv

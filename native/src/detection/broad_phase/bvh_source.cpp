@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <numeric>
+#include <utility>
+
+#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/primitive_tree.hpp"
+#include "detection/broad_phase/relevance.hpp"
+#include "detection/broad_phase/swept_vertices.hpp"
+#include "detection/filters/hull_filter.hpp"
+
+namespace stiv {
+
+namespace {
+
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+GroupTable table_of_bodies(const Surface& surface) {
+  const auto count = static_cast<Index>(surface.bodies().size());
+  std::vector<unsigned char> meets;
+  bool all = true;
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b < count; ++b) {
+      meets.push_back(surface.bodies_meet(a, b));
+      all = all && surface.bodies_meet(a, b);
+    }
+  return all ? GroupTable() : GroupTable(count, std::move(meets));
+}
+
+/// Trees over vertices, edges and faces, and the pairs that they gave: built at the first step; at the others, what
+/// did not change is neither refitted nor compared again.
+class BvhSource final : public CandidateSource {
+ public:
+  explicit BvhSource(const Surface& surface)
+      : surface_(surface),
+        bodies_(table_of_bodies(surface)),
+        swept_(surface),
+        numbers_(at(surface.vertex_count())),
+        vertices_(surface, numbers_.data(), surface.vertex_count()),
+        edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows())),
+        faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows())) {
+    std::iota(numbers_.begin(), numbers_.end(), 0);
+  }
+
+  void update(const Step& step, const Execution& execution) override {
+    separation_ = step.proximity.separation;
+    // Whatever is cancelled half way counts as not done: then everything is made anew.
+    const bool refitted = std::exchange(refitted_, false), collected = std::exchange(collected_, false);
+    SweptVertices::Change change = swept_.update(step, execution, collected);
+    if (!refitted) change = SweptVertices::Change::all;
+    if (change == SweptVertices::Change::none) {
+      refitted_ = collected_ = true;
+      return;
+    }
+    vertices_.update(step, swept_, change, execution);
+    edges_.update(step, swept_, change, execution);
+    faces_.update(step, swept_, change, execution);
+    refitted_ = true;
+    collect(execution);
+  }
+
+  const VertexSteps& vertex_steps() const override { return swept_.steps(); }
+
+  bool manageable() const override { return collected_; }
+
+  Index chunk_count(EventKind kind) const override {
+    return static_cast<Index>(collected_ ? of(kind).fruitful.size() : of(kind).tasks.size());
+  }
+
+  void visit(EventKind kind, Index chunk, const Sink& sink) const override {
+    if (collected_) {
+      const std::vector<Candidate>& near = of(kind).near[at(of(kind).fruitful[at(chunk)])];
+      std::vector<Candidate> batch;
+      for (std::size_t begin = 0; begin < near.size(); begin += batch_size) {
+        batch.assign(near.begin() + static_cast<std::ptrdiff_t>(begin),
+                     near.begin() + static_cast<std::ptrdiff_t>(std::min(near.size(), begin + batch_size)));
+        sink(batch);
+      }
+      return;
+    }
+    std::vector<Candidate> batch;
+    traverse(kind, chunk, [&](const PairBuffer& found) {
+      batch.clear();
+      append_near(kind, found, batch);
+      if (!batch.empty()) sink(batch);
+      return true;
+    });
+  }
+
+ private:
+  static constexpr std::size_t batch_size = 4096;
+
+  /// Work of one kind, and what it gave.
+  struct Pairs {
+    std::vector<Bvh::Task> tasks;
+    std::vector<std::vector<Candidate>> near;
+    std::vector<Index> fruitful;  ///< tasks that gave any: of a local edit, few
+  };
+
+  const Pairs& of(EventKind kind) const { return pairs_[static_cast<std::size_t>(kind)]; }
+  const Bvh& first_tree(EventKind kind) const {
+    return kind == EventKind::vertex_face ? vertices_.tree() : edges_.tree();
+  }
+  const Bvh& second_tree(EventKind kind) const {
+    return kind == EventKind::vertex_face ? faces_.tree() : edges_.tree();
+  }
+
+  /// Traverses the trees and keeps the pairs, unless they are too many to be kept: then each visit traverses again.
+  void collect(const Execution& execution) {
+    for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
+      Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
+      pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
+      pairs.near.resize(pairs.tasks.size());
+    }
+    compared_ = near_ = 0;
+    const auto faces = static_cast<Index>(of(EventKind::vertex_face).tasks.size());
+    const auto count = faces + static_cast<Index>(of(EventKind::edge_edge).tasks.size());
+    execution.for_chunks(count, 1, [&](Index task, Index, Index) {
+      if (task < faces)
+        collect(EventKind::vertex_face, task);
+      else
+        collect(EventKind::edge_edge, task - faces);
+    });
+    collected_ = few_enough();
+    for (Pairs& pairs : pairs_) {
+      if (!collected_) pairs.near.clear();
+      pairs.fruitful.clear();
+      for (std::size_t task = 0; task < pairs.near.size(); ++task)
+        if (!pairs.near[task].empty()) pairs.fruitful.push_back(static_cast<Index>(task));
+    }
+  }
+
+  void collect(EventKind kind, Index task) {
+    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[at(task)];
+    near.clear();
+    if (!few_enough()) return;
+    traverse(kind, task, [&](const PairBuffer& found) {
+      const std::size_t before = near.size();
+      append_near(kind, found, near);
+      compared_ += static_cast<std::int64_t>(found.count);
+      near_ += static_cast<std::int64_t>(near.size() - before);
+      return few_enough();
+    });
+    // A long session brings every task its largest step once: what that took is not kept for good.
+    if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
+  }
+
+  /// Calls `take(some)` with the pairs of a task, some at a time, until it returns false.
+  template <class Take>
+  void traverse(EventKind kind, Index task, const Take& take) const {
+    PairBuffer found;
+    found.limit = batch_size;
+    found.full = [&](PairBuffer& some) {
+      const bool more = take(some);
+      some.count = 0;
+      return more;
+    };
+    first_tree(kind).overlaps(of(kind).tasks[at(task)], second_tree(kind), bodies_, found);
+    if (found.count > 0) take(found);
+  }
+
+  /// Appends the pairs that may interfere in this step or in one nearby.
+  void append_near(EventKind kind, const PairBuffer& found, std::vector<Candidate>& near) const {
+    const NearbySteps steps{swept_.motion(), separation_, SweptVertices::slack};
+    PairBlock block;
+    PairFlags apart;
+    std::array<Candidate, PairBlock::capacity> some;
+    for (std::size_t begin = 0; begin < found.count; begin += block.count) {
+      block.count = 0;
+      const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
+      for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
+      find_hulls_apart(kind, block, swept_.steps(), steps, apart);
+      std::size_t count = 0;
+      for (std::size_t k = begin; k < end; ++k) {
+        some[count] = found[k];
+        count += apart[k - begin] == 0;
+      }
+      near.insert(near.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    if (surface_.has_recut_faces())
+      std::erase_if(
+          near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
+  }
+
+  /// Dense scenes compare four pairs a primitive and keep three; these bounds make for a fraction of a second, and for
+  /// less memory than the trees take. Counts only grow, so whether they exceed a bound does not depend on who counts
+  /// first.
+  bool few_enough() const {
+    const std::int64_t primitives = surface_.vertex_count() + surface_.edges().rows() + surface_.triangles().rows();
+    return compared_ <= std::max<std::int64_t>(1 << 21, 16 * primitives) &&
+           near_ <= std::max<std::int64_t>(1 << 18, 4 * primitives);
+  }
+
+  const Surface& surface_;
+  GroupTable bodies_;
+  SweptVertices swept_;
+  double separation_ = 0;
+  std::vector<Index> numbers_;  // of the vertices: their rows
+  PrimitiveTree<1> vertices_;
+  PrimitiveTree<2> edges_;
+  PrimitiveTree<3> faces_;
+  std::array<Pairs, 2> pairs_;
+  std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
+  bool refitted_ = false;                            // the trees are those of the boxes
+  bool collected_ = false;                           // the pairs kept are all that matter
+};
+
+}  // namespace
+
+std::unique_ptr<CandidateSource> make_bvh_source(const Surface& surface) {
+  return std::make_unique<BvhSource>(surface);
+}
+
+}  // namespace stiv

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/broad_phase/bvh_traversal.hpp"
+
+#include <array>
+#include <bit>
+
+#ifndef STIV_BVH_TRAVERSAL_TYPES
+#define STIV_BVH_TRAVERSAL_TYPES
+
+namespace stiv {
+
+/// What a traversal reads of a tree, without the containers that own it.
+struct TreeView {
+  static constexpr std::size_t most_levels = 12;  // 8^11 > 2^31
+
+  explicit TreeView(const Bvh& tree)
+      : order(tree.order().data()), corners(tree.corners().data()), corner_size(tree.corner_size()) {
+    for (std::size_t level = 0; level < tree.levels().size(); ++level) {
+      nodes[level] = tree.levels()[level].nodes.data();
+      boxes[level] = tree.levels()[level].boxes.data();
+      groups[level] = tree.levels()[level].groups.data();
+    }
+  }
+
+  std::array<const Bvh::Node*, most_levels> nodes{};
+  std::array<const PackedBox*, most_levels> boxes{};
+  std::array<const Index*, most_levels> groups{};
+  const Index* order;
+  const Index* corners;
+  Index corner_size;
+};
+
+/// Two trees and where their pairs go. `meets` is null where all groups meet.
+struct Traversal {
+  TreeView a, b;
+  bool same_tree;
+  const GroupTable* meets;
+  PairBuffer* found;
+
+  bool groups_meet(const Bvh::Task& pair) const {
+    if (meets == nullptr) return true;
+    const Index group = a.groups[static_cast<std::size_t>(pair.level)][pair.node];
+    const Index other = b.groups[static_cast<std::size_t>(pair.other_level)][pair.other_node];
+    return group == Bvh::mixed || other == Bvh::mixed || meets->meet(group, other);
+  }
+
+  /// Makes room for the pairs of two blocks.
+  void reserve() const {
+    constexpr std::size_t most = Bvh::width * Bvh::width + Bvh::width;
+    if (found->count + most <= found->first.size()) return;
+    found->first.resize(2 * found->first.size() + 1024);
+    found->second.resize(found->first.size());
+  }
+};
+
+}  // namespace stiv
+
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detection/broad_phase/bvh_traversal.cpp"
+#include "vector/foreach_target.hpp"  // first: it includes this file again
+
+#include "vector/dispatch.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace stiv::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 8>;
+using Ints = hn::RebindToSigned<Floats>;
+using FloatMask = hn::Mask<Floats>;
+
+constexpr std::size_t width = 8;
+
+HWY_INLINE hn::Vec<Floats> opposed(const Bvh::Node& node, const float* box, std::size_t plane, std::size_t opposite,
+                                   std::size_t lane) {
+  const Floats d;
+  return hn::Add(hn::Load(d, node.planes[plane] + lane), hn::Set(d, box[opposite]));
+}
+
+/// Lanes from `lane` on of a node that may meet a box (see may_meet).
+HWY_INLINE FloatMask meeting_lanes(const Bvh::Node& node, const float* box, std::size_t lane) {
+  const Floats d;
+  const auto x = hn::Max(opposed(node, box, 0, 3, lane), opposed(node, box, 3, 0, lane));
+  const auto y = hn::Max(opposed(node, box, 1, 4, lane), opposed(node, box, 4, 1, lane));
+  const auto z = hn::Max(opposed(node, box, 2, 5, lane), opposed(node, box, 5, 2, lane));
+  const auto rest = hn::Min(hn::Load(d, node.planes[6] + lane), hn::Set(d, box[6]));
+  return hn::Le(hn::Max(hn::Max(x, y), hn::Max(z, rest)), hn::Zero(d));
+}
+
+/// A bit for each of the eight children that may meet a box.
+HWY_INLINE unsigned meeting_children(const Bvh::Node& node, const float* box) {
+  const Floats d;
+  unsigned bits = 0;
+  for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
+    unsigned char some[8] = {};
+    hn::StoreMaskBits(d, meeting_lanes(node, box, lane), some);
+    bits |= static_cast<unsigned>(some[0]) << lane;
+  }
+  return bits;
+}
+
+/// Lanes of a block whose primitives have none of the given corners.
+template <Index size_a, Index size_b>
+HWY_INLINE FloatMask apart_lanes(const Index* own, const Index* others, std::size_t lane, FloatMask mask) {
+  const Floats d;
+  const Ints i;
+  for (std::size_t p = 0; p < size_a; ++p) {
+    const auto corner = hn::Set(i, own[p * width]);
+    for (std::size_t q = 0; q < size_b; ++q)
+      mask = hn::AndNot(hn::RebindMask(d, hn::Eq(hn::LoadU(i, others + q * width + lane), corner)), mask);
+  }
+  return mask;
+}
+
+template <Index size_a, Index size_b>
+void meet_blocks(const Traversal& t, Index block, Index other) {
+  const Floats d;
+  const Ints i;
+  const Bvh::Node &a = t.a.nodes[0][block], &b = t.b.nodes[0][other];
+  unsigned left = meeting_children(a, t.b.boxes[0][other].values.data());
+  if (left == 0) return;
+  t.reserve();
+  Index* const first = t.found->first.data();
+  Index* const second = t.found->second.data();
+  std::size_t count = t.found->count;
+  const bool within = t.same_tree && block == other;
+  const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(other) * Bvh::width;
+  for (; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    alignas(32) float box[8];
+    for (std::size_t plane = 0; plane < 7; ++plane) box[plane] = a.planes[plane][k];
+    const auto primitive = hn::Set(i, t.a.order[static_cast<std::size_t>(block) * width + k]);
+    for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
+      FloatMask mask = meeting_lanes(b, box, lane);
+      if constexpr (size_a > 0)
+        mask = apart_lanes<size_a, size_b>(t.a.corners + static_cast<std::size_t>(block) * width * size_a + k,
+                                           t.b.corners + static_cast<std::size_t>(other) * width * size_b, lane, mask);
+      if (within) {
+        const auto number = hn::Iota(i, static_cast<std::int32_t>(lane));
+        mask = hn::And(mask, hn::RebindMask(d, hn::Gt(number, hn::Set(i, static_cast<std::int32_t>(k)))));
+      }
+      hn::StoreU(primitive, i, first + count);
+      // Not CompressStore: straight to memory, some processors take a hundred times longer.
+      hn::StoreU(hn::Compress(hn::LoadU(i, order + lane), hn::RebindMask(i, mask)), i, second + count);
+      count += hn::CountTrue(d, mask);
+    }
+  }
+  t.found->count = count;
+}
+
+template <Index size_a, Index size_b>
+void descend(const Traversal& t, const Bvh::Task& root) {
+  // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Left as it is: to clear so
+  // much for each task took longer than some tasks.
+  std::array<Bvh::Task, 1536> stack;
+  std::size_t top = 0;
+  stack[top++] = root;
+  while (top > 0) {
+    const Bvh::Task pair = stack[--top];
+    if (!t.groups_meet(pair)) continue;
+    const auto level = static_cast<std::size_t>(pair.level), other_level = static_cast<std::size_t>(pair.other_level);
+    if (level == 0 && other_level == 0) {
+      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node);
+      if (t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
+    } else if (level > other_level) {
+      unsigned left =
+          meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node].values.data());
+      for (; left != 0; left &= left - 1)
+        stack[top++] = {pair.level - 1, pair.node * Bvh::width + std::countr_zero(left), pair.other_level,
+                        pair.other_node};
+    } else if (level < other_level) {
+      unsigned left =
+          meeting_children(t.b.nodes[other_level][pair.other_node], t.a.boxes[level][pair.node].values.data());
+      for (; left != 0; left &= left - 1)
+        stack[top++] = {pair.level, pair.node, pair.other_level - 1,
+                        pair.other_node * Bvh::width + std::countr_zero(left)};
+    } else {
+      const bool same = t.same_tree && pair.node == pair.other_node;
+      unsigned left =
+          meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node].values.data());
+      for (; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        const Index child = pair.node * Bvh::width + k;
+        unsigned others =
+            meeting_children(t.b.nodes[level][pair.other_node], t.a.boxes[level - 1][child].values.data());
+        if (same) others &= ~0U << k;
+        for (; others != 0; others &= others - 1)
+          stack[top++] = {pair.level - 1, child, pair.level - 1,
+                          pair.other_node * Bvh::width + std::countr_zero(others)};
+      }
+    }
+  }
+}
+
+void traverse_trees(const Traversal& traversal, const Bvh::Task& task) {
+  const Index a = traversal.a.corner_size, b = traversal.b.corner_size;
+  if (a == 1 && b == 3)
+    descend<1, 3>(traversal, task);
+  else if (a == 2 && b == 2)
+    descend<2, 2>(traversal, task);
+  else if (a == 3 && b == 3)
+    descend<3, 3>(traversal, task);
+  else
+    descend<0, 0>(traversal, task);
+}
+
+}  // namespace stiv::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stiv {
+
+void traverse(const Bvh::Task& task, const Bvh& a, const Bvh& b, const GroupTable& groups, PairBuffer& found) {
+  const Traversal traversal{TreeView(a), TreeView(b), &a == &b, groups.empty() ? nullptr : &groups, &found};
+  STIV_FOR_VECTOR_TARGET(traverse_trees)(traversal, task);
+}
+
+}  // namespace stiv
+#endif

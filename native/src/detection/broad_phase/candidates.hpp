@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "detection/broad_phase/bvh.hpp"
+#include "detection/broad_phase/vertex_steps.hpp"
+#include "stiv/detection/detector.hpp"
+#include "stiv/detection/event.hpp"
+#include "stiv/detection/proximity.hpp"
+#include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
+using Candidate = PrimitivePair;
+
+/// A linear step of a surface, checked; of positions that live as long.
+struct Step {
+  PositionsView start;
+  PositionsView end;
+  Proximity proximity;
+  Vector3 motion = Vector3::Zero();  ///< of the frame that it is seen from, see common_motion
+};
+
+/// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
+/// chunk do not depend on the number of threads. Candidates are relevant (see Relevance), and each comes once; pairs
+/// whose padded bounds stay apart (see SweptVertices) may be left out.
+class CandidateSource {
+ public:
+  /// Takes some of a chunk's candidates; may overwrite them, the source does not look at them again.
+  using Sink = std::function<void(std::span<Candidate>)>;
+
+  virtual ~CandidateSource() = default;
+  /// @throws InputError as Surface::check_positions, the shape aside
+  virtual void update(const Step& step, const Execution& execution) = 0;
+  /// The step of the last update, for vector code to load.
+  virtual const VertexSteps& vertex_steps() const = 0;
+  /// Are the candidates of the step few enough to be looked at in bounded time and memory? Depends on the step alone.
+  /// Visits go through all of them either way.
+  virtual bool manageable() const { return true; }
+  virtual Index chunk_count(EventKind kind) const = 0;
+  virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;
+};
+
+std::unique_ptr<CandidateSource> make_brute_force(const Surface& surface);
+std::unique_ptr<CandidateSource> make_bvh_source(const Surface& surface);
+std::unique_ptr<CandidateSource> make_hash_grid(const Surface& surface);
+
+/// The source of a broad phase over a surface, which must outlive it.
+std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surface& surface);
+
+}  // namespace stiv

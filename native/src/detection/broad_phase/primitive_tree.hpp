@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/incidence.hpp"
+#include "detection/broad_phase/swept_vertices.hpp"
+
+namespace stiv {
+
+/// Primitives of one kind as rows of `size` vertices, with a tree over them: built at the first step, and again once a
+/// deformation has spoiled its order.
+template <Index size>
+class PrimitiveTree {
+ public:
+  /// @param rows (count, size), alive as long as this
+  PrimitiveTree(const Surface& surface, const Index* rows, Index count)
+      : surface_(surface), rows_(rows), count_(count) {}
+
+  /// Brings the boxes up to date after `change` of the vertices' boxes.
+  void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
+    const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
+    if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start);
+    const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
+    if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
+      tree_->refit(box_of, execution);
+    } else if (change == SweptVertices::Change::some) {
+      tree_->refit_some(incidence_->rows_with(swept.changed()), box_of);
+    }
+  }
+
+  const Bvh& tree() const { return *tree_; }
+
+ private:
+  /// To find the primitives of fewer vertices than one in so many takes less time than to refit all, which several
+  /// threads share.
+  static constexpr std::size_t few = 16;
+
+  static std::size_t place(Index index) { return static_cast<std::size_t>(index); }
+
+  std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
+    return std::span<const Index, static_cast<std::size_t>(size)>(rows_ + static_cast<std::ptrdiff_t>(primitive) * size,
+                                                                  static_cast<std::size_t>(size));
+  }
+
+  /// Sorted by where things are at the start: a first step may take them anywhere.
+  void build(const PositionsView& start) {
+    std::vector<Eigen::Vector3f> centres(place(count_));
+    std::vector<Index> bodies(place(count_));
+    for (Index primitive = 0; primitive < count_; ++primitive) {
+      Vector3 sum = Vector3::Zero();
+      for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
+      const Eigen::Vector3f centre = sum.cast<float>();
+      centres[place(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
+      bodies[place(primitive)] = surface_.body_of(row(primitive)[0]);
+    }
+    tree_.emplace(centres, bodies, CornerRows{rows_, size});
+    // Needed once few vertices move; made here all the same, so that a long session's memory does not grow by it late.
+    if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
+    spread_ = spread(start);
+  }
+
+  /// How far what shares a block lies apart, in parts of the whole extent, the mean over some blocks: what a
+  /// deformation that keeps neighbours together leaves as it is.
+  double spread(const PositionsView& start) const {
+    constexpr std::size_t stride = 8;
+    const std::vector<Index>& order = tree_->order();
+    Eigen::AlignedBox3d whole;
+    double sum = 0;
+    for (std::size_t first = 0; first < order.size(); first += stride * Bvh::width) {
+      Eigen::AlignedBox3d block;
+      for (std::size_t k = first; k < first + Bvh::width; ++k)
+        if (order[k] >= 0) block.extend(Vector3(start.row(row(order[k])[0])));
+      sum += block.sizes().sum();
+      whole.extend(block);
+    }
+    const double blocks = static_cast<double>((order.size() / Bvh::width + stride - 1) / stride);
+    return sum > 0 ? sum / (blocks * whole.sizes().sum()) : 0;
+  }
+
+  /// Has the surface been deformed so much since the tree was built that another one pays?
+  bool is_spoiled(const PositionsView& start) const { return spread(start) > 2 * spread_; }
+
+  const Surface& surface_;
+  const Index* rows_;
+  Index count_;
+  std::optional<Bvh> tree_;
+  double spread_ = 0;  // when the tree was built
+  std::optional<Incidence> incidence_;
+};
+
+}  // namespace stiv

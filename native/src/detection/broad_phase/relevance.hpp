@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "detection/broad_phase/candidates.hpp"
+
+namespace stiv {
+
+/// The vertices of a candidate in the order of Event::vertices; of two edges, the one with the lower number first.
+/// Here, because it is a few loads for each of very many candidates.
+inline std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, const Candidate& candidate) {
+  if (kind == EventKind::vertex_face) {
+    const Index* const face = surface.triangles().data() + 3 * static_cast<std::ptrdiff_t>(candidate.second);
+    return {candidate.first, face[0], face[1], face[2]};
+  }
+  const Index* const edges = surface.edges().data();
+  const Index* const a = edges + 2 * static_cast<std::ptrdiff_t>(std::min(candidate.first, candidate.second));
+  const Index* const b = edges + 2 * static_cast<std::ptrdiff_t>(std::max(candidate.first, candidate.second));
+  return {a[0], a[1], b[0], b[1]};
+}
+
+/// Which pairs of primitives can interfere at all during a step: those that share no vertex, of which a vertex moves,
+/// and whose bodies meet.
+class Relevance {
+ public:
+  Relevance(const Surface& surface, const Step& step);
+
+  /// Moves the relevant candidates to the front and returns them.
+  std::span<Candidate> select(EventKind kind, std::span<Candidate> candidates) const;
+
+ private:
+  bool relevant(EventKind kind, const std::array<Index, 4>& v) const;
+
+  const Surface& surface_;
+  std::vector<unsigned char> moved_;
+};
+
+}  // namespace stiv

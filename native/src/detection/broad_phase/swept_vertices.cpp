@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/broad_phase/swept_vertices.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "detection/joined.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr Index chunk_size = 4096;
+
+std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+const double* row(const PositionsView& positions, Index vertex) {
+  return positions.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
+}
+
+bool same_bits(const PositionsView& a, const PositionsView& b, Index vertex, Index count) {
+  return std::memcmp(row(a, vertex), row(b, vertex), 3 * sizeof(double) * at(count)) == 0;
+}
+
+/// A float not above `value`, or the least one. Conversion errs by at most half a unit in the last place, which |f|
+/// 2^-23 covers; the smallest denormal does so around zero.
+float round_down(double value) {
+  using Limits = std::numeric_limits<float>;
+  constexpr auto largest = static_cast<double>(Limits::max());
+  const auto nearest = static_cast<float>(value < -largest ? -largest : value > largest ? largest : value);
+  return std::max(nearest - (std::abs(nearest) * Limits::epsilon() + Limits::denorm_min()), Limits::lowest());
+}
+
+}  // namespace
+
+/// Where some vertices go.
+struct SweptVertices::Survey {
+  Vector3 low = Vector3::Constant(never), high = -low;
+  bool finite = true;
+
+  void include(const Survey& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+    finite = finite && other.finite;
+  }
+  void include(const double* from, const double* to) {
+    for (Index k = 0; k < 3; ++k) {
+      low[k] = std::min({low[k], from[k], to[k]});
+      high[k] = std::max({high[k], from[k], to[k]});
+      finite = finite && std::isfinite(from[k]) && std::isfinite(to[k]);
+    }
+  }
+};
+
+// A pair is reported at most (1 + 1e-3) h + 9 * 2^-46 M apart (or where its own boxes overlap at that distance), with M
+// no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
+double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
+
+/// Vertices whose step is not the one of their box, ascending.
+std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
+  const Index count = surface_.vertex_count();
+  std::vector<std::vector<Index>> parts(at(Execution::chunk_count(count, chunk_size)));
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
+    const auto same = [&](Index first, Index number) {
+      return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
+    };
+    for (Index some = begin; some < end; some += run) {
+      const Index last = std::min(end, some + run);
+      if (same(some, last - some)) continue;
+      for (Index vertex = some; vertex < last; ++vertex)
+        if (!same(vertex, 1)) parts[at(chunk)].push_back(vertex);
+    }
+  });
+  return joined<Index>(parts);
+}
+
+/// @throws InputError if a number is not finite
+SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
+  const auto count = static_cast<Index>(changed_.size());
+  std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    Survey part;
+    for (Index k = begin; k < end; ++k) part.include(row(step.start, changed_[at(k)]), row(step.end, changed_[at(k)]));
+    parts[at(chunk)] = part;
+  });
+  Survey whole;
+  for (const Survey& part : parts) whole.include(part);
+  if (!whole.finite) {
+    surface_.check_positions(step.start);
+    surface_.check_positions(step.end);
+  }
+  return whole;
+}
+
+/// The frame there is, if it serves; with the motion of this step.
+SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& survey) const {
+  Frame frame = frame_;
+  frame.separation = step.proximity.separation;
+  frame.motion = step.motion;
+  if (changed_.empty()) return frame;
+  const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(changed_.size());
+  const bool reaches =
+      (survey.high - frame.centre).maxCoeff() <= frame.radius && (frame.centre - survey.low).maxCoeff() <= frame.radius;
+  if (reaches && changed < count / 2) return frame;
+  Vector3 low = survey.low, high = survey.high;
+  if (changed < count) {
+    low = low.cwiseMin(frame.centre - Vector3::Constant(frame.radius));
+    high = high.cwiseMax(frame.centre + Vector3::Constant(frame.radius));
+  }
+  const double radius = (high / 2 - low / 2).maxCoeff();
+  if (reaches && frame.radius <= 8 * radius) return frame;
+  frame.centre = low / 2 + high / 2;
+  frame.radius = 2 * radius;
+  return frame;
+}
+
+PackedBox SweptVertices::box(const Step& step, Index vertex) const {
+  const double *from = row(step.start, vertex), *to = row(step.end, vertex);
+  double start[3], end[3], reach = 0;
+  bool moves = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    start[k] = from[k] - frame_.centre[axis];
+    end[k] = to[k] - frame_.centre[axis] - frame_.motion[axis];
+    reach = std::max(reach, std::abs(end[k] - start[k]));
+    moves |= from[k] != to[k];
+  }
+  const double padding = frame_.margin() + slack * reach;
+  PackedBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.values[k] = round_down(std::min(start[k], end[k]) - padding);
+    box.values[k + 3] = round_down(-std::max(start[k], end[k]) - padding);
+  }
+  box.values[6] = moves ? -1.0F : 1.0F;
+  box.values[7] = 0;
+  return box;
+}
+
+/// Is the start that of the vertex's box, and the end, each less its step's common motion, within the slack of the
+/// segment?
+bool SweptVertices::near_segment(const Step& step, Index vertex) const {
+  if (!same_bits(step.start, start_, vertex, 1)) return false;
+  const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
+  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - step.motion;
+  const double length2 = motion.squaredNorm();
+  const bool may_move = boxes_[at(vertex)].active() || start == end;
+  if (!(length2 > 0) || !may_move) return false;
+  const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
+  const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
+  const double size = start.lpNorm<1>() + end.lpNorm<1>() + step.motion.lpNorm<1>() + frame_.motion.lpNorm<1>();
+  return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
+}
+
+void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
+  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) {
+      const Index vertex = vertices[at(k)];
+      boxes_[at(vertex)] = box(step, vertex);
+      start_.row(vertex) = step.start.row(vertex);
+      end_.row(vertex) = step.end.row(vertex);
+    }
+  });
+}
+
+/// Do the boxes hold the step, as seen from a frame with its motion? Not one with a number that is not finite.
+bool SweptVertices::holds(const Step& step, const Execution& execution) const {
+  if (step.proximity.separation != frame_.separation) return false;
+  const bool all = step.motion != frame_.motion;
+  const auto count = all ? surface_.vertex_count() : static_cast<Index>(changed_.size());
+  std::atomic<bool> near{true};
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
+      if (!near_segment(step, all ? k : changed_[at(k)])) near.store(false, std::memory_order_relaxed);
+  });
+  return near;
+}
+
+/// What neither differs from its box now nor did so in the last step is there already. Holds if cancelled half way.
+void SweptVertices::take_steps(const Step& step, const Execution& execution) {
+  if (!complete_) {
+    steps_.update(step.start, step.end, execution);
+    strayed_.clear();
+    return;
+  }
+  steps_.update(step.start, step.end, strayed_, execution);
+  strayed_.insert(strayed_.end(), changed_.begin(), changed_.end());
+  steps_.update(step.start, step.end, changed_, execution);
+  strayed_ = changed_;
+}
+
+SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
+  const Index count = surface_.vertex_count();
+  changed_ = changed_in(step, execution);
+  if (complete_ && may_stay && holds(step, execution)) {
+    take_steps(step, execution);
+    return Change::none;
+  }
+  const Frame frame = frame_for(step, survey(step, execution));
+  take_steps(step, execution);
+  const bool all = !complete_ || frame != frame_;
+  complete_ = false;  // until all is done: it may be cancelled half way
+  frame_ = frame;
+  if (all) {
+    boxes_.resize(at(count));
+    start_.resize(count, 3);
+    end_.resize(count, 3);
+    changed_.resize(at(count));
+    std::iota(changed_.begin(), changed_.end(), 0);
+  }
+  sweep(step, changed_, execution);
+  strayed_.clear();
+  complete_ = true;
+  return all || changed_.size() > at(count) / 2 ? Change::all : Change::some;
+}
+
+}  // namespace stiv

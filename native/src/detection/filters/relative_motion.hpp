@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "detection/narrow_phase/double_double.hpp"
+#include "stiv/detection/distance.hpp"
+#include "stiv/detection/narrow_phase.hpp"
+
+namespace stiv {
+
+template <class Scalar>
+using VectorOf = Eigen::Matrix<Scalar, 3, 1>;
+
+/// A pair seen from its first vertex, which thereby rests at the origin: motion common to all four vertices vanishes
+/// (exactly where the displacements are equal), and so does the rounding that a far origin brings.
+template <class Scalar>
+struct RelativeMotion {
+  RelativeMotion(EventKind event_kind, const PairMotion& motion);
+
+  Quadruple<Scalar> at(const Scalar& time) const;
+  bool rests() const;
+
+  EventKind kind;
+  Quadruple<Scalar> start;  ///< x_k - x_0
+  Quadruple<Scalar> step;   ///< displacement of x_k less that of x_0
+
+  /// Bound of the rounding error of a projected gap. [docs/mathematics.md, "Continuous detection"]
+  Scalar rounding;
+};
+
+/// A plane with unit normal n separates the sides by g(t) = min n.(x_i(t) - x_j(t)) over i of the first side and j of
+/// the second. Each term is linear in time, so g is concave: true at both ends of an interval means true within.
+/// Returns the largest time up to 1 to which the plane keeps g >= clearance from `time` on; `time` if it fails there.
+template <class Scalar>
+Scalar reach_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
+                      const Scalar& clearance);
+
+/// The same for a plane whose normal turns linearly from n0 at t0 to n1 at t1 (it is never longer than one in between):
+/// n(t).(x_i - x_j)(t) is quadratic, and its Bernstein coefficients bound it from below. True if all keep clearance.
+template <class Scalar>
+bool turning_plane_holds(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& n0, const Scalar& t0,
+                         const VectorOf<Scalar>& n1, const Scalar& t1, const Scalar& clearance);
+
+/// g of a plane at a time.
+template <class Scalar>
+Scalar gap_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time);
+
+/// Do the nearest points lie within face, vertex and edges, off all ends and sides?
+template <class Scalar>
+bool within_both(const WitnessOf<Scalar>& nearest) {
+  for (const Scalar& weight : nearest.weights)
+    if (weight == 0) return false;
+  return true;
+}
+
+/// Unit normal of the triangle, or of the plane spanned by both edges; zero where it is degenerate.
+template <class Scalar>
+VectorOf<Scalar> geometric_normal(const RelativeMotion<Scalar>& motion, const Scalar& time);
+
+}  // namespace stiv

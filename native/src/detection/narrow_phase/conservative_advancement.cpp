@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/narrow_phase/conservative_advancement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stiv {
+
+namespace {
+
+/// Steps from which on an advance counts as slow: most end before.
+constexpr int slow = 2;
+/// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
+constexpr double tolerance = 1e-3;
+
+/// The edge, if any, within which exactly one of the nearest points lies.
+template <class Scalar>
+VectorOf<Scalar> edge_of(EventKind kind, const WitnessOf<Scalar>& nearest, const Quadruple<Scalar>& x) {
+  const auto& w = nearest.weights;
+  const bool first = kind == EventKind::edge_edge && w[0] != 0 && w[1] != 0;
+  if (first) return x[1] - x[0];
+  for (const auto& [a, b] : {std::pair(2, 3), std::pair(1, 3), std::pair(1, 2)}) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    if (w[i] != 0 && w[j] != 0 && (i == 2 || kind == EventKind::vertex_face)) return x[j] - x[i];
+  }
+  return VectorOf<Scalar>::Zero();
+}
+
+/// Of the nearest points. The difference of two points that nearly coincide is noise. Within both primitives, the
+/// normal of the face or of both edges takes its place; within an edge, what it has along the edge is taken away, which
+/// its far ends would turn into distance.
+template <class Scalar>
+VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& time) {
+  if (!(nearest.distance > 0)) return VectorOf<Scalar>::Zero();
+  if (nearest.distance >= Precision<Scalar>::noise * motion.rounding) return nearest.separation / nearest.distance;
+  if (within_both(nearest)) {
+    const VectorOf<Scalar> normal = geometric_normal(motion, time);
+    if (!normal.isZero(0)) return normal.dot(nearest.separation) < 0 ? VectorOf<Scalar>(-normal) : normal;
+  }
+  const VectorOf<Scalar> edge = edge_of(motion.kind, nearest, motion.at(time));
+  const Scalar length2 = edge.squaredNorm();
+  if (!(length2 > 0)) return nearest.separation / nearest.distance;
+  const VectorOf<Scalar> across = nearest.separation - (edge.dot(nearest.separation) / length2) * edge;
+  const Scalar length = across.norm();
+  return length > 0 ? VectorOf<Scalar>(across / length) : VectorOf<Scalar>(VectorOf<Scalar>::Zero());
+}
+
+template <class Scalar>
+VectorOf<Scalar> relative_step(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& witness) {
+  const auto& w = witness.weights;
+  return w[1] * motion.step[1] + w[2] * motion.step[2] + w[3] * motion.step[3];
+}
+
+/// When the pair would be within `threshold` (or, if never, nearest) if the nearest points stayed where they are on
+/// their primitives; the end of the step if they part.
+template <class Scalar>
+Scalar predicted_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& witness, const Scalar& threshold,
+                      const Scalar& time) {
+  const VectorOf<Scalar> speed = relative_step(motion, witness);
+  const Scalar a = speed.squaredNorm(), b = witness.separation.dot(speed);
+  if (!(b < 0)) return 1;
+  const Scalar c = witness.separation.squaredNorm() - threshold * threshold;
+  const Scalar discriminant = b * b - a * c;
+  using std::sqrt;
+  const Scalar wait = discriminant > 0 ? Scalar(c / (sqrt(discriminant) - b)) : Scalar(-b / a);
+  return std::min<Scalar>(1.0, time + wait);
+}
+
+/// How far a plane with the direction of the nearest points at a later time, or one that turns towards it, leads.
+template <class Scalar>
+Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
+                      const Scalar& trial, const Scalar& clearance) {
+  const WitnessOf<Scalar> later = witness(motion.kind, motion.at(trial));
+  const VectorOf<Scalar> later_normal = direction(motion, later, trial);
+  const Scalar fixed = reach_of_plane(motion, later_normal, time, clearance);
+  if (fixed >= trial || !turning_plane_holds(motion, normal, time, later_normal, trial, clearance)) return fixed;
+  return reach_of_plane(motion, later_normal, trial, clearance);
+}
+
+/// The same from the fall of the distance over the last step: right where the nearest points run along their
+/// primitives.
+template <class Scalar>
+Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scalar& time_before,
+                         const Scalar& distance_before, const Scalar& threshold) {
+  const Scalar fall = distance_before - distance;
+  if (!(fall > 0)) return time;
+  return std::min<Scalar>(1.0, time + (distance - threshold) * (time - time_before) / fall);
+}
+
+/// The time to which planes show the pair apart, from `time` on. `expected`: when it is expected within the threshold.
+/// Takes the trials that it makes off `budget`.
+template <class Scalar>
+Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
+                 const Scalar& time, const Scalar& expected, int& budget) {
+  const Scalar clearance = threshold + motion.rounding;
+  const VectorOf<Scalar> normal = direction(motion, nearest, time);
+  Scalar reached = reach_of_plane(motion, normal, time, clearance);
+  Scalar trial = expected;
+  for (int k = 0; k < Precision<Scalar>::most_trials && trial > reached; ++k, --budget) {
+    reached = std::max(reached, reach_of_trial(motion, normal, time, trial, clearance));
+    trial = time + (trial - time) / 2;
+  }
+  return reached;
+}
+
+/// Directions besides that of the nearest points, which rounding spoils for pairs that are all but degenerate.
+template <class Scalar>
+Scalar reach_of_other_planes(const RelativeMotion<Scalar>& motion, const Scalar& time, const Scalar& clearance) {
+  const VectorOf<Scalar> normal = geometric_normal(motion, time);
+  return std::max(reach_of_plane(motion, normal, time, clearance),
+                  reach_of_plane<Scalar>(motion, -normal, time, clearance));
+}
+
+/// Do the boxes of both sides, in a frame of the pair, keep apart for the whole step? What a broad phase leaves out
+/// must not be reported by the narrow phase where it gives up.
+template <class Scalar>
+bool boxes_apart(const RelativeMotion<Scalar>& motion, const Scalar& clearance) {
+  for (Index axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0})
+      if (reach_of_plane<Scalar>(motion, Scalar(sign) * VectorOf<Scalar>::Unit(axis), 0, clearance) >= 1) return true;
+  return false;
+}
+
+template <class Scalar>
+bool approaches(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& witness) {
+  return witness.separation.dot(relative_step(motion, witness)) < 0;
+}
+
+/// Near enough to end: within rounding of the threshold, or within the tolerance and still approaching.
+template <class Scalar>
+bool arrived(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold) {
+  if (nearest.distance <= threshold + 8 * motion.rounding) return true;
+  return nearest.distance <= threshold * (1 + tolerance) && approaches(motion, nearest);
+}
+
+}  // namespace
+
+// A plane through the nearest points leads at least as far as the step of additive CCD, (distance - threshold) over
+// the sum of speeds, and for pairs that slide past each other much further; so planes are all that is used. The safety
+// of the result rests on the planes alone: a poor direction costs steps, never correctness.
+template <class Scalar>
+std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
+                                        const Scalar& time, double latest) {
+  const Scalar clearance = threshold + motion.rounding;
+  const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
+  Approach<Scalar> approach{time, {}, VectorOf<Scalar>::Zero()};
+  Scalar time_before = time, distance_before = 0;
+  int budget = Precision<Scalar>::trials_in_all;
+  for (int step = 0; step < Precision<Scalar>::most_steps && budget > 0; ++step) {
+    approach.witness = witness(motion.kind, motion.at(approach.time));
+    const Scalar distance = approach.witness.distance;
+    if (arrived(motion, approach.witness, threshold)) return approach;
+    Scalar expected = predicted_time(motion, approach.witness, aim, approach.time);
+    if (step >= slow)
+      expected = std::max(expected, extrapolated_time(approach.time, distance, time_before, distance_before, aim));
+    Scalar reached = next_time(motion, approach.witness, threshold, approach.time, expected, budget);
+    if (reached <= approach.time) reached = reach_of_other_planes(motion, approach.time, clearance);
+    if (reached >= 1 || reached > latest) return std::nullopt;
+    if (reached <= approach.time) break;
+    approach.last_normal = direction(motion, approach.witness, approach.time);
+    time_before = approach.time;
+    distance_before = distance;
+    approach.time = reached;
+  }
+  if (boxes_apart(motion, clearance)) return std::nullopt;
+  approach.witness = witness(motion.kind, motion.at(approach.time));
+  return approach;
+}
+
+double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold) {
+  // What starts at the threshold may not come nearer; what starts touching may not go through.
+  const bool at_threshold = start_distance > 8 * motion.rounding;
+  const double least = (at_threshold ? std::min(start_distance, threshold) : 0) - motion.rounding;
+  const double apart = threshold + motion.rounding;
+  const auto slides_along = [&](const Vector3& normal) {
+    return gap_of_plane(motion, normal, 0.0) >= least && gap_of_plane(motion, normal, 1.0) >= least;
+  };
+  for (const double time : {0.0, 1.0}) {
+    const Vector3 normal = geometric_normal(motion, time);
+    if (normal.isZero(0)) continue;
+    if (slides_along(normal) || slides_along(-normal)) return 1;
+  }
+  if (at_threshold && slides_along(direction(motion, witness(motion.kind, motion.start), 0.0))) return 1;
+  for (double time = 1; time > 0x1p-24; time /= 2) {
+    const Vector3 normal = direction(motion, witness(motion.kind, motion.at(time)), time);
+    if (gap_of_plane(motion, normal, 0.0) >= least && gap_of_plane(motion, normal, time) >= apart) return time;
+  }
+  return 0;
+}
+
+template std::optional<Approach<double>> advance(const RelativeMotion<double>&, const double&, const double&, double);
+template std::optional<Approach<DoubleDouble>> advance(const RelativeMotion<DoubleDouble>&, const DoubleDouble&,
+                                                       const DoubleDouble&, double);
+
+}  // namespace stiv

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "detection/narrow_phase/conservative_advancement.hpp"
+
+namespace stiv {
+
+/// What is told of a contact that a narrow phase found.
+Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>& approach, double start_distance);
+
+/// What the pair keeps by its distance at the reference, `start_distance` if that is the start of the step.
+Keeping keeping_of(EventKind kind, const PairMotion& motion, const Proximity& proximity, double start_distance);
+
+}  // namespace stiv

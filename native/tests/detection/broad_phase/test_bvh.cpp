@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "detection/broad_phase/bvh.hpp"
+
+using namespace stiv;
+
+namespace {
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+std::vector<Bounds> random_boxes(int count, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Bounds> boxes;
+  for (int k = 0; k < count; ++k) {
+    const Vector3 low(unit(random), unit(random), unit(random));
+    const Vector3 high = low + size * Vector3(unit(random), unit(random), unit(random));
+    Bounds box = Bounds::empty();
+    box.include(low, 0);
+    box.include(high, 0);
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+/// `keep(i, j)` of the pairs that overlap; within one list if both are the same.
+template <class Keep>
+Pairs expected_pairs(const std::vector<Bounds>& a, const std::vector<Bounds>& b, const Keep& keep) {
+  Pairs pairs;
+  for (Index i = 0; i < static_cast<Index>(a.size()); ++i)
+    for (Index j = &a == &b ? i + 1 : 0; j < static_cast<Index>(b.size()); ++j)
+      if (overlap(a[static_cast<std::size_t>(i)], b[static_cast<std::size_t>(j)]) && keep(i, j))
+        pairs.emplace_back(i, j);
+  return pairs;
+}
+
+Pairs sorted(Pairs pairs, bool unordered) {
+  if (unordered)
+    for (auto& [i, j] : pairs)
+      if (i > j) std::swap(i, j);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+const auto all = [](Index, Index) { return true; };
+
+}  // namespace
+
+TEST_CASE("bvh: pairs within a tree and between trees are those of all boxes compared") {
+  const Execution execution(2);
+  for (const int count : {0, 1, 7, 8, 9, 64, 65, 700}) {
+    const std::vector<Bounds> a = random_boxes(count, 0.2, 1), b = random_boxes(count / 2 + 1, 0.1, 2);
+    const Bvh tree(a), other(b);
+    CHECK(tree.size() == count);
+    CHECK(sorted(Bvh::overlapping_pairs(tree, execution), true) == expected_pairs(a, a, all));
+    CHECK(sorted(Bvh::overlapping_pairs(tree, other, execution), false) == expected_pairs(a, b, all));
+  }
+}
+
+TEST_CASE("bvh: refitted to boxes that moved, with some of them active") {
+  const Execution execution(1);
+  const std::vector<Bounds> moved = random_boxes(500, 0.2, 4);
+  std::vector<unsigned char> active(500, 0);
+  for (std::size_t k = 0; k < 500; k += 50) active[k] = 1;
+  Bvh tree(random_boxes(500, 0.2, 3));
+  tree.refit(moved, active);
+  const auto any_active = [&](Index i, Index j) {
+    return (active[static_cast<std::size_t>(i)] | active[static_cast<std::size_t>(j)]) != 0;
+  };
+  CHECK(sorted(Bvh::overlapping_pairs(tree, execution), true) == expected_pairs(moved, moved, any_active));
+}
+
+TEST_CASE("bvh: groups that do not meet are left out") {
+  const std::vector<Bounds> boxes = random_boxes(400, 0.2, 5);
+  std::vector<Index> groups;
+  for (Index k = 0; k < 400; ++k) groups.push_back(k % 3);
+  const GroupTable table(3, {0, 1, 1, 1, 1, 0, 1, 0, 1});
+  const Bvh tree(boxes, groups);
+  PairBuffer found;
+  for (const Bvh::Task& task : tree.tasks(tree, table)) tree.overlaps(task, tree, table, found);
+  Pairs pairs;
+  for (std::size_t k = 0; k < found.count; ++k) pairs.emplace_back(found.first[k], found.second[k]);
+  CHECK(sorted(pairs, true) ==
+        expected_pairs(boxes, boxes, [&](Index i, Index j) { return table.meet(i % 3, j % 3); }));
+}
+
+TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
+  const Bvh tree(random_boxes(3000, 0.05, 6));
+  const Pairs expected = Bvh::overlapping_pairs(tree, Execution(1));
+  CHECK(expected.size() > 300);
+  for (const int threads : {2, 3}) CHECK(Bvh::overlapping_pairs(tree, Execution(threads)) == expected);
+}
+
+TEST_CASE("bounds: single precision is rounded outward at all scales") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const double scale : {1e-310, 1e-40, 1e-7, 1.0, 1e7, 1e38, 1e60})
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vector3 point = scale * Vector3(unit(random), unit(random), unit(random));
+      Bounds box = Bounds::empty();
+      box.include(point, 0);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        CHECK(static_cast<double>(box.low[axis]) <= point[static_cast<Index>(axis)]);
+        CHECK(static_cast<double>(box.high[axis]) >= point[static_cast<Index>(axis)]);
+      }
+    }
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <random>
+
+#include "detection/broad_phase/primitive_tree.hpp"
+
+using namespace stiv;
+
+namespace {
+
+constexpr Index side = 12, count = side * side * side;  // triangles, one in each cell of a cube
+
+std::shared_ptr<const Surface> loose_triangles() {
+  SurfaceDefinition definition;
+  definition.vertex_count = 3 * count;
+  definition.triangles.resize(count, 3);
+  for (Index face = 0; face < count; ++face) definition.triangles.row(face) << 3 * face, 3 * face + 1, 3 * face + 2;
+  return std::make_shared<const Surface>(definition);
+}
+
+/// Triangle k in cell `cells[k]`, reaching into the neighbouring ones.
+Positions placed(const std::vector<Index>& cells) {
+  Positions q(3 * count, 3);
+  for (Index face = 0; face < count; ++face) {
+    const Index cell = cells[static_cast<std::size_t>(face)];
+    const Vector3 corner(cell % side, cell / side % side, cell / (side * side));
+    q.row(3 * face) = corner;
+    q.row(3 * face + 1) = corner + Vector3(1.2, 0.3, 0.1);
+    q.row(3 * face + 2) = corner + Vector3(0.2, 1.1, 0.4);
+  }
+  return q;
+}
+
+std::vector<Index> in_order() {
+  std::vector<Index> cells(count);
+  std::iota(cells.begin(), cells.end(), 0);
+  return cells;
+}
+
+std::vector<Index> shuffled() {
+  std::vector<Index> cells = in_order();
+  std::mt19937 random(1);
+  std::shuffle(cells.begin(), cells.end(), random);
+  return cells;
+}
+
+/// Pairs of nodes whose children a traversal of the tree against itself compares.
+std::int64_t visited(const Bvh& tree, std::size_t level, std::size_t a, std::size_t b) {
+  if (level == 0) return 1;
+  const std::vector<PackedBox>& below = tree.levels()[level - 1].boxes;
+  std::int64_t sum = 1;
+  for (std::size_t i = Bvh::width * a; i < std::min(below.size(), Bvh::width * (a + 1)); ++i)
+    for (std::size_t j = a == b ? i : Bvh::width * b; j < std::min(below.size(), Bvh::width * (b + 1)); ++j)
+      if (may_meet(below[i], below[j])) sum += visited(tree, level - 1, i, j);
+  return sum;
+}
+
+std::int64_t visited(const Bvh& tree) { return visited(tree, tree.levels().size() - 1, 0, 0); }
+
+std::vector<std::pair<Index, Index>> pairs(const Bvh& tree) {
+  std::vector<std::pair<Index, Index>> found = Bvh::overlapping_pairs(tree, Execution(1));
+  for (auto& [i, j] : found)
+    if (i > j) std::swap(i, j);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// A tree that rests at `first`, and then is brought to `second`.
+struct Kept {
+  Kept(const Positions& first, const Positions& second)
+      : surface(loose_triangles()), swept(*surface), tree(*surface, surface->triangles().data(), count) {
+    update(first);
+    before = tree.tree();
+    update(second);
+    as_it_was = before;
+    as_it_was->refit([&](Index face) { return swept.box_of(corners(face)); }, Execution(1));
+  }
+
+  void update(const Positions& q) {
+    Positions end = q;
+    for (Index row = 0; row < end.rows(); row += 2) end(row, 2) += 1e-3;  // what rests is not looked at
+    const Step step{q, end, {0.01, 0.5}};
+    swept.update(step, Execution(1), false);
+    tree.update(step, swept, SweptVertices::Change::all, Execution(1));
+  }
+
+  std::span<const Index, 3> corners(Index face) const {
+    return std::span<const Index, 3>(surface->triangles().data() + 3 * face, 3);
+  }
+
+  std::shared_ptr<const Surface> surface;
+  SweptVertices swept;
+  PrimitiveTree<3> tree;
+  std::optional<Bvh> before, as_it_was;  // its tree at first, and that one refitted instead
+};
+
+}  // namespace
+
+TEST_CASE("primitive tree: built again once neighbours are apart, which leaves a fraction of the nodes to visit") {
+  const Kept kept(placed(in_order()), placed(shuffled()));
+  CHECK(kept.tree.tree().order() != kept.before->order());
+  CHECK(pairs(kept.tree.tree()) == pairs(*kept.as_it_was));
+  const std::int64_t fresh = visited(kept.tree.tree()), stale = visited(*kept.as_it_was);
+  MESSAGE(fresh << " pairs of nodes instead of " << stale << " for " << count << " triangles");
+  CHECK(10 * fresh < stale);
+  // To sort so many, which is what building is, takes about as many comparisons of one number each as this; a pair of
+  // nodes is up to 64 comparisons of boxes.
+  CHECK(stale - fresh > 1.0 * count * std::log2(count) / 8);
+}
+
+TEST_CASE("primitive tree: kept while neighbours stay together, however far they go") {
+  const Positions rest = placed(in_order());
+  Positions bent = rest;
+  for (Index row = 0; row < bent.rows(); ++row) {  // wound up about an axis, and grown
+    const double angle = 0.2 * rest(row, 2);
+    bent.row(row) << 7 * (std::cos(angle) * rest(row, 0) - std::sin(angle) * rest(row, 1)),
+        7 * (std::sin(angle) * rest(row, 0) + std::cos(angle) * rest(row, 1)), 9 * rest(row, 2) + 100;
+  }
+  const Kept kept(rest, bent);
+  CHECK(kept.tree.tree().order() == kept.before->order());
+  CHECK(pairs(kept.tree.tree()) == pairs(*kept.as_it_was));
+}
