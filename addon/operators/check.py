@@ -37,19 +37,21 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         if pairs and context.mode == "OBJECT":
             select(context, {name for pair in pairs for name in pair})
         chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
-        text = summary(pairs, chosen) + (read_out(context) if not pairs else "") + f"\n{tested(found)}"
+        text = summary(pairs, found.triangle_pairs, chosen) + ("" if pairs else read_out(context)) + f"\n{tested(found)}"
         context.window_manager.stiv_check.summary = text
         showing.show_pairs(context, found.pairs)
         self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
         return {"FINISHED"}
 
 
-def summary(pairs: Counter[tuple[str, str]], chosen: Mapping[str, int]) -> str:
-    """How many pairs of triangles meet, in which objects, one line each, and how many faces are selected."""
+def summary(pairs: Counter[tuple[str, str]], triangle_pairs: int, chosen: Mapping[str, int]) -> str:
+    """How many pairs of faces and of triangles meet, in which objects, and how many faces are selected."""
     if not pairs:
         return "No intersections"
     faces = f", {sum(chosen.values())} faces selected" if chosen else ""
-    lines = [f"{pairs.total()} intersecting pairs of triangles in {len({n for p in pairs for n in p})} objects{faces}"]
+    triangles = f" ({triangle_pairs} of triangles)" if triangle_pairs != pairs.total() else ""
+    objects = len({name for pair in pairs for name in pair})
+    lines = [f"{pairs.total()} intersecting pairs of faces{triangles} in {objects} objects{faces}"]
     for (first, second), count in pairs.most_common(MOST):
         lines.append(f"{first}: {count}, with itself" if first == second else f"{first}, {second}: {count}")
     if len(pairs) > MOST:

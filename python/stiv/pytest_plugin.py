@@ -21,6 +21,8 @@ from typing import Any
 
 import pytest
 
+from stiv.checks.findings import counted
+
 LISTED = 20  # pairs in a message
 _FREE, _NOT_FREE = 0, 4  # exit codes of `stiv check`
 
@@ -70,7 +72,7 @@ def _check(path: Path, options: Sequence[str]) -> str:
         if ended.returncode != _NOT_FREE:
             return f"{path}: could not be checked (exit code {ended.returncode}):\n{ended.stderr.strip()}"
         (found,) = json.loads(report.read_text(encoding="utf-8"))["files"]
-    lines = [f"{path}: {found['intersections']} intersecting pairs"]
+    lines = [f"{path}: {counted(found['intersections'], found['triangle_pairs'])}"]
     lines += [f"  {_told(pair)}" for pair in found["pairs"][:LISTED]]
     more = found["intersections"] - LISTED
     return "\n".join(lines + ([f"  ... and {more} more"] if more > 0 else []))

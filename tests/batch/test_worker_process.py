@@ -7,8 +7,9 @@ import sys
 import pytest
 
 import stiv
-from stiv.batch.worker import MARK
+from stiv.batch.worker import MARK, shortened
 from stiv.batch.worker_process import WorkerProcess
+from stiv.command_line.batch import headline
 
 TELL_THREADS = f"import os, json; print({MARK!r} + json.dumps({{'threads': os.environ['STIV_THREADS']}}))"
 
@@ -34,3 +35,12 @@ def test_a_wrong_number_of_threads_is_an_error_of_the_input(monkeypatch):
     monkeypatch.setenv("STIV_THREADS", "all")
     with pytest.raises(stiv.InputError, match="STIV_THREADS: expected a whole number"):
         stiv.Detector([[0, 1, 2]]).find([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+
+def test_of_a_long_message_the_first_line_and_the_end_are_kept_and_the_result_is_shown():
+    said = "scene.blend: 4,224 intersecting pairs\n" + "  a pair\n" * 1000 + "  ... and 4,214 more"
+    kept = shortened(said)
+    assert len(kept) == 2000 and kept.endswith("  ... and 4,214 more")
+    assert headline(kept, 4) == "scene.blend: 4,224 intersecting pairs"
+    assert headline("note\nstiv: scene.blend: cannot be read", 2) == "stiv: scene.blend: cannot be read"
+    assert shortened("short") == "short" and len(shortened("x" * 9999)) == 2000

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exact test of a scene, with names and numbers of faces."""
 
+import json
+from pathlib import Path
+
 import bpy
 import numpy as np
 from building import add, add_cube, add_grid, add_modifier, mesh
 
+import stiv
 from stiv.blender import EditSettings, check_scene, read_surface
 from stiv.blender.assembly import Element
+from stiv.blender.blend_files import save_blend
 from stiv.blender.verification import FacePair
+from stiv.command_line import program
 
 
 def test_a_free_scene() -> None:
@@ -60,3 +66,30 @@ def test_read_surface_knows_its_objects() -> None:
     assert [body.name for body in assembly.surface.bodies] == ["One", "Two"]
     assert assembly.face(12) == Element("Two", "face", 0)
     assert assembly.positions[:8].mean(axis=0).tolist() == [1, 2, 3]
+
+
+def test_each_pair_of_faces_is_listed_once_with_its_pairs_of_triangles() -> None:
+    add_cube("One")
+    add_cube("Two", (0.5, 0.4, 0.3))
+    assembly, found = read_surface(bpy.context), check_scene(bpy.context)
+    triangles = stiv.find_intersections(assembly.positions, assembly.surface)
+    faces = {frozenset((assembly.face(a), assembly.face(b))) for a, b in triangles.tolist()}
+    assert len(found.pairs) == len(faces) < len(triangles) == found.triangle_pairs
+    assert {frozenset((pair.first, pair.second)) for pair in found.pairs} == faces
+
+
+def test_both_counts_are_in_the_operators_summary_the_report_and_the_baseline(tmp_path: Path, capsys) -> None:
+    add_cube("One")
+    add_cube("Two", (0.5, 0.4, 0.3))
+    found = check_scene(bpy.context)
+    scene, report, baseline = (str(tmp_path / name) for name in ("scene.blend", "report.json", "known.json"))
+    save_blend(Path(scene))
+    assert program.run(["check", scene, "--json", report]) == 4
+    count = f"{len(found.pairs)} intersecting pairs, {found.triangle_pairs} of triangles"
+    assert f"scene.blend: {count} (" in capsys.readouterr().out
+    (file,) = json.loads(Path(report).read_text())["files"]
+    assert (file["intersections"], file["triangle_pairs"]) == (len(found.pairs), found.triangle_pairs)
+    assert sum(pair["triangle_pairs"] for pair in file["pairs"]) == found.triangle_pairs
+    known = {"file": "scene.blend", "objects": ["One", "Two"], "kind": "intersection", "pairs": found.triangle_pairs}
+    Path(baseline).write_text(json.dumps({"schema": "stiv-baseline", "version": 1, "accepted": [known]}))
+    assert program.run(["check", scene, "--baseline", baseline]) == 0  # of 0.1.0, which counted pairs of triangles

@@ -117,7 +117,7 @@ def test_the_cage_may_go_through_what_its_surface_does_not() -> None:
     assert matches(evaluated(refined), by_masks(cage, 2))
     assert moved(np.array(cage.matrix_world), np.array(CORNERS, float))[:, 2].min() < -0.9
     assert check_scene(bpy.context, settings).pairs == ()
-    assert check_scene(bpy.context).pairs != ()
+    assert check_scene(bpy.context, objects=bpy.data.objects.keys()).pairs != ()
 
 
 def test_a_stale_object_is_refused_until_refreshed() -> None:
@@ -213,3 +213,12 @@ def test_what_another_tool_made_of_a_cage_is_corrected_by_its_surface() -> None:
     assert -1.2 < evaluated(refined)[:, 2].min() < -1.1
     assert matches(evaluated(refined), by_masks(cage, 2))
     assert check_scene(bpy.context, settings).pairs == ()
+
+
+def test_a_check_without_settings_leaves_out_the_cage_unless_it_is_named() -> None:
+    cage = octahedron()
+    cage.data.vertices[4].co.z = -0.5  # a dent, in which the surface is outside of the cage
+    refined, settings = with_loop(cage)
+    assert check_scene(bpy.context, settings).pairs == check_scene(bpy.context).pairs == ()
+    assert check_scene(bpy.context).objects == 1
+    assert check_scene(bpy.context, objects=[cage.name, refined.name]).pairs != ()

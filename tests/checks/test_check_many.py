@@ -19,7 +19,7 @@ def test_several_files_each_get_their_result(tmp_path, capsys):
     report = tmp_path / "report.json"
     assert program.run(["check", *files, "--json", str(report)]) == 4
     out = capsys.readouterr().out
-    assert "a.obj: free of intersections" in out and "b ü.obj: 1 intersecting pairs" in out
+    assert "a.obj: free of intersections" in out and "b ü.obj: 1 intersecting pair" in out
     data = read_valid(report, "check")
     assert [file["free"] for file in data["files"]] == [True, False]
     assert [file["file"] for file in data["files"]] == files

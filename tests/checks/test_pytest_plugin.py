@@ -33,7 +33,7 @@ def test_a_free_mesh_passes(tmp_path):
 def test_intersections_fail_with_objects_and_faces_named(tmp_path):
     code, out = run_tests(tmp_path, f"assert_free_of_intersections({written(tmp_path / 'a.obj', CROSSING)!r})")
     assert code == 1
-    assert "a.obj: 1 intersecting pairs" in out
+    assert "a.obj: 1 intersecting pair" in out
     assert 'object "flat", triangle 0 - object "upright ü", triangle 0' in out
     assert "subprocess" not in out  # no traceback into the plugin
 

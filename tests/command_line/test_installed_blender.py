@@ -36,7 +36,7 @@ def test_the_command_runs_inside_and_its_exit_code_comes_back(tmp_path, capsys, 
     mesh.write_text(CROSSING)
     assert program.run(["check", str(mesh), "--blender", stand_in]) == 4
     out = capsys.readouterr().out
-    assert "1 intersecting pairs" in out and "Blender 4.9.0" not in out
+    assert "1 intersecting pair" in out and "Blender 4.9.0" not in out
     assert program.run(["check", f"--blender={stand_in}", str(tmp_path / "missing.obj")]) == 2
 
 

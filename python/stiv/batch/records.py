@@ -29,7 +29,7 @@ class Record:
 
     name: str
     code: int | None
-    message: str = ""  #: the last lines that the command said
+    message: str = ""  #: what the command said: the first line and, of a long text, the last ones
     seconds: float = 0.0
     attempts: int = 1
     peak_megabytes: float = 0.0  #: of the worker, up to the end of this entry

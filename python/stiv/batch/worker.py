@@ -19,7 +19,7 @@ import time
 from typing import Any, TextIO
 
 MARK = "stiv-worker:"
-MESSAGE = 2000  # characters kept of what a command said
+MESSAGE = 2000  # most characters kept of what a command said
 
 
 def main() -> None:
@@ -42,10 +42,18 @@ def run_command(arguments: list[str]) -> dict[str, Any]:
         code = program.run(arguments)
     return {
         "code": code,
-        "message": said.getvalue().strip()[-MESSAGE:],
+        "message": shortened(said.getvalue().strip()),
         "seconds": round(time.perf_counter() - begin, 3),
         "peak_megabytes": _peak_megabytes(),
     }
+
+
+def shortened(text: str) -> str:
+    """The first line and the last characters of a long text; a command's result comes first, its error last."""
+    if len(text) <= MESSAGE:
+        return text
+    first = text.splitlines()[0][: MESSAGE // 2]
+    return f"{first}\n...{text[len(first) + 4 - MESSAGE :]}"
 
 
 def _read_requests(stream: TextIO, requests: queue.Queue[dict[str, Any]]) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exact test of a whole scene, as Blender evaluates it."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import bpy
@@ -19,7 +19,8 @@ class SceneCheck:
     """What was found. `pairs` is empty for a scene free of intersections.
 
     Attributes:
-        pairs: faces that meet; a loose edge or vertex that meets a face comes with that face as the second.
+        pairs: faces that meet, each pair once; a loose edge or vertex that meets a face comes with that face as the
+            second.
         objects, triangles: how many were tested.
         hidden: objects with a surface that are hidden or excluded, and were not.
     """
@@ -29,6 +30,11 @@ class SceneCheck:
     triangles: int
     hidden: int
 
+    @property
+    def triangle_pairs(self) -> int:
+        """How many pairs of triangles meet; a face may have several."""
+        return sum(pair.triangle_pairs for pair in self.pairs)
+
 
 def read_surface(context: bpy.types.Context, objects: Collection[str] | None = None) -> Assembly:
     """All visible meshes, or those of the objects named, as one surface in world space; every body deformable.
@@ -36,8 +42,7 @@ def read_surface(context: bpy.types.Context, objects: Collection[str] | None = N
     A cage that another object shows counts only if it is named. Raises InputError naming object and vertex when a
     coordinate is not finite.
     """
-    cages = cages_shown_by_others(context)
-    scene = read_scene(context, lambda name: name not in cages if objects is None else name in objects)
+    scene = read_scene(context, _counted(context, EditSettings(), objects))
     return assemble(scene.meshes, ["deformable"] * len(scene.meshes))
 
 
@@ -46,10 +51,11 @@ def check_scene(
 ) -> SceneCheck:
     """Find every intersection of the visible scene, among obstacles and within objects too.
 
-    settings: objects in the role "ignored" and ignored pairs are left out. objects: names to be limited to.
+    settings: objects in the role "ignored" and ignored pairs are left out. objects: names to be limited to. A cage that
+    another object shows counts only if it is named.
     """
     settings = settings or EditSettings()
-    scene = read_scene(context, lambda name: settings.takes_part(name) and (objects is None or name in objects))
+    scene = read_scene(context, _counted(context, settings, objects))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
@@ -61,11 +67,23 @@ def exclusions_now(
 ) -> tuple[Exclusions, tuple[FacePair, ...]]:
     """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
     chosen = settings or EditSettings()
-    scene = read_scene(context, chosen.takes_part)
+    scene = read_scene(context, _counted(context, chosen))
     assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), chosen.ignored_pairs)
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)
     return excluded, excluded.others(pairs)
+
+
+def _counted(
+    context: bpy.types.Context, settings: EditSettings, objects: Collection[str] | None = None
+) -> Callable[[str], bool]:
+    """Tells by its name whether an object is tested."""
+    cages = cages_shown_by_others(context)
+
+    def is_counted(name: str) -> bool:
+        return settings.takes_part(name) and (name not in cages if objects is None else name in objects)
+
+    return is_counted
 
 
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:

@@ -83,7 +83,7 @@ def _read(context: bpy.types.Context, objects: Collection[str]) -> Assembly:
 
 def _at_rest(assembly: Assembly, frame: float | None, threads: int) -> Look:
     pairs = find_pairs(assembly, threads)
-    found = (Finding(plain(pair.first), plain(pair.second), frame=frame) for pair in pairs)
+    found = (Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs)
     return Look(shapes_of(assembly), frame, None, tuple(found))
 
 

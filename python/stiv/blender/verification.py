@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's own evaluation after writing, read back and tested."""
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -21,10 +22,11 @@ StepTest = Callable[[Floats, Floats], bool]
 
 @dataclass(frozen=True)
 class FacePair:
-    """Two elements that meet; the second is always a face."""
+    """Two elements that meet, the second always a face, and how many pairs of their triangles do."""
 
     first: Element
     second: Element
+    triangle_pairs: int = field(default=1, compare=False)
 
 
 @dataclass(frozen=True)
@@ -119,14 +121,20 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
 
 
 def named_pairs(assembly: Assembly, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
-    """All pairs that meet at positions `q`, (N, 3), loose edges and vertices included."""
+    """All pairs that meet at positions `q`, (N, 3), each once; loose edges and vertices included."""
     faces = stiv.find_intersections(q, assembly.surface, threads=threads)
     edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
-    return (
-        *(FacePair(assembly.face(int(a)), assembly.face(int(b))) for a, b in faces),
-        *(FacePair(assembly.loose_edge(int(a)), assembly.face(int(b))) for a, b in edges),
-        *(FacePair(assembly.vertex(int(a)), assembly.face(int(b))) for a, b in vertices),
+    counts = Counter(
+        [
+            *((assembly.face(a), assembly.face(b)) for a, b in faces.tolist()),
+            *((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
+            *((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
+        ]
     )
+    for first, second in [pair for pair in counts if pair[0] != pair[1] and pair[::-1] in counts]:
+        if (first, second) in counts:  # triangles of one face may come after those of another, and before them
+            counts[first, second] += counts.pop((second, first))
+    return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
 
 
 def _shape(placed: Placed) -> tuple[int, int]:

@@ -38,6 +38,7 @@ class Finding:
     frame: float | None = None
     to_frame: float | None = None
     time: float | None = None
+    triangle_pairs: int = 1  #: how many pairs of their triangles meet
 
     @property
     def objects(self) -> tuple[str, str]:
@@ -89,6 +90,11 @@ class FileCheck:
     pictures: tuple[str, ...] = field(default=())
 
     @property
+    def triangle_pairs(self) -> int:
+        """How many pairs of triangles meet, those that the baseline accepts left out."""
+        return sum(finding.triangle_pairs for finding in self.findings)
+
+    @property
     def free(self) -> bool:
         """Was it checked, and is nothing left but what the baseline accepts?"""
         return not self.error and not self.findings
@@ -101,3 +107,9 @@ def when(finding: Finding) -> str:
     if finding.to_frame is None:
         return f"frame {finding.frame:g}: "
     return f"between frames {finding.frame:g} and {finding.to_frame:g}: "
+
+
+def counted(pairs: int, triangle_pairs: int) -> str:
+    """Both counts for people; the second only where it differs."""
+    noun = "pair" if pairs == 1 else "pairs"
+    return f"{pairs:,} intersecting {noun}" + (f", {triangle_pairs:,} of triangles" if triangle_pairs != pairs else "")

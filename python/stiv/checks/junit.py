@@ -7,7 +7,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable, Sequence
 
-from stiv.checks.findings import FileCheck, Finding, when
+from stiv.checks.findings import FileCheck, Finding, counted, when
 
 LISTED = 50  # pairs in a failure
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -52,7 +52,8 @@ def _cases(check: FileCheck) -> list[tuple[str, list[Finding]]]:
 def _headline(findings: Sequence[Finding]) -> str:
     pairs = sorted({finding.objects for finding in findings})
     told = ", ".join(f'"{one}" and "{other}"' for one, other in pairs[:5])
-    return f"{len(findings)} pairs meet, of {told}" + (f" and {len(pairs) - 5} more" if len(pairs) > 5 else "")
+    count = counted(len(findings), sum(finding.triangle_pairs for finding in findings))
+    return f"{count}, of {told}" + (f" and {len(pairs) - 5} more" if len(pairs) > 5 else "")
 
 
 def _listed(findings: Sequence[Finding]) -> str:

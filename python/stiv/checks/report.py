@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from stiv.checks.findings import Element, FileCheck, Finding
+from stiv.checks.findings import Element, FileCheck, Finding, counted
 
 SCHEMA, VERSION = "stiv-check", 2
 LISTED_PAIRS = 100  # of each file, in the report
@@ -20,6 +20,7 @@ def report_of(checks: Sequence[FileCheck]) -> dict[str, Any]:
         "version": VERSION,
         "free": all(check.free for check in checks),
         "intersections": sum(len(check.findings) for check in checks),
+        "triangle_pairs": sum(check.triangle_pairs for check in checks),
         "files": [file_report(check) for check in checks],
     }
 
@@ -34,6 +35,7 @@ def file_report(check: FileCheck) -> dict[str, Any]:
         "frames": list(check.frames),
         "free": check.free,
         "intersections": len(check.findings),
+        "triangle_pairs": check.triangle_pairs,
         "accepted": len(check.accepted),
         "pairs": [_pair(finding) for finding in check.findings[:LISTED_PAIRS]],
         "pictures": list(check.pictures),
@@ -54,14 +56,16 @@ def summary(check: FileCheck) -> str:
     notes = [f"  note: {note}" for note in check.notes]
     if check.free:
         return "\n".join([f"{check.file}: free of intersections ({size}, {check.seconds:.2f} s){accepted}", *notes])
-    lines = [f"{check.file}: {len(check.findings):,} intersecting pairs ({size}){accepted}"]
+    lines = [f"{check.file}: {counted(len(check.findings), check.triangle_pairs)} ({size}){accepted}"]
     lines += [f"  {finding}" for finding in check.findings[:SHOWN_PAIRS]]
     more = len(check.findings) - SHOWN_PAIRS
     return "\n".join(lines + ([f"  ... and {more:,} more"] if more > 0 else []) + notes)
 
 
 def _pair(finding: Finding) -> dict[str, Any]:
-    told = {"kind": finding.kind, "first": _element(finding.first), "second": _element(finding.second)}
+    told: dict[str, Any] = {"kind": finding.kind}
+    told |= {"first": _element(finding.first), "second": _element(finding.second)}
+    told |= {"triangle_pairs": finding.triangle_pairs}
     given = {"frame": finding.frame, "to_frame": finding.to_frame, "time": finding.time}
     return told | {name: value for name, value in given.items() if value is not None}
 

@@ -96,9 +96,15 @@ def summary(records: Sequence[Record], seconds: float) -> str:
 def _line(record: Record) -> str:
     result = {0: "done", 4: "not free", 2: "bad input", None: "lost"}.get(record.code, f"exit code {record.code}")
     retried = f", attempt {record.attempts}" if record.attempts > 1 else ""
-    told = (record.message.splitlines() or [""])[-1] if record.code != 0 else ""
+    told = headline(record.message, record.code) if record.code != 0 else ""
     how = "before" if record.skipped else f"{record.seconds:.1f} s, {record.peak_megabytes:.0f} MB{retried}"
     return f"{record.name}: {result} ({how})" + (f": {told}" if told else "")
+
+
+def headline(message: str, code: int | None) -> str:
+    """The line of what a command said that tells most: a result comes first, an error last."""
+    lines = message.splitlines() or [""]
+    return lines[0 if code == ExitCode.NOT_FREE else -1]
 
 
 def _runner(arguments: argparse.Namespace, job: Job, state: Path) -> Callable[..., None]:
