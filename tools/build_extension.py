@@ -15,6 +15,7 @@ import build_guide
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
 EMPTY_WHEELS = "wheels = []\n"
+NO_VERSION = 'version = "0.0.0"\n'
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -25,15 +26,18 @@ def project_version() -> str:
 
 
 def filled_manifest(wheels: list[Path]) -> str:
-    """The add-on's manifest with its empty list of wheels filled in; checks that its version is the project's."""
-    text = (ADDON / "blender_manifest.toml").read_text()
-    if text.count(EMPTY_WHEELS) != 1:
-        raise SystemExit(f"addon/blender_manifest.toml: needs exactly one line {EMPTY_WHEELS.strip()!r}")
-    version = tomllib.loads(text)["version"]
-    if version != project_version():
-        raise SystemExit(f"addon/blender_manifest.toml: version {version}, but the project's is {project_version()}")
+    """The add-on's manifest with the project's version and the list of wheels filled in."""
     names = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in wheels)
-    return text.replace(EMPTY_WHEELS, f"wheels = [\n{names}]\n")
+    text = (ADDON / "blender_manifest.toml").read_text()
+    text = replace_line(text, NO_VERSION, f'version = "{project_version()}"\n')
+    return replace_line(text, EMPTY_WHEELS, f"wheels = [\n{names}]\n")
+
+
+def replace_line(manifest: str, placeholder: str, line: str) -> str:
+    """The manifest with a placeholder replaced, which must stand in it as one line."""
+    if f"\n{manifest}".count(f"\n{placeholder}") != 1:
+        raise SystemExit(f"addon/blender_manifest.toml: needs exactly one line {placeholder.strip()!r}")
+    return f"\n{manifest}".replace(f"\n{placeholder}", f"\n{line}")[1:]
 
 
 def contents(wheels: list[Path]) -> dict[str, bytes]:

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The version is written in pyproject.toml alone; CMake and the extension's manifest take it from there."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from tools import build_extension
+
+ROOT = Path(__file__).resolve().parents[2]
+VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+
+
+def test_cmake_reads_it() -> None:
+    script = 'include(cmake/project_version.cmake)\nmessage("is ${STIV_VERSION}")\n'
+    ran = subprocess.run(["cmake", "-P", "/dev/stdin"], cwd=ROOT, input=script, capture_output=True, text=True)
+    if ran.returncode:
+        pytest.fail(ran.stderr)
+    assert f"is {VERSION}\n" in ran.stderr
+
+
+def test_the_manifest_in_the_zip_has_it() -> None:
+    manifest = tomllib.loads(build_extension.filled_manifest([Path("stiv-1-cp311.whl")]))
+    assert manifest["version"] == VERSION
+    assert manifest["wheels"] == ["./wheels/stiv-1-cp311.whl"]
+
+
+def test_a_manifest_with_a_version_of_its_own_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "blender_manifest.toml").write_text('version = "9.9.9"\nwheels = []\n')
+    monkeypatch.setattr(build_extension, "ADDON", tmp_path)
+    with pytest.raises(SystemExit, match=re.escape('version = "0.0.0"')):
+        build_extension.filled_manifest([])
+
+
+@pytest.mark.parametrize("name", ["CMakeLists.txt", "addon/blender_manifest.toml", "CITATION.cff", "docs/Doxyfile"])
+def test_no_other_file_repeats_it(name: str) -> None:
+    assert VERSION not in (ROOT / name).read_text()
+
+
+def test_the_changelog_has_a_section_for_it() -> None:
+    assert f"\n## [{VERSION}] - " in (ROOT / "CHANGELOG.md").read_text()
