@@ -175,7 +175,8 @@ void bind_options(py::module_& module) {
       .value("controls", MetricKind::controls);
   py::enum_<VolumeKind>(module, "VolumeKind")
       .value("relative", VolumeKind::relative)
-      .value("published", VolumeKind::published);
+      .value("published", VolumeKind::published)
+      .value("published_frozen", VolumeKind::published_frozen);
   py::class_<EditOptions>(module, "EditOptions")
       .def(py::init<>())
       .def_readwrite("separation", &EditOptions::separation)

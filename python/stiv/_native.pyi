@@ -168,6 +168,7 @@ class MetricKind(enum.Enum):
 class VolumeKind(enum.Enum):
     relative = 0
     published = 1
+    published_frozen = 2
 
 class StorageFrame:
     def __init__(self, first: int, count: int, frame: _Floats) -> None: ...

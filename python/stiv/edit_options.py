@@ -33,6 +33,7 @@ METRICS: Mapping[str, _native.MetricKind] = {
 VOLUMES: Mapping[str, _native.VolumeKind] = {
     "relative": _native.VolumeKind.relative,
     "published": _native.VolumeKind.published,
+    "published_frozen": _native.VolumeKind.published_frozen,
 }
 CHOICES: Mapping[str, Mapping[str, Any]] = {
     "constraints": CONSTRAINTS,
@@ -75,7 +76,9 @@ class EditOptions:
     constraints: str = "per_patch"  #: "per_patch" or "single": one constraint for each patch, or one for all
     solver: str = "lcp"  #: "lcp", contacts push; "linear", they may also pull, and none is kept from round to round
     metric: str = "energy"  #: "energy", steps that move the surface least; "controls", the controls [Algorithm 1]
-    volumes: str = "relative"  #: "relative", of the approach of two sides; "published", of each side's own motion
+    #: "relative", of the approach of two sides; "published", of each side's own motion, with Appendix A's gradient;
+    #: "published_frozen", the same with the contact's time, normal and weights held
+    volumes: str = "relative"
     #: of the rounds: "conservative", or "polynomial" as published; acceptance is always conservative and exact
     narrow_phase: str = "conservative"
     broad_phase: str = "bvh"  #: "bvh"; "hash_grid" or "brute_force" for comparison
@@ -96,6 +99,14 @@ class EditOptions:
         Without a separation none is aimed for. constraints="single" and solver="linear" are its variants [3.3].
         """
         return cls(**{**PAPER_OPTIONS, **others})
+
+    @classmethod
+    def paper_frozen(cls, **others: Any) -> EditOptions:
+        """Return `paper` with the time, the normal and the weights of a contact held in the gradient: for comparison.
+
+        This was `paper` in version 0.1.0. It overshoots, and stays farther from the goal than `paper`.
+        """
+        return cls.paper(**{"volumes": "published_frozen", **others})
 
 
 def _native_value(name: str, value: Any) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 
 #: What :meth:`stiv.EditOptions.paper` sets: Algorithm 1 from start to end, with a constraint for each patch.
 PAPER_OPTIONS: Mapping[str, Any] = {
-    "volumes": "published",  # Eq. 3, each side by its own motion; gradients with the time held
+    "volumes": "published",  # Eq. 3, each side by its own motion; the whole gradient of Appendix A
     "metric": "controls",  # steps along the gradient by the controls
     "narrow_phase": "polynomial",  # roots of cubics, of degree six with a separation; 1/100 early
     "accumulated_rounds": 0,  # each round answers what it found itself
@@ -24,8 +24,9 @@ PAPER_DIFFERENCES = """\
 The preset "paper" is the method as published; the defaults differ from it in this:
 - Volume. Published: (1 - t) n . Dr of each side's own motion [Eq. 1, 3]. Default: of both sides' relative motion.
   The published form stops what moves together with something that it meets, and never answers by a side at rest.
-- Gradient. Published: times held, (1 - t) w n; the appendix's term of dt/dq lacks its scale, -t / (n . Drho). Default:
-  with that term, w n. Held times under-estimate the gradient, so that steps overshoot and objects are thrown back.
+- Gradient. Published: of time, weights and normal [Appendix A], by the vertices of both sides; its term of dt/dq lacks
+  its scale, -t / (n . Drho), which the preset has. Default: of the time alone, w n: the rotation of the contact plane
+  is left out, which a single grazing contact would own.
 - Metric. Published: the step is shortest in the controls [Algorithm 1]. Default: in the energy E that is to be least.
 - Margin. Published: times 1/100 early [4.1]. Default: a distance h that is kept, never below what is stored can tell.
 - Detection. Published: roots of cubics, or of a polynomial of degree six that knows planes and lines only [4.1, 5.2].

@@ -29,10 +29,10 @@ Index patch_count(const std::vector<Index>& labels) {
   return labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
 }
 
-Measurement measure_as_published(const Problem& problem, const InterferingStep& step) {
+Measurement measure_as_published(const Problem& problem, const InterferingStep& step, PublishedGradient gradient) {
   Measurement measured;
   measured.stivs = published_volumes(problem.surface(), step.events, step.start, step.end, step.areas,
-                                     problem.options().constraints);
+                                     problem.options().constraints, gradient);
   measured.patches = static_cast<Index>(measured.stivs.size());
   return measured;
 }
@@ -65,7 +65,9 @@ Measurement measure(const Problem& problem, const InterferingStep& step, int rou
   const ScopedTimer timer(execution.timings.volumes);
   switch (problem.options().volumes) {
     case VolumeKind::published:
-      return measure_as_published(problem, step);
+      return measure_as_published(problem, step, PublishedGradient::whole);
+    case VolumeKind::published_frozen:
+      return measure_as_published(problem, step, PublishedGradient::frozen);
     case VolumeKind::relative:
       break;
   }

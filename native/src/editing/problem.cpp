@@ -78,7 +78,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
 
 void Problem::set_proximity(const MovingExtent& extent, double least) {
   const std::vector<BodyPairSeparation>& pairs = options_.pair_separations;
-  const bool touching = options_.volumes == VolumeKind::published && options_.separation == 0 && pairs.empty();
+  const bool touching = options_.volumes != VolumeKind::relative && options_.separation == 0 && pairs.empty();
   options_.separation = touching ? least : separation_in_force(options_.separation, extent, least);
   proximity_ = {options_.separation, options_.keep, nullptr, &reference_, options_.keep_between};
   if (!pairs.empty()) {

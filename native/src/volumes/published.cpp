@@ -6,27 +6,26 @@
 #include <tuple>
 
 #include "volumes/gathering.hpp"
+#include "volumes/published_gradient.hpp"
 
 namespace stiv {
 
 namespace {
 
-/// A side of an event: corners [begin, end), the vertex in whose barycentric cell the contact lies, and where the
-/// contact point moves. `region` is what patches are made of.
+/// A side of an event, and the region of the vertex in whose barycentric cell the contact lies.
 struct Side {
   Region region;
-  int begin = 0, end = 0;
-  Vector3 displacement = Vector3::Zero();  // Dr
+  ContactSide contact;
 };
 
 Side side_of(const Events& events, Index number, int begin, int end, const Positions& displacement) {
   const Event& event = events[static_cast<std::size_t>(number)];
-  Side side{{0, number, false}, begin, end, Vector3::Zero()};
+  Side side{{0, number, false}, {begin, end, Vector3::Zero()}};
   double heaviest = -1;
   for (int corner = begin; corner < end; ++corner) {
     const auto k = static_cast<std::size_t>(corner);
     const double weight = std::abs(event.weights[k]);
-    side.displacement += weight * displacement.row(event.vertices[k]).transpose();
+    side.contact.displacement += weight * displacement.row(event.vertices[k]).transpose();
     if (weight <= heaviest) continue;
     heaviest = weight;
     side.region.vertex = event.vertices[k];
@@ -50,7 +49,7 @@ std::vector<Side> earliest_sides(const Events& events, const Positions& displace
   const auto same_region = [](const Side& a, const Side& b) { return a.region.vertex == b.region.vertex; };
   sides.erase(std::unique(sides.begin(), sides.end(), same_region), sides.end());
   std::erase_if(sides, [&](const Side& side) {
-    return side.displacement.dot(events[static_cast<std::size_t>(side.region.event)].normal) == 0;
+    return side.contact.displacement.dot(events[static_cast<std::size_t>(side.region.event)].normal) == 0;
   });
   return sides;
 }
@@ -64,20 +63,22 @@ std::vector<Region> regions_of(const std::vector<Side>& sides) {
 }  // namespace
 
 std::vector<Stiv> published_volumes(const Surface& surface, const Events& events, const Positions& start,
-                                    const Positions& end, const Eigen::VectorXd& areas, ConstraintKind kind) {
+                                    const Positions& end, const Eigen::VectorXd& areas, ConstraintKind kind,
+                                    PublishedGradient gradient) {
   const std::vector<Side> sides = earliest_sides(events, end - start);
   const std::vector<Index> labels = ring_labels(surface, regions_of(sides), kind);
   StivGathering gathering(labels);
   for (std::size_t number = 0; number < sides.size(); ++number) {
     const Side& side = sides[number];
     const Event& event = events[static_cast<std::size_t>(side.region.event)];
-    const double remaining = areas[side.region.vertex] * (1 - event.time), along = side.displacement.dot(event.normal);
+    const double area = areas[side.region.vertex], along = side.contact.displacement.dot(event.normal);
     const Vector3 normal = along < 0 ? event.normal : Vector3(-event.normal);
-    gathering.add_volume(labels[number], -remaining * std::abs(along));
-    for (int corner = side.begin; corner < side.end; ++corner) {
-      const auto k = static_cast<std::size_t>(corner);
-      gathering.add_gradient(labels[number], event.vertices[k], remaining * std::abs(event.weights[k]) * normal);
-    }
+    gathering.add_volume(labels[number], -area * (1 - event.time) * std::abs(along));
+    const CornerGradients corners = gradient == PublishedGradient::whole
+                                        ? whole_gradient(event, side.contact, normal, start, end)
+                                        : frozen_gradient(event, side.contact, normal);
+    for (std::size_t k = 0; k < 4; ++k)
+      if (!corners[k].isZero(0)) gathering.add_gradient(labels[number], event.vertices[k], area * corners[k]);
   }
   return gathering.stivs();
 }
