@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import stiv
 from benchmarks.velocity_filter import compare
 from blend_fixtures.scenes.sessions import dressing, face_into_waves, packing, weighted_handles
-from blend_fixtures.scenes.sessions.catalogue import table_sessions
+from blend_fixtures.scenes.sessions.catalogue import figure_sessions
 from blend_fixtures.scenes.sessions.session import Session
 from blend_fixtures.scenes.tangled import arm_in_body
 
@@ -83,7 +83,7 @@ def untangled() -> Film:
 
 def films() -> dict[str, Callable[[], Film]]:
     """All nine by the name of their picture, in the order of the paper's figures."""
-    sessions = table_sessions()
+    sessions = figure_sessions()
 
     def of(name: str) -> Callable[[], Film]:
         return lambda: filmed(sessions[name])

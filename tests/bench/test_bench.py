@@ -10,8 +10,9 @@ from json_schemas import read_valid
 
 import stiv
 from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
+from blend_fixtures.scenes.sessions.catalogue import table_sessions
 from blend_fixtures.scenes.sessions.session import Session, Stage, moved, repeated, single, surface_of
-from stiv.bench import scaling, table1
+from stiv.bench import running, scaling, table1
 from stiv.bench.running import EditFigures, record, repeat
 from stiv.bench.table1 import PUBLISHED, row, shares, table_text
 from stiv.command_line import program
@@ -94,6 +95,7 @@ def test_the_command_prints_the_table_and_writes_its_rows(small_scenes, tmp_path
         ("stiv", "one", 1),
         ("paper", "many", 1),
         ("paper", "one", 1),
+        ("paper_frozen", "many", 1),
         ("stiv", "many", 2),
     ]
     assert {r["intersections"] for r in rows} == {0}
@@ -102,7 +104,11 @@ def test_the_command_prints_the_table_and_writes_its_rows(small_scenes, tmp_path
 
 def test_one_kind_of_constraint_can_be_asked_for(small_scenes):
     rows = table1.table1(["knot"], [1], lambda note: None, ["many"])
-    assert [(r["preset"], r["constraints"]) for r in rows] == [("stiv", "many"), ("paper", "many")]
+    assert [(r["preset"], r["constraints"]) for r in rows] == [
+        ("stiv", "many"),
+        ("paper", "many"),
+        ("paper_frozen", "many"),
+    ]
 
 
 def test_a_row_that_intersects_ends_the_command_with_4(small_scenes, monkeypatch):
@@ -124,3 +130,18 @@ def test_the_energy_of_the_method_as_published_is_the_unit(small_scenes):
 def test_the_exponent_of_a_power_law_is_found():
     rows = [{"triangles": n, "ms": 3 * n**1.25} for n in (10, 76, 300, 1200)]
     assert scaling.exponent(rows, "ms") == pytest.approx(1.25)
+
+
+def test_a_step_is_counted_in_diagonals_of_what_it_moves():
+    start = np.array([[0, 0, 0], [3, 4, 0], [90, 0, 0]], float)
+    assert running.step_size(start, start + [[0.5, 0, 0], [0.1, 0, 0], [0, 0, 0]]) == pytest.approx(0.1)
+    assert running.step_size(start, start) == 0
+
+
+@pytest.mark.parametrize("name", ["tree", "knot"])
+def test_the_tables_sessions_meet_at_least_the_papers_contacts_a_round(name):
+    """Table 1 prints 16.16 and 23.25; the small moves of the figures' sessions make 7.0 and 5.3."""
+    recorded, figures = record(table_sessions()[name], {"threads": 1}, lambda note: None)
+    values = row(name, "stiv", "many", 1, recorded, figures, figures)
+    assert values["collisions"] >= PUBLISHED[name]["collisions"]
+    assert values["intersections"] == 0 and values["step"] > 0.005

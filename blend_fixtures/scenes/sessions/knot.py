@@ -14,6 +14,7 @@ from .session import Session, Stage, moved, repeated, single, surface_of
 
 RINGS, SIDES = 264, 22
 LIFT, ASIDE, MOVES = 1.6, 0.5, 80
+LARGE_MOVES = 20
 
 
 def shape() -> Shape:
@@ -21,18 +22,28 @@ def shape() -> Shape:
     return triangulated(trefoil(RINGS, SIDES))
 
 
-def stage() -> Stage:
-    """The top arch lifted, then drawn aside."""
+def stage(lift: float = LIFT, aside: float = ASIDE, moves: int = MOVES) -> Stage:
+    """The top arch lifted, then drawn aside, each in half of the moves."""
     tube = shape()
     height = tube.vertices[:, 1]
     bottom, arch = np.flatnonzero(height < np.quantile(height, 0.12)), np.flatnonzero(height > np.quantile(height, 0.9))
     surface, start = surface_of({"Knot": tube})
     deformation = stiv.laplacian(start, tube.triangles(), arch, fixed=bottom)
-    half = MOVES // 2
-    edits = repeated(moved((0, LIFT / half, 0)), half) + repeated(moved((ASIDE / half, 0, ASIDE / half)), half)
+    half = moves // 2
+    edits = repeated(moved((0, lift / half, 0)), half) + repeated(moved((aside / half, 0, aside / half)), half)
     return Stage("knot", surface, deformation, start[arch], edits)
 
 
 def session() -> Session:
-    """The arch dragged away from the bottom, and aside."""
+    """The arch dragged away from the bottom, and aside, in small moves."""
     return Session("knot", 11, "A knot under Laplacian editing, its top arch dragged", single(stage))
+
+
+def large_moves() -> Session:
+    """The arch dragged twice as far in moves eight times as large: more contacts a round than the paper's."""
+    return Session(
+        "knot",
+        11,
+        "A knot under Laplacian editing, its top arch dragged in large moves",
+        single(lambda: stage(2 * LIFT, 2 * ASIDE, LARGE_MOVES)),
+    )

@@ -43,8 +43,7 @@ ContactMotion motion_of(const Event& event, const Positions& start, const Positi
   ContactMotion motion;
   for (std::size_t k = 0; k < 4; ++k)
     motion.displacement[k] = (end.row(event.vertices[k]) - start.row(event.vertices[k])).transpose();
-  for (std::size_t k = 0; k < 4; ++k)
-    motion.approach += event.weights[k] * event.normal.dot(motion.displacement[k]);
+  for (std::size_t k = 0; k < 4; ++k) motion.approach += event.weights[k] * event.normal.dot(motion.displacement[k]);
   motion.time = contact_time(event, start, motion.approach);
   for (std::size_t k = 0; k < 4; ++k)
     motion.at[k] = start.row(event.vertices[k]).transpose() + motion.time * motion.displacement[k];
@@ -133,8 +132,7 @@ CornerGradients whole_gradient(const Event& event, const ContactSide& side, cons
   const double reported = event.time > 0 ? normal.dot(side.displacement) : 0;  // a time of 0 is held there
   CornerGradients gradients = frozen_gradient(event, side, normal);
   for (std::size_t k = 0; k < 4; ++k)
-    gradients[k] += remaining * motion.time * contact[k] +
-                    (remaining * turning - reported) * by_time(event, motion, k);
+    gradients[k] += remaining * motion.time * contact[k] + (remaining * turning - reported) * by_time(event, motion, k);
   return gradients;
 }
 

@@ -23,8 +23,8 @@ CornerGradients frozen_gradient(const Event& event, const ContactSide& side, con
 
 /// The whole gradient of the same: t, n and w_k change with the end positions too, also with those of the other side.
 /// [Appendix A] The contact is where the plane of the face and the vertex, or the lines of both edges, are at the
-/// event's distance. Where the normal has no derivative (no area, parallel edges), n and w are held; where the two sides
-/// do not approach each other, t is.
+/// event's distance. Where the normal has no derivative (no area, parallel edges), n and w are held; where the two
+/// sides do not approach each other, t is.
 /// @param start, end the step, (N, 3) each
 CornerGradients whole_gradient(const Event& event, const ContactSide& side, const Vector3& normal,
                                const Positions& start, const Positions& end);

@@ -31,7 +31,12 @@ struct MovingPair {
     }
     const std::optional<Contact> contact = first_contact_by_polynomial(kind, motion, proximity);
     if (!contact) return std::nullopt;
-    return Event{kind, {0, 1, 2, 3}, contact->time, contact->weights, contact->normal, contact->start_distance,
+    return Event{kind,
+                 {0, 1, 2, 3},
+                 contact->time,
+                 contact->weights,
+                 contact->normal,
+                 contact->start_distance,
                  contact->keeping};
   }
 
@@ -51,8 +56,8 @@ bool is_steady(const MovingPair& pair, const Event& event) {
   for (const double weight : event.weights)
     if (std::abs(weight) < 0.1) return false;
   const bool face = pair.kind == EventKind::vertex_face;  // the heaviest corner of each side owns the region
-  if (!face) return std::abs(event.weights[0] - event.weights[1]) > 0.05 &&
-                    std::abs(event.weights[2] - event.weights[3]) > 0.05;
+  if (!face)
+    return std::abs(event.weights[0] - event.weights[1]) > 0.05 && std::abs(event.weights[2] - event.weights[3]) > 0.05;
   std::array<double, 3> sorted{event.weights[1], event.weights[2], event.weights[3]};
   std::sort(sorted.begin(), sorted.end());
   return sorted[1] - sorted[0] > 0.05;

@@ -15,7 +15,7 @@ from stiv.bench.table1 import shares
 
 def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
     """One row a scene and number of threads, with the seconds of each edit in order."""
-    sessions = scene_module("sessions.catalogue").table_sessions()
+    sessions = scene_module("sessions.catalogue").figure_sessions()
     rows = []
     for name in names:
         for count in threads:

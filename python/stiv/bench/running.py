@@ -53,6 +53,7 @@ class EditFigures:
     intersections: int  #: pairs of triangles in the accepted state, by the exact test
     timings: dict[str, float]
     detections: int = 0
+    step: float = 0.0  #: farthest motion that the edit asks of a vertex, in diagonals of what may move
 
     @property
     def touches(self) -> bool:
@@ -103,6 +104,7 @@ def solver_of(stage: Any, options: dict[str, Any], preset: Preset = stiv.EditOpt
 
 def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigures:
     """One edit, timed, and what it left tested exactly; the test of what it left is not in the time, its own is."""
+    before = solver.surface
     clock, processor = time.perf_counter(), time.process_time()
     result = solver.edit(goal)
     clock, processor = time.perf_counter() - clock, time.process_time() - processor
@@ -118,4 +120,12 @@ def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigu
         len(stiv.find_intersections(result.surface, stage.surface)),
         result.timings,
         result.counters["detections"],
+        step_size(before, stage.deformation.surface(goal)),
     )
+
+
+def step_size(start: Array, goal: Array) -> float:
+    """The farthest motion of a vertex over the diagonal of what moves, (N, 3) each; 0 where nothing does."""
+    motion = np.linalg.norm(goal - start, axis=1)
+    moves = start[motion > 0]
+    return float(motion.max() / np.linalg.norm(np.ptp(moves, axis=0))) if len(moves) > 1 else 0.0

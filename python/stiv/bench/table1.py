@@ -25,6 +25,12 @@ PUBLISHED: dict[str, dict[str, Any]] = {
     "dressing": {"vertices": 13318, "triangles": 26060, "collisions": 50.14, "regions": 2.60,
                  "iterations": (8.59, 11.8), "ms_per_edit": (316.4, 326.0)},
 }  # fmt: skip
+PRESETS: dict[str, Preset] = {
+    "stiv": stiv.EditOptions,
+    "paper": stiv.EditOptions.paper,
+    "paper_frozen": stiv.EditOptions.paper_frozen,
+}
+NAMES = {"stiv": "ours", "paper": "its method here", "paper_frozen": "its gradient frozen"}
 KINDS = {"many": "per_patch", "one": "single"}
 PARTS = {
     "modeling": ("deformation",),
@@ -50,8 +56,7 @@ def table1(
         recorded, ours = record(sessions[name], {"threads": threads[0]}, report)
         rows.append(row(name, "stiv", "many", threads[0], recorded, ours, ours))
         for preset, kind, count in variants(threads, kinds):
-            make: Preset = stiv.EditOptions if preset == "stiv" else stiv.EditOptions.paper
-            figures = repeat(recorded, make, {"threads": count, "constraints": KINDS[kind]})
+            figures = repeat(recorded, PRESETS[preset], {"threads": count, "constraints": KINDS[kind]})
             report(f"{name}: {preset}, {kind} constraint(s), {count} thread(s)")
             rows.append(row(name, preset, kind, count, recorded, figures, ours))
     return rows
@@ -59,8 +64,8 @@ def table1(
 
 def variants(threads: Sequence[int], kinds: Sequence[str]) -> list[tuple[str, str, int]]:
     """Preset, kind of constraint and threads of all rows but the first."""
-    both = [("stiv", "one", threads[0]), ("paper", "many", threads[0]), ("paper", "one", threads[0])]
-    first = [variant for variant in both if variant[1] in kinds]
+    others = [("stiv", "one"), ("paper", "many"), ("paper", "one"), ("paper_frozen", "many")]
+    first = [(preset, kind, threads[0]) for preset, kind in others if kind in kinds]
     return first + [("stiv", "many", count) for count in threads[1:]]
 
 
@@ -93,6 +98,7 @@ def row(
         "triangles": len(surface.triangles),
         "edits": len(figures),
         "edits_with_contacts": len(touching),
+        "step": mean([figure.step for figure in touching]),
         "collisions": mean([figure.collisions for figure in touching]),
         "regions": mean([figure.regions for figure in touching]),
         "iterations": iterations,
@@ -118,13 +124,13 @@ def shares(figures: Sequence[EditFigures]) -> dict[str, float]:
 def table_text(rows: Sequence[dict[str, Any]]) -> str:
     """The table as the paper prints it, a line each for the paper's own figures, its method here, and ours."""
     head = (
-        f"{'Model':9} {'by':26} {'Vertices':>8} {'Triangles':>9} {'Collisions':>10} {'Regions':>7} "
+        f"{'Model':9} {'by':26} {'Vertices':>8} {'Triangles':>9} {'step':>7} {'Collisions':>10} {'Regions':>7} "
         f"{'Iterations':>13} {'ms/iteration':>15} {'ms/edit':>15} {'energy':>9} {'left':>5}"
     )
     lines = [head, "-" * len(head)]
     for scene in dict.fromkeys(row["scene"] for row in rows):
         lines.append(_published_line(scene))
-        for preset in ("paper", "stiv"):
+        for preset in ("paper", "paper_frozen", "stiv"):
             of = [row for row in rows if row["scene"] == scene and row["preset"] == preset]
             for threads in dict.fromkeys(row["threads"] for row in of):
                 lines.append(_line(scene, preset, {r["constraints"]: r for r in of if r["threads"] == threads}, rows))
@@ -136,8 +142,8 @@ def _published_line(scene: str) -> str:
     each = tuple(ms / n for ms, n in zip(values["ms_per_edit"], values["iterations"], strict=True))
     return (
         f"{scene:9} {'paper, i5 3.6 GHz, 1 thread':26} {values['vertices']:8d} {values['triangles']:9d} "
-        f"{values['collisions']:10.2f} {values['regions']:7.2f} {_pair(values['iterations']):>13} {_pair(each):>15} "
-        f"{_pair(values['ms_per_edit']):>15} {'':>9} {'':>5}"
+        f"{'':7} {values['collisions']:10.2f} {values['regions']:7.2f} {_pair(values['iterations']):>13} "
+        f"{_pair(each):>15} {_pair(values['ms_per_edit']):>15} {'':>9} {'':>5}"
     )
 
 
@@ -145,9 +151,10 @@ def _line(scene: str, preset: str, kinds: dict[str, dict[str, Any]], rows: Seque
     first = kinds.get("many") or kinds["one"]
     both = [kinds[kind] for kind in ("many", "one") if kind in kinds]
     baseline = next((r for r in rows if (r["scene"], r["preset"], r["constraints"]) == (scene, "paper", "many")), first)
-    name = f"{'its method here' if preset == 'paper' else 'ours'}, {first['threads']} thr., {first['time'][:5]}"
+    name = f"{NAMES[preset]}, {first['threads']} thr., {first['time'][:5]}"
     return (
-        f"{'':9} {name:26} {first['vertices']:8d} {first['triangles']:9d} {first['collisions']:10.2f} "
+        f"{'':9} {name:26} {first['vertices']:8d} {first['triangles']:9d} {100 * first['step']:6.2f}% "
+        f"{first['collisions']:10.2f} "
         f"{first['regions']:7.2f} {_pair(r['iterations'] for r in both):>13} "
         f"{_pair(r['ms_per_iteration'] for r in both):>15} {_pair(r['ms_per_edit'] for r in both):>15} "
         f"{first['energy'] / (baseline['energy'] or 1):9.3f} {sum(r['intersections'] for r in both):5d}"

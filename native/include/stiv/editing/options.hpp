@@ -12,7 +12,7 @@ namespace stiv {
 
 /// What the volumes of a response measure.
 enum class VolumeKind {
-  relative,  ///< how far two sides approach each other, to a distance (stiv.hpp)
+  relative,   ///< how far two sides approach each other, to a distance (stiv.hpp)
   published,  ///< how far each side moves by itself, as in the paper (published.hpp); no distance unless one is asked
               ///< for
   published_frozen  ///< the same with PublishedGradient::frozen

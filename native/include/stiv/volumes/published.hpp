@@ -12,7 +12,8 @@ namespace stiv {
 
 /// What the gradient of a published volume takes to change with the positions at the end of the step.
 enum class PublishedGradient {
-  whole,  ///< all of Appendix A: the time (with its scale), the weights and the normal; also by the other side's vertices
+  whole,  ///< all of Appendix A: the time (with its scale), the weights and the normal; also by the other side's
+          ///< vertices
   frozen  ///< none of these: dV_i / dq_k = A_i (1 - t) |w_k| n, for comparison
 };
 
