@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# lint.sh [--fix | CHECK]: one check (cpp-format, python-format, python-style, types), or formats everything in place.
+# lint.sh [--fix | CHECK]: one check (cpp-format, python-format, python-style, types, spelling, documents), or formats
+# everything in place.
 set -eu
 bin=build/venv/bin
 cpp_files() { git ls-files --cached --others --exclude-standard '*.cpp' '*.hpp'; }
@@ -9,6 +10,8 @@ case ${1:-} in
     python-format) $bin/ruff format --check . ;;
     python-style) $bin/ruff check . ;;
     types) $bin/mypy ;;
+    spelling) git ls-files --cached --others --exclude-standard | xargs -d '\n' $bin/codespell ;;
+    documents) $bin/python tools/check_documents.py ;;
     --fix)
         cpp_files | xargs $bin/clang-format -i
         $bin/ruff check --fix .

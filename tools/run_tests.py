@@ -24,7 +24,7 @@ BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 3600  # seconds for one command: a last resort, several times what the longest takes
 WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
-LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types")
+LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types", "spelling", "documents")
 PRINTING = threading.Lock()
 
 

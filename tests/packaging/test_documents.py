@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The check of the documents finds what it is for, at its line, and nothing in what is exempt."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tools import check_documents
+
+RULES = check_documents.dialect(check_documents.DIALECT.read_text(encoding="utf-8"))
+ROOT = check_documents.ROOT
+
+
+def lines(findings: Iterator[tuple[int, str]]) -> list[int]:
+    return [number for number, _ in findings]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("Rounds ask the kept pairs.", [1]),
+        ("# Title\n\nFine.\n\nEverything that\ntakes part is tested.", [5]),
+        ("| a | b |\n|---|---|\n| it is told | fine |", [3]),
+        ("Fine. What moves is written.", [1]),
+        ("It takes 5 ms a round.", [1]),
+        ("A [link](kept_pairs.md) and `leave_kept`, and *takes part* as a label.", []),
+        ("```\nkept pairs\n```\n\n    kept pairs\n", []),
+        ("Write what moves. What you drag is written.", []),
+    ],
+)
+def test_words_of_the_dialect_are_found(text: str, found: list[int]) -> None:
+    assert lines(check_documents.wording(text, RULES)) == found
+
+
+@pytest.mark.parametrize(
+    ("check", "bad", "good"),
+    [
+        (check_documents.long_sentences, "- one\n- " + "word " * 31 + ".", "- one\n- " + "word " * 29 + "word."),
+        (check_documents.long_lines, "\n" + "word " * 23, "\n| " + "word " * 23),
+    ],
+)
+def test_sentences_and_lines_that_are_too_long_are_found(
+    check: Callable[[str], Iterator[tuple[int, str]]], bad: str, good: str
+) -> None:
+    assert lines(check(bad)) == [2]
+    assert lines(check(good)) == []
+
+
+def test_links_to_nothing_are_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("[itself](page.md)\n[none](gone.md#x) [web](https://example.org/gone.md)\n")
+    assert list(check_documents.broken_links(page)) == [(2, "there is no gone.md")]
+
+
+def test_references_to_sections_and_equations_that_are_gone_are_found(tmp_path: Path) -> None:
+    page = "mathematics.md"
+    (tmp_path / page).write_text("## The loop\n\n$$x \\tag{2}$$\n")
+    good = f'/// ({page}, "The\n/// loop") [P4; {page},\n/// "The loop"] ({page}, Eq. 2)'
+    assert list(check_documents.broken_references(good, tmp_path)) == []
+    bad = f'fine\n// ({page}, "The knot")\n// ({page}, Eq. 3)'
+    assert lines(check_documents.broken_references(bad, tmp_path)) == [2, 3]
+
+
+def test_the_code_does_refer_to_the_mathematics() -> None:
+    texts = [path.read_text(encoding="utf-8") for path in check_documents.files(".hpp", ".cpp")]
+    assert sum(len(check_documents.REFERENCE.findall(text)) for text in texts) > 30
+    assert not [text for text in texts if "DESIGN" in text]
+
+
+@pytest.mark.parametrize("folder", ["python/stiv/blender", "addon"])
+def test_the_map_names_what_is_there(folder: str) -> None:
+    """Each name in the architecture's map of a folder is a module or a folder in it."""
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    table = text.split(f"### `{folder}`")[1].split("\n#")[0]
+    named = [name for row in table.splitlines() if row.startswith("|") for name in row.split("`")[1::2]]
+    present = {path.stem for path in (ROOT / folder).rglob("*") if path.suffix in ("", ".py")}
+    assert len(named) > 5
+    assert set(named) <= present
