@@ -35,7 +35,7 @@ def start_timer(context: bpy.types.Context, step: float) -> bpy.types.Timer:
 
 
 def stop_timer(context: bpy.types.Context, timer: bpy.types.Timer) -> None:
-    """No more of them."""
+    """Stop the timer that `start_timer` made."""
     context.window_manager.event_timer_remove(timer)
 
 

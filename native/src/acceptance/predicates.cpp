@@ -20,7 +20,7 @@ constexpr double error_3d = (7 + 56 * epsilon) * epsilon;
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-/// The sign of `value` if it is certain: farther from zero than its error bound, or made of products that all vanish.
+/// Is the sign of `value` safe from rounding? It is beyond the error bound, or exactly 0 since all products vanish.
 bool is_certain(double value, double bound) { return std::abs(value) > bound || bound == 0; }
 
 Expansion<16> exact_minor(const Expansion<2>& ax, const Expansion<2>& ay, const Expansion<2>& bx,

@@ -31,17 +31,17 @@ class HandleMap {
   Index control_count() const { return static_cast<Index>(handles_.size()); }
   Index vertex_count() const { return static_cast<Index>(partition_.place.size()); }
   const HandlePartition& partition() const { return partition_; }
-  bool keeps_answers() const { return answers_.size() > 0; }  ///< is M'g a few products although M is not kept?
+  bool keeps_answers() const { return answers_.size() > 0; }  ///< does M'g use stored columns, not a solve?
 
   Positions follow(const Controls& d) const;          ///< M d
   SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
 
-  /// The same for many: where each is a solve, as many as a block has columns share a pass over the factor. A contact's
-  /// covector has one direction at all of its vertices, and so takes one column instead of three.
+  /// M'g for each covector. Solves share passes over the factor, one column each, since a contact's covector has one
+  /// direction at all of its vertices. (mathematics.md, "Laplacian editing")
   std::vector<SparseField> pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const;
 
-  /// The displacements that meet (K + pulls) u = right with handles and fixed vertices held: right (n, 3), of which
-  /// only the rows of free vertices count. For what else than handles moves a mesh.
+  /// Solves (K + pulls) u = right for the free vertices, with handles and fixed vertices at 0. `right` is (n, 3); only
+  /// the rows of free vertices are read. Used by as-rigid-as-possible editing.
   Positions answer(const Positions& right) const;
 
   std::vector<Index> support(Index control) const;
