@@ -26,7 +26,7 @@ from stiv.repairing import RepairOptions, RepairResult, repair
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
 from stiv.weights import Weights
-from stiv.welding import Welded, weld
+from stiv.welding import Welded, join_seams, weld
 
 __all__ = [
     "PAPER_DIFFERENCES",
@@ -65,6 +65,7 @@ __all__ = [
     "find_loose_intersections",
     "identity",
     "is_step_free",
+    "join_seams",
     "laplacian",
     "lattice",
     "lattice_rest_points",

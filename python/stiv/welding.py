@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv._native import InputError
 from stiv.arrays import Indices, as_floats
+from stiv.seams import find_seams
 from stiv.surface import Surface, as_surface
 
 
@@ -51,6 +52,38 @@ def weld(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
         [(int(a), int(b)) for a, b in before.ignored],
     )
     return Welded(after, q[kept], vertex_map)
+
+
+def join_seams(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
+    """Make vertices one that lie at exactly the same place and belong to the same body; keep all triangles.
+
+    surface    Surface, or its triangles (F, 3)
+    positions  (N, 3)
+
+    As `weld`, but triangles and loose edges keep their numbers, doubled ones too, which intersect. Faces that meet only
+    in coincident vertices or edges of a body are neighbours on the joined surface: find_intersections does not report
+    them, and an EditSession keeps them together.
+    """
+    q = as_floats(positions, "positions", (None, 3))
+    before = as_surface(surface, len(q))
+    leaders = np.arange(len(q), dtype=np.int32)
+    for body in range(len(before.bodies)):
+        members = np.flatnonzero(before.vertex_body == body).astype(np.int32)
+        seams = find_seams(q[members], np.empty((0, 3), np.int32))
+        if seams is not None:
+            leaders[members] = members[seams.leaders]
+    kept, vertex_map = np.unique(leaders, return_inverse=True)
+    index: Indices = vertex_map.astype(np.int32)
+    after = Surface(
+        index[before.triangles],
+        len(kept),
+        index[before.loose_edges],
+        before.vertex_body[kept],
+        before.bodies,
+        [(int(a), int(b)) for a, b in before.ignored],
+        [sorted({int(index[vertex]) for vertex in face}) for face in before.recut_faces],
+    )
+    return Welded(after, q[kept], index)
 
 
 def _distinct(elements: Indices) -> Indices:

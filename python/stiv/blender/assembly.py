@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 import stiv
-from stiv.blender.arrays import Floats, Indices
+from stiv.blender.arrays import Floats, Indices, Singles
 from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.seams import Seams, find_seams
+
+ROUNDING = 2.0**-19  # of the largest coordinate: Blender computes the copies of a seam one by one, in single precision
 
 
 @dataclass(frozen=True)
@@ -26,19 +29,33 @@ class Assembly:
 
     Attributes:
         meshes: in order.
-        starts: first vertex of each mesh, and the number of vertices, (k + 1,).
+        starts: first vertex of each mesh in the surface, and the number of vertices, (k + 1,).
         surface: connectivity and bodies; one body for each owner and mobility.
         positions: world positions at the time of reading, (N, 3).
+        seams: of each mesh, the vertices that are one in the surface; None: each is its own.
     """
 
     meshes: tuple[VisibleMesh, ...]
     starts: Indices
     surface: stiv.Surface
     positions: Floats
+    seams: tuple[Seams | None, ...]
 
     def vertices(self, mesh: int) -> Indices:
-        """The vertices of a mesh in the surface."""
+        """The vertex of the surface for each vertex of a mesh, (n,)."""
+        return _placed(self.seams[mesh], int(self.starts[mesh]), len(self.meshes[mesh].local))
+
+    def range_of(self, mesh: int) -> Indices:
+        """The vertices of the surface that belong to a mesh, each once."""
         return np.arange(self.starts[mesh], self.starts[mesh + 1], dtype=np.int32)
+
+    def joined(self, mesh: int, points: Floats) -> Floats:
+        """The points of a mesh, (n, 3), with those of a seam once."""
+        return _joined(self.seams[mesh], points)
+
+    def shifted_triangles(self, meshes: Sequence[VisibleMesh]) -> Indices:
+        """Triangles of meshes with the same vertices over those of the surface, (F, 3)."""
+        return _shifted([mesh.triangles for mesh in meshes], self.starts, self.seams, 3)
 
     def face(self, triangle: int) -> Element:
         """The face a triangle of the surface belongs to."""
@@ -52,8 +69,9 @@ class Assembly:
 
     def vertex(self, vertex: int) -> Element:
         """The vertex that a vertex of the surface is."""
-        mesh, number = self._locate(vertex, [len(each.local) for each in self.meshes])
-        return Element(mesh.owner.name, "vertex", mesh.vertex_number(number))
+        place = int(np.searchsorted(self.starts, vertex, side="right")) - 1
+        mesh, seams, number = self.meshes[place], self.seams[place], int(vertex - self.starts[place])
+        return Element(mesh.owner.name, "vertex", mesh.vertex_number(number if seams is None else int(seams.first[number])))
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)
@@ -61,40 +79,62 @@ class Assembly:
         return self.meshes[mesh], int(index - (ends[mesh] - sizes[mesh]))
 
 
+def mesh_seams(local: Singles, triangles: Indices) -> Seams | None:
+    """The seams of a mesh in its own frame: (n, 3), (f, 3)."""
+    return find_seams(local, triangles, ROUNDING)
+
+
+def assemble_joined(meshes: Sequence[VisibleMesh], ignored: Sequence[tuple[str, str]] = ()) -> Assembly:
+    """Put meshes into one surface as `assemble`: every body deformable, seams of each mesh joined."""
+    seams = [mesh_seams(mesh.local, mesh.triangles) for mesh in meshes]
+    return assemble(meshes, ["deformable"] * len(meshes), (), ignored, seams)
+
+
 def assemble(
     meshes: Sequence[VisibleMesh],
     mobility: Sequence[str],
     together: Sequence[frozenset[str]] = (),
     ignored: Sequence[tuple[str, str]] = (),
+    seams: Sequence[Seams | None] = (),
 ) -> Assembly:
     """Put meshes into one surface.
 
     mobility: "fixed", "rigid" or "deformable", one for each mesh. together: names of objects that move as one, and are
-    not tested against each other where rigid. ignored: pairs of names that are not tested.
+    not tested against each other where rigid. ignored: pairs of names that are not tested. seams: vertices of each mesh
+    that become one; empty: none do.
     """
-    starts = np.cumsum([0, *(len(mesh.local) for mesh in meshes)]).astype(np.int32)
+    joins = tuple(seams) or (None,) * len(meshes)
+    counts = [len(mesh.local) if each is None else len(each.first) for mesh, each in zip(meshes, joins, strict=True)]
+    starts = np.cumsum([0, *counts]).astype(np.int32)
     bodies: dict[tuple[str, str], int] = {}
     body = [bodies.setdefault((mesh.owner.name, m), len(bodies)) for mesh, m in zip(meshes, mobility, strict=True)]
     surface = stiv.Surface(
-        shifted_triangles([mesh.triangles for mesh in meshes], starts),
+        _shifted([mesh.triangles for mesh in meshes], starts, joins, 3),
         int(starts[-1]),
-        _shifted([mesh.loose_edges for mesh in meshes], starts, 2),
+        _shifted([mesh.loose_edges for mesh in meshes], starts, joins, 2),
         np.repeat(np.array(body, np.int32), np.diff(starts)),
         [stiv.Body(name, kind) for name, kind in bodies] or None,
         _ignored(bodies, together, ignored),
     )
-    positions = np.concatenate([np.empty((0, 3)), *(mesh.world() for mesh in meshes)])
-    return Assembly(tuple(meshes), starts, surface, positions)
+    world = [_joined(each, mesh.world()) for mesh, each in zip(meshes, joins, strict=True)]
+    return Assembly(tuple(meshes), starts, surface, np.concatenate([np.empty((0, 3)), *world]), joins)
 
 
-def shifted_triangles(triangles: Sequence[Indices], starts: Indices) -> Indices:
-    """Triangles of several meshes over the vertices of all, (F, 3)."""
-    return _shifted(triangles, starts, 3)
-
-
-def _shifted(rows: Sequence[Indices], starts: Indices, width: int) -> Indices:
-    moved = [each + start for each, start in zip(rows, starts, strict=False)]
+def _shifted(rows: Sequence[Indices], starts: Indices, seams: Sequence[Seams | None], width: int) -> Indices:
+    """Rows of vertices of several meshes over the vertices of all."""
+    moved = [
+        (each if joins is None else joins.index[each]) + start
+        for each, start, joins in zip(rows, starts[:-1], seams, strict=True)
+    ]
     return np.concatenate([np.empty((0, width), np.int32), *moved]).astype(np.int32)
+
+
+def _placed(seams: Seams | None, start: int, count: int) -> Indices:
+    return (np.arange(count, dtype=np.int32) if seams is None else seams.index) + np.int32(start)
+
+
+def _joined(seams: Seams | None, points: Floats) -> Floats:
+    return points if seams is None else points[seams.first]
 
 
 def _ignored(

@@ -16,7 +16,7 @@ from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
 from stiv.blender.reach import Reach
-from stiv.blender.sessions import mobilities, stacked
+from stiv.blender.sessions import mobilities, seams_of, stacked
 from stiv.blender.settings import EditSettings
 
 
@@ -63,8 +63,11 @@ def read_beginning(
     parts = tuple(adapt(part) for part in found)
     if not any(part.rule.moves for part in parts):
         raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
-    mobility = mobilities(len(scene.meshes), parts)
-    assembly = assemble(scene.meshes, mobility, [group.members for group in groups], settings.ignored_pairs)
+    count = len(scene.meshes)
+    assembly = assemble(
+        scene.meshes, mobilities(count, parts), [group.members for group in groups], settings.ignored_pairs,
+        seams_of(count, parts),
+    )  # fmt: skip
     excluded, dropped = settings.excluded.current(scene.meshes)
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
     moving = assembly.positions[moving_vertices(assembly, parts)]
@@ -74,7 +77,7 @@ def read_beginning(
 
 def moving_vertices(assembly: Assembly, parts: Sequence[Part]) -> Indices:
     """The vertices of the surface that follow controls of the parts."""
-    return np.concatenate([assembly.vertices(index) for part in parts for index in part.surfaces])
+    return np.concatenate([assembly.range_of(index) for part in parts for index in part.surfaces])
 
 
 def _digest(*arrays: Floats) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.assembly import Assembly, assemble_joined
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.loop_objects import cages_shown_by_others
@@ -43,7 +43,7 @@ def read_surface(context: bpy.types.Context, objects: Collection[str] | None = N
     coordinate is not finite.
     """
     scene = read_scene(context, _counted(context, EditSettings(), objects))
-    return assemble(scene.meshes, ["deformable"] * len(scene.meshes))
+    return assemble_joined(scene.meshes)
 
 
 def check_scene(
@@ -56,7 +56,7 @@ def check_scene(
     """
     settings = settings or EditSettings()
     scene = read_scene(context, _counted(context, settings, objects))
-    assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
+    assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
     return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden)
@@ -68,7 +68,7 @@ def exclusions_now(
     """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
     chosen = settings or EditSettings()
     scene = read_scene(context, _counted(context, chosen))
-    assembly = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), chosen.ignored_pairs)
+    assembly = assemble_joined(scene.meshes, chosen.ignored_pairs)
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)
     return excluded, excluded.others(pairs)

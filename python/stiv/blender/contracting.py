@@ -118,4 +118,4 @@ def contract_scene(
 def _kept(ob: bpy.types.Object, reshaped: Reshaped, part: int) -> Any:
     """The original kept with a mesh, if it fits the mesh as it is."""
     local = read_original(ob)
-    return local if local is not None and len(local) == len(reshaped.parts[part].controls) else None
+    return local if local is not None and len(local) == len(writer_of(reshaped.parts[part]).original) else None

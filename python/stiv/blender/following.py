@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
-from stiv.blender.arrays import Floats, transform_points
+from stiv.blender.arrays import Floats, Indices, transform_points
 from stiv.blender.changes import Change, Changes, compare
 from stiv.blender.edit import BlenderEdit
 from stiv.blender.evaluated_scene import is_visible
@@ -197,10 +197,11 @@ def _responding(part: Part, changes: dict[str, Change], settings: EditSettings) 
     change = changes.get(part.names[0])
     if change is None or change.points is None:
         return part
+    moved = change.points[_followed_vertices(part, change)]
     return replace(
         part,
-        weights=np.where(change.points, settings.weight(True), settings.weight(False)) * part.given,
-        rule=PointGoal(change.points, part.controls),
+        weights=np.where(moved, settings.weight(True), settings.weight(False)) * part.given,
+        rule=PointGoal(moved, part.controls),
     )
 
 
@@ -210,10 +211,21 @@ def _goal(part: Part, changes: dict[str, Change], present: SceneState, wanted: S
     if change is None:
         return part.controls
     before, after = (states[change.reference.session_uid] for states in (present, wanted))
-    if part.frame is not None and after.points is not None:
-        return transform_points(part.frame, after.points)
+    if part.frame is not None and after.points is not None and change.points is not None:
+        return transform_points(part.frame, after.points[_followed_vertices(part, change)])
     matrix = after.world @ np.linalg.inv(before.world)
     return part.rule.goal(part.controls, part.controls, Motion.of(matrix))
+
+
+def _followed_vertices(part: Part, change: Change) -> Indices:
+    """The vertex or point that each control follows, (m,): of a seam one that the tool moved."""
+    assert change.points is not None
+    if part.tied is None:
+        return np.arange(len(change.points), dtype=np.int32)
+    followed = part.tied.first.copy()
+    moved = np.flatnonzero(change.points)[::-1].astype(np.int32)
+    followed[part.tied.index[moved]] = moved
+    return followed
 
 
 def _steps(edit: BlenderEdit, goal: Floats) -> Iterator[Floats]:

@@ -12,6 +12,7 @@ from stiv.blender.bending import bent_mesh, stacked
 from stiv.blender.cage import cage_part
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.evaluations import is_active
+from stiv.blender.joining import join_part
 from stiv.blender.lattice_points import check_lattice, lattice_part
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
@@ -50,7 +51,7 @@ def make_parts(
             parts.append(_lattice(context, mover, bent[mover.reference], meshes, settings))
     for part in parts:
         _check_equal(part, meshes)
-    return [part for part in parts if part.surfaces], groups
+    return [join_part(part, meshes) for part in parts if part.surfaces], groups
 
 
 def _rigid(group: RigidGroup, meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str) -> Part:

@@ -2,7 +2,7 @@
 """One thing with controls: how its surface follows from them, what the goal asks of them, and how they are written."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv.blender.arrays import Floats
 from stiv.blender.motion import Influence, Motion
+from stiv.seams import Seams
 
 
 class Writer(Protocol):
@@ -47,7 +48,7 @@ class Part:
         names: the objects that are written.
         role: "cage", "soft", "lattice" or "rigid".
         surfaces: positions, in the list of visible meshes, of what the controls move, in the deformation's order.
-        deformation: from the controls to the world positions of all these meshes.
+        deformation: from the controls to the world positions of all these meshes, vertices of a seam once.
         controls: (m, 3) at the start.
         weights: (m,) response of each control.
         given: (m,) the most that each may have, whoever responds; 0 pins it.
@@ -55,6 +56,9 @@ class Part:
             None for placements.
         rule: what the goal asks of the controls.
         writer: how the controls come into Blender.
+        tied: vertices of the object that are one control, so that seams stay closed; None: each is its own.
+        seams: of each of `surfaces`, the vertices that stay in one place; empty: none do.
+        note: what the user should know of it; "" for nothing.
     """
 
     names: tuple[str, ...]
@@ -67,3 +71,10 @@ class Part:
     frame: Floats | None
     rule: GoalRule
     writer: Writer
+    tied: Seams | None = None
+    seams: tuple[Seams | None, ...] = ()
+    note: str = ""
+
+    def of_vertices(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Those of the controls, (m, ...), out of values of all vertices of the object, (n, ...)."""
+        return values if self.tied is None else values[self.tied.first]

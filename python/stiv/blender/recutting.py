@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.arrays import Indices
-from stiv.blender.assembly import Assembly, shifted_triangles
+from stiv.blender.assembly import Assembly
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.mesh_reading import evaluated_mesh, read_triangles
 
@@ -81,7 +81,8 @@ def with_cuts(assembly: Assembly, cuts: Sequence[Cut]) -> Assembly:
     meshes, recut_faces = list(assembly.meshes), []
     for cut in cuts:
         meshes[cut.mesh] = _extended(meshes[cut.mesh], cut)
-        recut_faces += [(corners + assembly.starts[cut.mesh]).tolist() for corners in _corners(meshes[cut.mesh], cut)]
+        place = assembly.vertices(cut.mesh)
+        recut_faces += [np.unique(place[corners]).tolist() for corners in _corners(meshes[cut.mesh], cut)]
     return _recut(assembly, meshes, recut_faces)
 
 
@@ -135,7 +136,7 @@ def _without(cut: Cut, meeting: Collection[tuple[str, int]], assembly: Assembly)
 
 def _recut(assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Sequence[Sequence[int]]) -> Assembly:
     old = assembly.surface
-    triangles = shifted_triangles([mesh.triangles for mesh in meshes], assembly.starts)
+    triangles = assembly.shifted_triangles(meshes)
     ignored = [(int(a), int(b)) for a, b in old.ignored]
     surface = stiv.Surface(
         triangles, old.vertex_count, old.loose_edges, old.vertex_body, old.bodies, ignored,

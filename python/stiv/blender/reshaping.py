@@ -20,6 +20,7 @@ from stiv.blender.arrays import Floats, Singles, transform_points
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.cage import CageWriter
 from stiv.blender.evaluated_scene import is_visible, read_scene
+from stiv.blender.joining import TiedWriter, joined_rows
 from stiv.blender.mesh_reading import read_edges, read_loose_numbers, read_triangles
 from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
@@ -27,7 +28,7 @@ from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal
 from stiv.blender.recutting import Cut, with_cuts
 from stiv.blender.references import ObjectReference
-from stiv.blender.sessions import deformation_of, mobilities, pair_separations_of, stacked
+from stiv.blender.sessions import deformation_of, mobilities, pair_separations_of, seams_of, stacked
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, Verification, Verifier
 
@@ -121,12 +122,12 @@ class Reshaped:
         rows = np.split(self.start, np.cumsum([len(part.controls) for part in self.parts])[:-1])
         found = []
         for part, local, row in zip(self.parts, locals_, rows, strict=True):
-            found.append(row if local is None else transform_points(writer_of(part).frame, local))
+            found.append(row if local is None else transform_points(writer_of(part).frame, part.of_vertices(local)))
         return stacked(found)
 
     def deviation(self, controls: Floats) -> float:
         """Root mean square distance of the surface from the start, over what may move and in its diagonals."""
-        moving = np.concatenate([self.assembly.vertices(index) for part in self.parts for index in part.surfaces])
+        moving = np.concatenate([self.assembly.range_of(index) for part in self.parts for index in part.surfaces])
         before = self.deformation.surface(self.start)[moving]
         after = self.deformation.surface(controls)[moving]
         diagonal = float(np.linalg.norm(np.ptp(before, axis=0))) if len(before) else 0.0
@@ -169,7 +170,10 @@ def read_reshaped(
     parts, _ = make_parts(context, movers, scene.meshes, settings, "move")
     if not parts:
         raise InputError("nothing that is selected has a surface; select meshes that are visible")
-    assembly = assemble(scene.meshes, mobilities(len(scene.meshes), parts), (), settings.ignored_pairs)
+    count = len(scene.meshes)
+    assembly = assemble(
+        scene.meshes, mobilities(count, parts), (), settings.ignored_pairs, seams_of(count, parts)
+    )  # fmt: skip
     moves = np.concatenate([_selected(part) for part in parts])
     if not moves.any():
         raise InputError("no vertex is selected; select those that may move, or leave Edit Mode")
@@ -178,9 +182,10 @@ def read_reshaped(
 
 
 def writer_of(part: Part) -> CageWriter:
-    """The writer of a cage."""
-    assert isinstance(part.writer, CageWriter)
-    return part.writer
+    """The writer of a cage with all its vertices."""
+    writer = part.writer.writer if isinstance(part.writer, TiedWriter) else part.writer
+    assert isinstance(writer, CageWriter)
+    return writer
 
 
 def _selected(part: Part) -> NDArray[np.bool_]:
@@ -211,7 +216,7 @@ def _cage_of(parts: Sequence[Part]) -> stiv.Surface:
     triangles, loose, first = [np.empty((0, 3), np.int32)], [np.empty((0, 2), np.int32)], 0
     for part in parts:
         mesh = writer_of(part).reference.find().data
-        triangles.append(read_triangles(mesh)[0] + first)
-        loose.append(read_edges(mesh)[read_loose_numbers(mesh)] + first)
+        triangles.append(joined_rows(read_triangles(mesh)[0], part.tied) + first)
+        loose.append(joined_rows(read_edges(mesh)[read_loose_numbers(mesh)], part.tied) + first)
         first += len(part.controls)
     return stiv.Surface(np.concatenate(triangles), first, np.concatenate(loose))

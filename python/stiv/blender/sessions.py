@@ -12,6 +12,7 @@ from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly
 from stiv.blender.parts import Part
 from stiv.blender.settings import EditSettings
+from stiv.seams import Seams
 
 
 def mobilities(count: int, parts: Sequence[Part]) -> list[str]:
@@ -21,6 +22,15 @@ def mobilities(count: int, parts: Sequence[Part]) -> list[str]:
         for index in part.surfaces:
             mobility[index] = "rigid" if part.role == "rigid" else "deformable"
     return mobility
+
+
+def seams_of(count: int, parts: Sequence[Part]) -> list[Seams | None]:
+    """The seams of each of `count` visible meshes, as the parts keep them closed."""
+    seams: list[Seams | None] = [None] * count
+    for part in parts:
+        for index, each in zip(part.surfaces, part.seams, strict=False):
+            seams[index] = each
+    return seams
 
 
 def make_session(
@@ -86,4 +96,4 @@ def pair_separations_of(assembly: Assembly, settings: EditSettings) -> dict[tupl
 
 
 def _vertices(assembly: Assembly, part: Part) -> Any:
-    return np.concatenate([assembly.vertices(index) for index in part.surfaces])
+    return np.concatenate([assembly.range_of(index) for index in part.surfaces])

@@ -2,21 +2,26 @@
 """Vertices of a mesh as handles, which the others follow: Laplacian and as-rigid-as-possible editing of a cage."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Indices, transform_points
-from stiv.blender.cage import CageWriter, cage_writer, open_cage, selected_vertices, subdivision_of
+from stiv.blender.assembly import mesh_seams
+from stiv.blender.cage import cage_writer, open_cage, selected_vertices, subdivision_of
 from stiv.blender.control_weights import control_weights
+from stiv.blender.joining import TiedWriter, copied, joined_rows, seam_note
 from stiv.blender.mesh_reading import read_triangles
 from stiv.blender.movers import Mover
-from stiv.blender.parts import Part
+from stiv.blender.parts import Part, Writer
 from stiv.blender.points import PointGoal, point_weights
 from stiv.blender.settings import EditSettings, Handles
 from stiv.blender.vertex_groups import group_weights
+from stiv.seams import Seams
 
 
 def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, settings: EditSettings) -> list[Part]:
@@ -29,25 +34,28 @@ def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, 
     frame, local = open_cage(ob)
     chosen = settings.handles.get(ob.name, Handles())
     given = control_weights(ob, settings)
-    found = _find_handles(ob, mover, chosen, given)
+    triangles = read_triangles(ob.data)[0]
+    tied = mesh_seams(local, triangles)
+    found = _find_handles(ob, mover, chosen, given, tied)
     if len(found.vertices) == 0:
         _check_none(ob, chosen)
         return []
-    rest = transform_points(frame, local)
+    rest = transform_points(frame, local if tied is None else local[tied.first])
     make = stiv.laplacian if settings.deformation(ob.name) == "laplacian" else stiv.arap
     pull = chosen.pull * found.strength if chosen.pull > 0 else None
-    mesh = make(rest, read_triangles(ob.data)[0], found.vertices, fixed=found.fixed, pull=pull)
+    mesh = make(rest, joined_rows(triangles, tied), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
     writer = cage_writer(mover.reference, ob, frame, local, settings)
     subdivision = subdivision_of(ob, scene, writer)
+    shown = cage if tied is None else copied(cage, tied)
     others = settings.weight(False) if mover.selected else 1.0
-    given, controls = given[found.vertices], rest[found.vertices]
+    given, controls = found.given, rest[found.vertices]
     weights = point_weights(found.moving, settings.weight(True), others, given)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return [Part(
-        (ob.name,), "soft", surfaces, cage if subdivision is None else stiv.compose(subdivision, cage),
+        (ob.name,), "soft", surfaces, shown if subdivision is None else stiv.compose(subdivision, shown),
         controls, weights, given, frame, PointGoal(found.moving, controls, None, origin),
-        HandleWriter(cage, writer),
+        HandleWriter(cage, writer if tied is None else TiedWriter(writer, tied)), note=found.note,
     )]  # fmt: skip
 
 
@@ -56,7 +64,7 @@ class HandleWriter:
     """Writes the cage that handles give."""
 
     cage: stiv.Deformation
-    writer: CageWriter
+    writer: Writer
 
     def write(self, controls: Floats) -> None:
         """Write the cage for world positions of the handles, (m, 3)."""
@@ -69,24 +77,44 @@ class HandleWriter:
 
 @dataclass(frozen=True)
 class _FoundHandles:
-    """Vertices that are handles, (m,), how strongly each pulls, which move with the goal, and what is held in place."""
+    """Vertices that are handles, (m,), how strongly each pulls, which move with the goal, and what is held in place.
+
+    Vertices are those of the mesh with its seams joined. `given`, (m,): the most response that each may have. `note`:
+    of seams that are selected in part.
+    """
 
     vertices: Indices
     strength: Floats
     moving: Flags
     fixed: Indices
+    given: Floats
+    note: str
 
 
-def _find_handles(ob: bpy.types.Object, mover: Mover, chosen: Handles, given: Floats) -> _FoundHandles:
+def _find_handles(
+    ob: bpy.types.Object, mover: Mover, chosen: Handles, given: Floats, tied: Seams | None
+) -> _FoundHandles:
     regions = {name: group_weights(ob, name, "a handle") for name in chosen.groups}
     strength, moving = _strengths(ob, mover, regions)
     held = given == 0
     if chosen.anchor:
         held |= group_weights(ob, chosen.anchor, "the anchor") > 0
+    note = "" if tied is None else seam_note(ob.name, moving, tied)
+    if tied is not None:  # a seam is a handle where one of its vertices is, and held likewise
+        strength, given = _most(strength, tied), -_most(-given, tied)
+        moving, held = _most(moving, tied), _most(held, tied)
     is_handle = (strength > 0) & ~held
     fixed = held if chosen.rest == "follows" else ~is_handle
     vertices = np.flatnonzero(is_handle).astype(np.int32)
-    return _FoundHandles(vertices, strength[vertices], moving[vertices], np.flatnonzero(fixed).astype(np.int32))
+    held_vertices = np.flatnonzero(fixed).astype(np.int32)
+    return _FoundHandles(vertices, strength[vertices], moving[vertices], held_vertices, given[vertices], note)
+
+
+def _most(values: NDArray[Any], tied: Seams) -> NDArray[Any]:
+    """The largest of the values, (n, ...), on each joined vertex, (k, ...)."""
+    largest = values[tied.first]
+    np.maximum.at(largest, tied.index, values)
+    return largest
 
 
 def _strengths(ob: bpy.types.Object, mover: Mover, regions: dict[str, Floats]) -> tuple[Floats, Flags]:

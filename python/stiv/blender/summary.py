@@ -45,7 +45,7 @@ def summarise(assembly: Assembly, parts: Sequence[Part], hidden: int) -> Summary
         hidden,
         sum(len(part.controls) for part in parts),
         len(assembly.surface.triangles),
-        _warnings(assembly),
+        (*(part.note for part in parts if part.note), *_warnings(assembly)),
     )
 
 

@@ -2,7 +2,7 @@
 """Blender's own evaluation after writing, read back and tested."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import bpy
@@ -66,8 +66,9 @@ class Verifier:
         be free of intersections, in the triangles of the assembly and in Blender's present ones, which follow the
         shape. Raises SceneChangedError when other meshes are visible than at the start.
         """
-        shown = read_shown(context, self.assembly)
-        message = _elsewhere(self.assembly, accepted, shown)
+        meshes = _read_meshes(context, self.assembly)
+        shown = _joined(self.assembly, meshes)
+        message = _elsewhere(self.assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
         if self._most:
@@ -109,6 +110,11 @@ class Verifier:
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
     """World positions of the assembly's meshes as Blender evaluates them now, (N, 3)."""
+    return _joined(assembly, _read_meshes(context, assembly))
+
+
+def _read_meshes(context: bpy.types.Context, assembly: Assembly) -> list[Floats]:
+    """World positions of each mesh as Blender evaluates it now, vertices of seams each by itself."""
     owners = frozenset(mesh.owner.session_uid for mesh in assembly.meshes)
     placed = read_placed(context, owners)
     if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in assembly.meshes]:
@@ -117,7 +123,12 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
         each if mesh.near is None else each.limited_to(mesh.near.vertices)
         for each, mesh in zip(placed, assembly.meshes, strict=True)
     ]
-    return np.concatenate([np.empty((0, 3)), *(part.world() for part in parts)])
+    return [part.world() for part in parts]
+
+
+def _joined(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
+    joined = (assembly.joined(number, points) for number, points in enumerate(meshes))
+    return np.concatenate([np.empty((0, 3)), *joined])
 
 
 def named_pairs(assembly: Assembly, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
@@ -141,10 +152,11 @@ def _shape(placed: Placed) -> tuple[int, int]:
     return len(placed.local), placed.owner.session_uid
 
 
-def _elsewhere(assembly: Assembly, accepted: Floats, shown: Floats) -> str:
+def _elsewhere(assembly: Assembly, accepted: Floats, meshes: Sequence[Floats]) -> str:
     for number, mesh in enumerate(assembly.meshes):
         part = slice(assembly.starts[number], assembly.starts[number + 1])
-        difference = float(np.abs(shown[part] - accepted[part]).max(initial=0.0))
+        whole = accepted[part] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
+        difference = float(np.abs(meshes[number] - whole).max(initial=0.0))
         if not difference <= tolerance(accepted[part]):
             return f'object "{mesh.owner.name}": Blender shows it {difference:.3g} away from where it was to be'
     return ""

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seams: vertices of one mesh in the same place, which make its faces one surface there without being shared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiv.arrays import Floats, Indices
+
+Flags = NDArray[np.bool_]
+Codes = NDArray[np.uint64]
+
+
+@dataclass(frozen=True)
+class Seams:
+    """Which vertices of a mesh are one.
+
+    Attributes:
+        index: joined vertex of each vertex, (n,).
+        first: the first vertex of each joined one, (k,), ascending.
+    """
+
+    index: Indices
+    first: Indices
+
+    @staticmethod
+    def of(leaders: Indices) -> Seams | None:
+        """From the first vertex that each vertex is one with, (n,), itself where it is the first; None: no seam."""
+        leads = leaders == np.arange(len(leaders))
+        if leads.all():
+            return None
+        place = np.cumsum(leads, dtype=np.int32) - 1
+        return Seams(place[leaders].astype(np.int32), np.flatnonzero(leads).astype(np.int32))
+
+    @property
+    def leaders(self) -> Indices:
+        """The first vertex that each vertex is one with, (n,)."""
+        return self.first[self.index]
+
+    def limited_to(self, kept: Flags) -> Seams | None:
+        """The seams among some of the vertices, (n,); the others stand alone."""
+        own = np.arange(len(self.index), dtype=np.int32)
+        first = np.full(len(self.first), len(own), np.int32)
+        np.minimum.at(first, self.index[kept], own[kept])
+        return Seams.of(np.where(kept, first[self.index], own).astype(np.int32))
+
+
+def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: float = 0.0) -> Seams | None:
+    """Find the vertices of a mesh that are in the same place, exactly; -0.0 and 0.0 are the same.
+
+    positions  (n, 3)
+    triangles  (f, 3)
+    rounding   vertices on open edges may differ by this share of the largest coordinate
+
+    Returns None where there are none.
+    """
+    leaders = _coincident(positions)
+    if rounding > 0 and len(triangles):
+        leaders = _rounded(positions, leaders, _open_vertices(triangles, leaders), rounding)
+    return Seams.of(leaders)
+
+
+def seam_pairs(seams: Seams | None, triangles: Indices, faces: Indices) -> Indices:
+    """Return the pairs of faces, (k, 2), that touch along a seam: smaller number first, sorted.
+
+    triangles  (f, 3) vertices of the mesh
+    faces      (f,) the face that each triangle belongs to
+
+    Both have a vertex of the same place, and not the same vertex. Triangles with two corners in one place are left out.
+    """
+    if seams is None or len(triangles) == 0:
+        return np.empty((0, 2), np.int32)
+    joined = seams.index[triangles]
+    proper = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
+    doubled = np.bincount(seams.index, minlength=len(seams.first)) > 1
+    rows = proper[:, None] & doubled[joined]
+    order = np.argsort(joined[rows], kind="stable")
+    owners = np.broadcast_to(faces[:, None].astype(np.int64), joined.shape)[rows][order]
+    vertices = triangles[rows][order]
+    found = [np.empty(0, np.int64)]
+    for one, other in _in_groups(joined[rows][order]):
+        apart = (vertices[one] != vertices[other]) & (owners[one] != owners[other])
+        a, b = owners[one[apart]], owners[other[apart]]
+        found.append(np.minimum(a, b) << 32 | np.maximum(a, b))
+    keys = np.unique(np.concatenate(found))
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
+
+
+def _coincident(positions: NDArray[np.floating]) -> Indices:
+    """The first vertex in exactly the same place as each, (n,)."""
+    own = np.arange(len(positions), dtype=np.int32)
+    places = np.ascontiguousarray(positions + positions.dtype.type(0))  # -0.0 becomes 0.0
+    words = places.view(np.uint32 if places.dtype == np.float32 else np.uint64).reshape(len(places), 3)
+    codes = _mixed(words.astype(np.uint64))
+    ordered = np.sort(codes)
+    if not (ordered[1:] == ordered[:-1]).any():
+        return own
+    order = np.argsort(codes, kind="stable")
+    same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
+    if (same != (codes[order[1:]] == codes[order[:-1]])).any():  # different places of one code
+        order = np.lexsort((own, *places.T))
+        same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
+    begins = np.append(True, ~same)
+    leaders = np.empty_like(own)
+    leaders[order] = own[order[begins]][np.cumsum(begins) - 1]
+    return leaders
+
+
+def _mixed(words: Codes) -> Codes:
+    """One number for each row of three, (n,); the same for equal rows, and hardly ever for others."""
+    codes = np.zeros(len(words), np.uint64)
+    for column in words.T:
+        codes = (codes ^ column) * np.uint64(0x9E3779B97F4A7C15)
+        codes ^= codes >> np.uint64(29)
+    return codes
+
+
+def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
+    """The leaders around which triangles are no closed fan.
+
+    Around a closed fan each neighbour follows one triangle and precedes one, so that sums of their codes cancel.
+    """
+    codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
+    sums = np.zeros(len(leaders))
+    corners = leaders[triangles]
+    for corner in range(3):
+        after, before = corners[:, (corner + 1) % 3], corners[:, (corner + 2) % 3]
+        sums += np.bincount(corners[:, corner], codes[after] - codes[before], len(leaders))
+    return np.flatnonzero(sums).astype(np.int32)
+
+
+def _rounded(positions: NDArray[np.floating], leaders: Indices, vertices: Indices, rounding: float) -> Indices:
+    """Leaders, (n,), where some of the vertices, (b,), that are within rounding of each other get one leader."""
+    distance = rounding * float(np.abs(positions).max(initial=0.0))
+    if distance == 0 or len(vertices) < 2:
+        return leaders
+    places = positions[vertices].astype(np.float64)
+    found = np.arange(len(vertices))
+    for one, other in _near(places, distance):
+        lower = np.minimum(found[one], found[other])
+        np.minimum.at(found, one, lower)
+        np.minimum.at(found, other, lower)
+    found = found[found]
+    near = (np.abs(places - places[found]) <= distance).all(axis=1) & (found[found] == found)
+    near &= np.bincount(found, ~near, len(found))[found] == 0  # a group that is not tight is none
+    result = leaders.copy()
+    result[vertices[near]] = vertices[found[near]]
+    joined: Indices = result[leaders]
+    return joined
+
+
+def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of places, (b, 3), within a distance along each axis: of each tight group at least all with its first."""
+    low = np.floor((places - distance) / (4 * distance)).astype(np.int64)
+    high = np.floor((places + distance) / (4 * distance)).astype(np.int64)
+    numbers = np.tile(np.arange(len(places)), 8)
+    corners = [np.where([k & 1, k & 2, k & 4], high, low) for k in range(8)]
+    codes = _mixed(np.concatenate(corners).astype(np.uint64))
+    order = np.lexsort((numbers, codes))
+    codes, numbers = codes[order], numbers[order]
+    distinct = np.append(True, (codes[1:] != codes[:-1]) | (numbers[1:] != numbers[:-1]))
+    codes, numbers = codes[distinct], numbers[distinct]
+    while len(codes):  # the first of each cell against the others in it, and again without it and those near it
+        begins = np.append(True, codes[1:] != codes[:-1])
+        heads = numbers[begins][np.cumsum(begins) - 1]
+        near = (np.abs(places[numbers] - places[heads]) <= distance).all(axis=1)
+        joins = near & ~begins
+        yield heads[joins], numbers[joins]
+        codes, numbers = codes[~near], numbers[~near]
+
+
+def _in_groups(groups: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """All pairs of positions in a sorted list whose entries are the same."""
+    ends = np.searchsorted(groups, groups, side="right")
+    one = np.arange(len(groups))
+    for offset in range(1, len(groups)):
+        one = one[one + offset < ends[one]]
+        if len(one) == 0:
+            return
+        yield one, one + offset
