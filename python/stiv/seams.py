@@ -13,6 +13,7 @@ from stiv.arrays import Floats, Indices
 
 Flags = NDArray[np.bool_]
 Codes = NDArray[np.uint64]
+CELL = 32  # width of a cell of the grid in which close vertices are sought, in distances
 
 
 @dataclass(frozen=True)
@@ -120,17 +121,18 @@ def _mixed(words: Codes) -> Codes:
 
 
 def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
-    """The leaders around which triangles are no closed fan.
+    """The leaders of vertices around which triangles are no closed fan.
 
     Around a closed fan each neighbour follows one triangle and precedes one, so that sums of their codes cancel.
     """
     codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
     sums = np.zeros(len(leaders))
-    corners = leaders[triangles]
     for corner in range(3):
-        after, before = corners[:, (corner + 1) % 3], corners[:, (corner + 2) % 3]
-        sums += np.bincount(corners[:, corner], codes[after] - codes[before], len(leaders))
-    return np.flatnonzero(sums).astype(np.int32)
+        after, before = triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]
+        sums += np.bincount(triangles[:, corner], codes[after] - codes[before], len(leaders))
+    is_open = np.zeros(len(leaders), np.bool_)
+    is_open[leaders[np.flatnonzero(sums)]] = True
+    return np.flatnonzero(is_open).astype(np.int32)
 
 
 def _rounded(positions: NDArray[np.floating], leaders: Indices, vertices: Indices, rounding: float) -> Indices:
@@ -155,15 +157,12 @@ def _rounded(positions: NDArray[np.floating], leaders: Indices, vertices: Indice
 
 def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of places, (b, 3), within a distance along each axis: of each tight group at least all with its first."""
-    low = np.floor((places - distance) / (4 * distance)).astype(np.int64)
-    high = np.floor((places + distance) / (4 * distance)).astype(np.int64)
-    numbers = np.tile(np.arange(len(places)), 8)
-    corners = [np.where([k & 1, k & 2, k & 4], high, low) for k in range(8)]
-    codes = _mixed(np.concatenate(corners).astype(np.uint64))
+    codes, numbers = _cells(places, distance)
     order = np.lexsort((numbers, codes))
     codes, numbers = codes[order], numbers[order]
-    distinct = np.append(True, (codes[1:] != codes[:-1]) | (numbers[1:] != numbers[:-1]))
-    codes, numbers = codes[distinct], numbers[distinct]
+    crowded = np.append(False, codes[1:] == codes[:-1])
+    crowded[:-1] |= crowded[1:]
+    codes, numbers = codes[crowded], numbers[crowded]
     while len(codes):  # the first of each cell against the others in it, and again without it and those near it
         begins = np.append(True, codes[1:] != codes[:-1])
         heads = numbers[begins][np.cumsum(begins) - 1]
@@ -173,12 +172,24 @@ def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
         codes, numbers = codes[~near], numbers[~near]
 
 
+def _cells(places: Floats, distance: float) -> tuple[Codes, Indices]:
+    """Codes of the cells of a grid that each place touches or is within a distance of, and the number of the place."""
+    low, high = (np.floor((places + sign * distance) / (CELL * distance)).astype(np.int64) for sign in (-1, 1))
+    codes, numbers = [], []
+    for corner in range(8):
+        upper = np.array([corner & 1, corner & 2, corner & 4], np.bool_)
+        reaching = np.flatnonzero((low != high)[:, upper].all(axis=1)).astype(np.int32)
+        codes.append(_mixed(np.where(upper, high[reaching], low[reaching]).astype(np.uint64)))
+        numbers.append(reaching)
+    return np.concatenate(codes), np.concatenate(numbers)
+
+
 def _in_groups(groups: Indices) -> Iterator[tuple[Indices, Indices]]:
     """All pairs of positions in a sorted list whose entries are the same."""
     ends = np.searchsorted(groups, groups, side="right")
-    one = np.arange(len(groups))
+    one = np.arange(len(groups), dtype=np.int32)
     for offset in range(1, len(groups)):
         one = one[one + offset < ends[one]]
         if len(one) == 0:
             return
-        yield one, one + offset
+        yield one, one + np.int32(offset)

@@ -71,7 +71,8 @@ class Assembly:
         """The vertex that a vertex of the surface is."""
         place = int(np.searchsorted(self.starts, vertex, side="right")) - 1
         mesh, seams, number = self.meshes[place], self.seams[place], int(vertex - self.starts[place])
-        return Element(mesh.owner.name, "vertex", mesh.vertex_number(number if seams is None else int(seams.first[number])))
+        first = number if seams is None else int(seams.first[number])
+        return Element(mesh.owner.name, "vertex", mesh.vertex_number(first))
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exact test of a whole scene, as Blender evaluates it."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 
+from stiv.blender.arrays import Indices
 from stiv.blender.assembly import Assembly, assemble_joined
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
+from stiv.seams import seam_pairs
 
 
 @dataclass(frozen=True)
@@ -23,12 +26,14 @@ class SceneCheck:
             second.
         objects, triangles: how many were tested.
         hidden: objects with a surface that are hidden or excluded, and were not.
+        seams: pairs of faces of one object that touch in coincident vertices alone: they are one surface there.
     """
 
     pairs: tuple[FacePair, ...]
     objects: int
     triangles: int
     hidden: int
+    seams: int = 0
 
     @property
     def triangle_pairs(self) -> int:
@@ -59,7 +64,8 @@ def check_scene(
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
-    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden)
+    seams = sum(len(faces) for _, faces in seam_faces(assembly, pairs))
+    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, seams)
 
 
 def exclusions_now(
@@ -89,3 +95,17 @@ def _counted(
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
     """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
     return named_pairs(assembly, assembly.positions, threads)
+
+
+def seam_faces(assembly: Assembly, pairs: Collection[FacePair]) -> Iterator[tuple[str, Indices]]:
+    """For each mesh its object's name and the pairs of its faces, (k, 2), that touch along seams.
+
+    Those among `pairs`, which intersect, are left out.
+    """
+    meeting = {(pair.first.object, *sorted((pair.first.number, pair.second.number))) for pair in pairs}
+    for mesh, seams in zip(assembly.meshes, assembly.seams, strict=True):
+        faces = seam_pairs(seams, mesh.triangles, mesh.faces)
+        if meeting:
+            apart = [(mesh.owner.name, a, b) not in meeting for a, b in faces.tolist()]
+            faces = faces[np.array(apart, np.bool_)]
+        yield mesh.owner.name, faces

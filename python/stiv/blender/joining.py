@@ -67,8 +67,9 @@ def joined_rows(rows: Indices, tied: Seams | None) -> Indices:
     """Triangles or edges, (f, k), over the joined vertices; those of which two corners are one are left out."""
     if tied is None:
         return rows
-    joined: Indices = tied.index[rows]
-    return joined[(joined != np.roll(joined, 1, axis=1)).all(axis=1)]
+    joined = tied.index[rows]
+    proper: Indices = joined[(joined != np.roll(joined, 1, axis=1)).all(axis=1)]
+    return proper
 
 
 def seam_note(name: str, selected: Flags, tied: Seams) -> str:
@@ -141,7 +142,7 @@ def _kept(part: Part, found: Sequence[Seams | None], counts: Sequence[int]) -> t
     size = float(np.ptp(part.controls, axis=0).max(initial=0.0)) or 1.0
     random = np.random.default_rng(0).uniform(-1, 1, part.controls.shape) * 0.01 * size
     moved = part.deformation.surface(part.controls + random) - part.deformation.surface(part.controls)
-    kept = []
+    kept: list[Seams | None] = []
     for seams, motion in zip(found, np.split(moved, np.cumsum(counts)[:-1]), strict=True):
         if seams is None:
             kept.append(None)

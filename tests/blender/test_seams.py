@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seams: vertices of one mesh in the same place. Faces that touch in them alone are one surface, and stay so."""
+
+from typing import Any
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, mesh, shift
+from oracles import exact
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene
+
+
+def unwelded(name: str, count: int, **properties: Any) -> Any:
+    """A square grid of which every face has vertices of its own, as careless imports have them."""
+    grid = add_grid(name, count).data
+    places = [tuple(grid.vertices[index].co) for face in grid.polygons for index in face.vertices]
+    faces = [tuple(face.loop_indices) for face in grid.polygons]
+    bpy.data.objects.remove(bpy.data.objects[name])
+    return add(name, mesh(name, places, faces), **properties)
+
+
+def torn_in_half(name: str, count: int) -> Any:
+    """A bumpy square grid cut along x = 0."""
+    grid = add_grid(name, count)
+    edited = bmesh.new()
+    edited.from_mesh(grid.data)
+    for vertex in edited.verts:
+        vertex.co.z = 0.05 * np.sin(7 * vertex.co.x + 3 * vertex.co.y)
+    bmesh.ops.split_edges(edited, edges=[e for e in edited.edges if all(abs(v.co.x) < 1e-6 for v in e.verts)])
+    edited.to_mesh(grid.data)
+    edited.free()
+    return grid
+
+
+def select_vertices(ob: Any, wanted: Any) -> None:
+    edit_mode(ob)
+    edited = bmesh.from_edit_mesh(ob.data)
+    for vertex in edited.verts:
+        vertex.select_set(wanted(vertex))
+    bmesh.update_edit_mesh(ob.data)
+
+
+def places(ob: Any) -> np.ndarray:
+    return np.array([tuple(vertex.co) for vertex in ob.data.vertices])
+
+
+def coincident(points: np.ndarray, same: np.ndarray) -> bool:
+    """Are points that had the same number at the start still in the same place, to the last bit?"""
+    return all(len(np.unique(points[same == number], axis=0)) == 1 for number in np.unique(same))
+
+
+def joined_pairs(ob: Any) -> set[tuple[int, int]]:
+    """Triangles of an object that meet in rational arithmetic, once coincident vertices are one."""
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    shown.calc_loop_triangles()
+    corners = np.array([tuple(triangle.vertices) for triangle in shown.loop_triangles])
+    q, same = np.unique(evaluated(ob), axis=0, return_inverse=True)
+    return exact.find_intersections(q, same.reshape(-1)[corners])
+
+
+def add_clean_objects() -> None:
+    """A text with depth, an Edge Split, a surface of two NURBS patches, a NURBS sphere and an unwelded import."""
+    letters = bpy.data.curves.new("Text", "FONT")
+    letters.body, letters.extrude = "Seam", 0.1
+    add("Text", letters, (0, 5, 0))
+    ball = bmesh.new()
+    bmesh.ops.create_icosphere(ball, subdivisions=3, radius=1)
+    data = bpy.data.meshes.new("Split")
+    ball.to_mesh(data)
+    ball.free()
+    add_modifier(add("Split", data, (5, 0, 0)), "EDGE_SPLIT", split_angle=0.0)
+    bpy.ops.surface.primitive_nurbs_surface_surface_add(location=(-6, 0, 0))
+    patches = bpy.context.object.data
+    for spline in patches.splines:
+        spline.use_endpoint_u = spline.use_endpoint_v = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.curve.select_all(action="SELECT")
+    bpy.ops.curve.duplicate()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for point in patches.splines[1].points:
+        point.co.x += 3
+    bpy.ops.surface.primitive_nurbs_surface_sphere_add(location=(0, -5, 0))
+    unwelded("Import", 8)
+    bpy.context.view_layer.update()
+
+
+def test_clean_objects_with_seams_are_free() -> None:
+    add_clean_objects()
+    found = check_scene(bpy.context)
+    assert found.pairs == ()
+    assert found.objects == 5
+    assert found.seams > 4000
+
+
+def test_faces_that_overlap_at_a_seam_still_intersect() -> None:
+    doubled = add_grid("Doubled", 2)
+    edited = bmesh.new()
+    edited.from_mesh(doubled.data)
+    bmesh.ops.duplicate(edited, geom=edited.faces[:1])
+    edited.to_mesh(doubled.data)
+    add("Folded", mesh("Folded", [(5, 0, 0), (6, 0, 0), (5, 1, 0), (5, 0, 0), (6, 0, 0), (5.2, 0.5, 0)],
+                       [(0, 1, 2), (3, 4, 5)]))  # fmt: skip
+    assert {(pair.first.object, pair.second.object) for pair in check_scene(bpy.context).pairs} == {
+        ("Doubled", "Doubled"), ("Folded", "Folded")
+    }  # fmt: skip
+    select_vertices(doubled, lambda vertex: True)
+    with pytest.raises(stiv.StartIntersectsError):
+        BlenderEdit.begin(bpy.context, EditSettings(), "move")
+
+
+def test_objects_that_touch_each_other_still_intersect() -> None:
+    add_cube("One", (0, 0, 0))
+    add_cube("Two", (2, 2, 2))
+    assert len(check_scene(bpy.context).pairs) > 0
+
+
+@pytest.mark.parametrize("way", ["vertices", "arap", "laplacian"])
+@pytest.mark.parametrize("levels", [0, 1])
+def test_a_seam_stays_closed_where_one_side_of_it_is_moved(way: str, levels: int) -> None:
+    ob = unwelded("Import", 6)
+    add_cube("Wall", (0, 0, 2.5))
+    if levels:
+        add_modifier(ob, "SUBSURF", levels=levels)
+    same = np.unique(places(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    shown = np.unique(evaluated(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    held = len(np.unique(same)) < len(same) if levels == 0 or way != "vertices" else False
+    centre = next(v.index for v in ob.data.vertices if v.co.length < 1e-6)
+    select_vertices(ob, lambda vertex: vertex.index == centre or (abs(vertex.co.x) > 0.99 and way != "vertices"))
+    edit = BlenderEdit.begin(bpy.context, EditSettings(deformations={ob.name: way}), "move")
+    note = any("follow those selected on their seams" in text for text in edit.summary.warnings)
+    assert note == held
+    result = edit.apply(shift(z=3))
+    assert edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert result.status == "corrected" or not held
+    assert places(ob)[:, 2].max() > 1.2
+    assert coincident(places(ob), same) == held
+    assert coincident(evaluated(ob), shown)
+    assert joined_pairs(ob) == set()
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_a_cut_below_a_subdivision_surface_stays_closed() -> None:
+    ob = torn_in_half("Grid", 6)
+    add_cube("Wall", (0, 0, 2.5))
+    same = np.unique(places(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    add_modifier(ob, "SUBSURF", levels=2)
+    assert check_scene(bpy.context).pairs == ()
+    left = [face.index for face in ob.data.polygons if face.center.x < 0]
+    rim = {index for face in left for index in ob.data.polygons[face].vertices}
+    select_vertices(ob, lambda vertex: vertex.index in rim and vertex.co.x > -0.4 and abs(vertex.co.y) < 0.4)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    assert edit.apply(shift(z=3)).status == "corrected"
+    assert edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert coincident(places(ob), same)
+    assert check_scene(bpy.context).pairs == ()
