@@ -7,6 +7,7 @@
 
 #include "events.hpp"
 #include "module.hpp"
+#include "stiv/coordinate_range.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 #include "stiv/error.hpp"
@@ -29,8 +30,17 @@ PairMotion motion_at(const Quadruples& start, const Quadruples& end, Index row) 
   return motion;
 }
 
+void check_quadruples(const Quadruples& points, const char* name) {
+  for (Index row = 0; row < points.rows(); ++row)
+    for (const double coordinate : points.row(row))
+      if (const char* fault = coordinate_fault(coordinate))
+        throw InputError(std::string(name) + ", row " + std::to_string(row) + ": " + fault);
+}
+
 Eigen::VectorXd times_of_impact(EventKind kind, const Quadruples& start, const Quadruples& end, double separation,
                                 int threads) {
+  check_quadruples(start, "start");
+  check_quadruples(end, "end");
   Eigen::VectorXd times(start.rows());
   const Execution execution(threads);
   execution.for_chunks(static_cast<Index>(start.rows()), 256, [&](Index begin, Index last, Index) {

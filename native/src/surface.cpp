@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -205,10 +206,12 @@ void Surface::check_positions(const PositionsView& q) const {
     message << "positions have " << q.rows() << " rows, the surface has " << vertex_count() << " vertices";
     throw InputError(message.str());
   }
-  // Zero times anything finite is zero: all numbers at once, and one by one only to name the one that is not.
-  if ((Eigen::Map<const Eigen::ArrayXd>(q.data(), q.size()) * 0).sum() == 0) return;
-  for (Index vertex = 0; vertex < q.rows(); ++vertex)
-    if (!q.row(vertex).allFinite()) throw InputError(describe_vertex(vertex) + ": coordinate is not finite");
+  for (Index vertex = 0; vertex < q.rows(); ++vertex) check_position(vertex, q.row(vertex));
+}
+
+void Surface::check_position(Index vertex, const Eigen::Ref<const Eigen::RowVector3d>& position) const {
+  for (const double coordinate : position)
+    if (const char* fault = coordinate_fault(coordinate)) throw InputError(describe_vertex(vertex) + ": " + fault);
 }
 
 }  // namespace stiv

@@ -81,6 +81,12 @@ TEST_CASE("surface: bad input is named") {
   q(4, 1) = std::nan("");
   CHECK_THROWS_WITH_AS(surface.check_positions(q), "object \"right\", vertex 1: coordinate is not finite", InputError);
   CHECK_THROWS_AS(surface.check_positions(Positions::Zero(5, 3)), InputError);
+  q(4, 1) = 0.9e-70;
+  CHECK_THROWS_WITH_AS(surface.check_positions(q),
+                       "object \"right\", vertex 1: coordinate is below 1e-70; set it to 0 or scale up", InputError);
+  q(4, 1) = -1.1e70;
+  CHECK_THROWS_WITH_AS(surface.check_positions(q),
+                       "object \"right\", vertex 1: coordinate is above 1e70; scale the object down", InputError);
 }
 
 TEST_CASE("surface: empty input is a surface") {

@@ -74,7 +74,8 @@ def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: floa
     threads     0: one for each processor
 
     Conservative: never later than the true time, 0 where a pair starts within the separation.
-    Raises InputError naming the row for wrong shapes and numbers that are not finite.
+    Raises InputError naming the row for wrong shapes, numbers that are not finite, and coordinates that are neither 0
+    nor of magnitude 1e-70 to 1e70.
     """
     event_kind = _choose(KINDS, kind, "kind")
     first = as_floats(start, "start", (None, 4, 3))

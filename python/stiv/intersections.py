@@ -21,8 +21,9 @@ def find_intersections(
 
     Two triangles intersect if they meet in a point off the vertex or edge that they share by index. Touching, coplanar
     overlap, duplicates, coincident vertices of different index, and neighbours folded flat onto each other count;
-    triangles without area are segments or points. Exact for coordinates that are 0 or of magnitude 1e-85 to 1e100.
-    Raises InputError naming the row: a coordinate that is not finite, an index out of range, a wrong shape or dtype.
+    triangles without area are segments or points. Exact for every input that is accepted.
+    Raises InputError naming the row: a coordinate that is not finite, or that is neither 0 nor of magnitude 1e-70 to
+    1e70, an index out of range, a wrong shape or dtype.
     """
     surface, q = _prepared(vertices, triangles, all_bodies)
     return _native.find_intersections(surface.native, q, as_count(threads, "threads"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Another add-on left the processor rounding upward, or flushing small numbers to zero: same bits, and it stays so."""
+"""Rounding upward or flushing to zero, set by others, changes no bit; coordinates out of range are refused."""
 
 import ctypes
 import ctypes.util
@@ -64,8 +64,8 @@ def ball_into_wall() -> Work:
 
 
 def crossing_pairs() -> Work:
-    """Of triangles so small that products of their coordinates are denormal."""
-    corners = np.random.default_rng(3).random((300, 3)) * 1e-160
+    """Of triangles so small that their boxes, in single precision, have denormal sides."""
+    corners = np.random.default_rng(3).random((300, 3)) * 1e-40
     faces = np.arange(300).reshape(-1, 3)
     assert 0 < len(stiv.find_intersections(corners, faces)) < 4950
     return lambda: stiv.find_intersections(corners, faces)
@@ -87,3 +87,31 @@ def test_a_mode_set_by_others_changes_no_bit_and_stays(bits: int, prepared: Call
         kept = register() & bits
     assert found.tobytes() == expected.tobytes()
     assert kept == bits
+
+
+@pytest.mark.parametrize(("coordinate", "fault"), [(0.9e-70, "below 1e-70"), (-1.1e70, "above 1e70"), (1e-320, "")])
+def test_coordinates_that_exact_signs_do_not_hold_for_are_refused_by_row(coordinate: float, fault: str) -> None:
+    corners = np.random.default_rng(5).random((6, 3))
+    faces, beyond = np.arange(6).reshape(-1, 3), corners.copy()
+    beyond[4, 1] = coordinate
+    for refuse in (
+        lambda: stiv.find_intersections(beyond, faces),
+        lambda: stiv.least_distance(beyond, faces, within=True),
+        lambda: stiv.find_interference(faces, corners, beyond),
+    ):
+        with pytest.raises(stiv.InputError, match=f"vertex 4: coordinate is {fault}"):
+            refuse()
+    with pytest.raises(stiv.InputError, match=f"end, row 1: coordinate is {fault}"):
+        stiv.time_of_impact("vf", corners[[[0, 1, 2, 3], [1, 2, 3, 4]]], beyond[[[0, 1, 2, 3], [1, 2, 3, 4]]])
+
+
+def test_coordinates_that_weights_made_too_small_count_as_0() -> None:
+    weights = np.array([[1, 0], [1, 0], [1, 0], [1, 1e-90]])
+    deformation = stiv.linear(weights, np.array([[1, 0, 0], [0, 1, 0], [1, 1, 0], [2, 2, 0.0]]))
+    controls = np.zeros((2, 3))
+    surface = stiv.Surface(np.array([[0, 1, 2], [1, 3, 2]]), 4)
+    session = stiv.EditSession(surface, deformation, controls)
+    result = session.edit(np.array([[0, 0, 0], [0, 0, 1.0]]))
+    assert result.status == "reached"
+    assert deformation.surface(result.controls)[3, 2] == 1e-90
+    assert result.surface[3, 2] == 0

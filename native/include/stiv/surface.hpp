@@ -80,8 +80,11 @@ class Surface {
   /// Likewise for a triangle.
   std::string describe_triangle(Index triangle) const;
 
-  /// @throws InputError naming object and vertex if the shape is not (N, 3) or a coordinate is not finite.
+  /// @throws InputError naming object and vertex if the shape is not (N, 3), or a coordinate is not finite or out of
+  ///         range (coordinate_range.hpp).
   void check_positions(const PositionsView& q) const;
+  /// The same for the coordinates of one vertex.
+  void check_position(Index vertex, const Eigen::Ref<const Eigen::RowVector3d>& position) const;
 
  private:
   bool in_one_recut_face(const Index* vertices, std::size_t count) const;

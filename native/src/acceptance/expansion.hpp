@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 namespace stiv {
 
@@ -26,10 +25,17 @@ inline Rounded fast_two_sum(double x, double y) {
   return {sum, y - (sum - x)};
 }
 
-/// x * y. [theorem 18; the fused operation yields the same tail as Dekker's splitting]
+/// A double as two of at most 26 bits each. It overflows above 2^996. [theorem 17, after Veltkamp]
+inline Rounded split(double x) {
+  const double shifted = 0x1.0000002p27 * x, high = shifted - (shifted - x);
+  return {high, x - high};
+}
+
+/// x * y. By additions and multiplications alone: on some platforms std::fma rounds twice. [theorem 18, after Dekker]
 inline Rounded two_product(double x, double y) {
   const double product = x * y;
-  return {product, std::fma(x, y, -product)};
+  const Rounded a = split(x), b = split(y);
+  return {product, ((a.high * b.high - product) + a.high * b.low + a.low * b.high) + a.low * b.low};
 }
 
 /// A real number held exactly as a sum of doubles: non-adjacent terms, smallest first, zeros left out; the last one

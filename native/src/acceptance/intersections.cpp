@@ -126,6 +126,7 @@ class IntersectionTest::Implementation {
 
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
+    surface_->check_positions(q);
     points_ = point_rows(q, execution);
     const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
     for (Primitives* kind : kinds) kind->update(boxes, execution);

@@ -162,6 +162,7 @@ LeastDistance::LeastDistance(LeastDistance&&) noexcept = default;
 LeastDistance& LeastDistance::operator=(LeastDistance&&) noexcept = default;
 
 std::optional<NearestTriangles> LeastDistance::find(const PositionsView& q, bool within) {
+  const FloatingPointScope floating_point;
   return implementation_->find(q, within);
 }
 

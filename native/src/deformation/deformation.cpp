@@ -2,6 +2,7 @@
 #include "stiv/deformation/deformation.hpp"
 
 #include "position_rows.hpp"
+#include "stiv/coordinate_range.hpp"
 
 namespace stiv {
 
@@ -10,6 +11,12 @@ namespace {
 constexpr Index covectors_per_chunk = 16;
 
 }  // namespace
+
+Positions Deformation::surface_in_range(const Controls& p, const Execution& execution) const {
+  Positions q = surface(p, execution);
+  flush_below_range(q);
+  return q;
+}
 
 Positions Deformation::surface_rows(const Controls& p, std::span<const Index> vertices,
                                     const Execution& execution) const {

@@ -237,8 +237,7 @@ class Detector::Implementation {
         throw InputError("there are " + std::to_string(vertices.size()) + " vertices of kept pairs, and positions of " +
                          std::to_string(positions->rows()) + ": give one row for each");
       for (Index row = 0; row < positions->rows(); ++row)
-        if (!positions->row(row).allFinite())
-          throw InputError(surface_->describe_vertex(vertices[at(row)]) + ": coordinate is not finite");
+        surface_->check_position(vertices[at(row)], positions->row(row));
     }
     kept_steps_.update_rows(rows.start, rows.end, vertices, surface_->vertex_count());
   }

@@ -126,7 +126,7 @@ ContractionResult contract(const CagedSurface& caged, const Controls& p, const s
   const ContractionSystem system = contraction_system(*caged.cage, p, moves);
   IntersectionTest test(caged.surface);
   const auto pairs_at = [&](const Controls& at) {
-    return find_static_pairs(test, caged.deformation->surface(at), execution).count();
+    return find_static_pairs(test, caged.deformation->surface_in_range(at), execution).count();
   };
   Controls now = as_stored(p, options.storage);
   ContractionResult result{now, false, {pairs_at(now)}};

@@ -23,7 +23,7 @@ void contract_further(const CagedSurface& caged, const Marks& part, const Movabl
 
 std::vector<std::vector<Index>> intersecting_at(const CagedSurface& caged, const Controls& p, Execution& execution) {
   IntersectionTest test(caged.surface);
-  return vertices_of_pairs(*caged.surface, find_static_pairs(test, caged.deformation->surface(p), execution));
+  return vertices_of_pairs(*caged.surface, find_static_pairs(test, caged.deformation->surface_in_range(p), execution));
 }
 
 Contracted contract_components(const CagedSurface& caged, const Movable& movable, const ContractionOptions& options,

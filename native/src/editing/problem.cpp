@@ -5,6 +5,7 @@
 
 #include "editing/validation.hpp"
 #include "position_rows.hpp"
+#include "stiv/coordinate_range.hpp"
 #include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
 
@@ -63,7 +64,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
       excluded_(surface_, options_.excluded),
       no_separations_(surface_->bodies().size(), 0) {
   check_controls(controls, "controls");
-  const Positions q = deformation_->surface(controls);
+  const Positions q = deformation_->surface_in_range(controls);
   surface_->check_positions(q);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
   reference_ = centred(q);
@@ -112,11 +113,17 @@ void Problem::check_start(const Positions& q, Execution& execution) {
   throw StartIntersectsError(message, std::move(found.faces));
 }
 
+Positions Problem::centred(const PositionsView& q) const {
+  Positions about_centre = q.rowwise() - centre_;
+  flush_below_range(about_centre);
+  return about_centre;
+}
+
 Controls Problem::stored(const Controls& controls) const { return as_stored(controls, options_.storage); }
 
 Positions Problem::surface_at(const Controls& controls, Execution& execution) const {
   const ScopedTimer timer(execution.timings.deformation);
-  return deformation_->surface(controls, execution);
+  return deformation_->surface_in_range(controls, execution);
 }
 
 std::optional<Events> Problem::find_events(const Positions& from, const Positions& to, bool at_any_cost,
@@ -136,7 +143,9 @@ const std::vector<Index>& Problem::kept_vertices(Execution& execution) {
 
 Positions Problem::surface_rows(const Controls& controls, std::span<const Index> vertices, Execution& execution) const {
   const ScopedTimer timer(execution.timings.deformation);
-  return deformation_->surface_rows(controls, vertices, execution);
+  Positions rows = deformation_->surface_rows(controls, vertices, execution);
+  flush_below_range(rows);
+  return rows;
 }
 
 Events Problem::find_events_among_kept(const Positions& from, State& to, Execution& execution) {

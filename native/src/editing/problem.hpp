@@ -111,7 +111,7 @@ class Problem {
   /// All but those of excluded pairs.
   std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,
                                          Proximity proximity, bool at_any_cost, Execution& execution) const;
-  Positions centred(const PositionsView& q) const { return q.rowwise() - centre_; }
+  Positions centred(const PositionsView& q) const;
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Deformation> deformation_;

@@ -80,7 +80,7 @@ class Repair {
   Repair(CagedSurface caged, const Controls& p, RepairOptions options, Execution& execution)
       : caged_(std::move(caged)),
         start_(p),
-        surface_at_start_(caged_.deformation->surface(p)),
+        surface_at_start_(caged_.deformation->surface_in_range(p)),
         options_(std::move(options)),
         movable_(movable_of(caged_, options_.moves)),
         test_(caged_.surface),
@@ -178,7 +178,7 @@ class Repair {
     if (!execution_.budget_used_up()) come_nearer();
     if (result_.deviation > options_.max_deviation) return refuse(RepairRefusal::too_far);
     Execution uninterrupted(execution_.threads());
-    if (!find_static_pairs(test_, caged_.deformation->surface(best_), uninterrupted).empty())
+    if (!find_static_pairs(test_, caged_.deformation->surface_in_range(best_), uninterrupted).empty())
       return refuse(RepairRefusal::not_freed);
     result_.status = RepairStatus::repaired;
     result_.positions = best_;

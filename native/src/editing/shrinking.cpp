@@ -44,7 +44,8 @@ Contracted shrink_components(const CagedSurface& caged, const Movable& movable, 
   IntersectionTest test(caged.surface);
   const auto pairs_at = [&](const Controls& p) {
     execution.check();
-    return vertices_of_pairs(*caged.surface, find_static_pairs(test, caged.deformation->surface(p), execution));
+    return vertices_of_pairs(*caged.surface,
+                             find_static_pairs(test, caged.deformation->surface_in_range(p), execution));
   };
   const std::size_t steps = std::min(std::size(factors), static_cast<std::size_t>(options.max_steps));
   Contracted state{as_stored(start, options.storage), 0, 0};

@@ -24,8 +24,11 @@ class Deformation {
   virtual Positions surface(const Controls& p, const Execution& execution) const = 0;
   Positions surface(const Controls& p) const { return surface(p, Execution(1)); }
 
-  /// Rows of that, those of some vertices: (k, 3), bit by bit the same. Here of the whole; others make only what is
-  /// asked for.
+  /// That as detection and acceptance take it: coordinates below their range (coordinate_range.hpp) are 0.
+  Positions surface_in_range(const Controls& p, const Execution& execution = Execution(1)) const;
+
+  /// Rows of the surface, those of some vertices: (k, 3), bit by bit the same. Here of the whole; others make only what
+  /// is asked for.
   virtual Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.

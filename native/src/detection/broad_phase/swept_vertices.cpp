@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "detection/joined.hpp"
+#include "stiv/coordinate_range.hpp"
 
 namespace stiv {
 
@@ -39,18 +40,18 @@ float round_down(double value) {
 /// Where some vertices go.
 struct SweptVertices::Survey {
   Vector3 low = Vector3::Constant(never), high = -low;
-  bool finite = true;
+  bool valid = true;
 
   void include(const Survey& other) {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
-    finite = finite && other.finite;
+    valid = valid && other.valid;
   }
   void include(const double* from, const double* to) {
     for (Index k = 0; k < 3; ++k) {
       low[k] = std::min({low[k], from[k], to[k]});
       high[k] = std::max({high[k], from[k], to[k]});
-      finite = finite && std::isfinite(from[k]) && std::isfinite(to[k]);
+      valid = valid && is_valid_coordinate(from[k]) && is_valid_coordinate(to[k]);
     }
   }
 };
@@ -78,7 +79,7 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
   return joined<Index>(parts);
 }
 
-/// @throws InputError if a number is not finite
+/// @throws InputError if a number is not finite or out of range
 SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
   const auto count = static_cast<Index>(changed_.size());
   std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
@@ -89,7 +90,7 @@ SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& e
   });
   Survey whole;
   for (const Survey& part : parts) whole.include(part);
-  if (!whole.finite) {
+  if (!whole.valid) {
     surface_.check_positions(step.start);
     surface_.check_positions(step.end);
   }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// Magnitudes of coordinates other than 0 for which every sign and every error bound holds: no product of the exact
+/// predicates underflows, and Veltkamp's splitting (which overflows above 2^996) stays below 2^800.
+constexpr double least_coordinate = 1e-70;
+constexpr double greatest_coordinate = 1e70;
+
+inline bool is_valid_coordinate(double x) {
+  const double magnitude = std::abs(x);
+  return (magnitude >= least_coordinate && magnitude <= greatest_coordinate) || x == 0;
+}
+
+/// What is wrong with a coordinate and the way out, or null.
+inline const char* coordinate_fault(double x) {
+  if (is_valid_coordinate(x)) return nullptr;
+  if (!std::isfinite(x)) return "coordinate is not finite";
+  return std::abs(x) < 1 ? "coordinate is below 1e-70; set it to 0 or scale up"
+                         : "coordinate is above 1e70; scale the object down";
+}
+
+/// Sets computed coordinates below the range to 0: weights of far controls make them, and no predicate needs them.
+inline void flush_below_range(Positions& q) { q = (q.array().abs() < least_coordinate).select(0.0, q); }
+
+}  // namespace stiv
