@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
 import bpy
 
 from .. import scene_frame, scene_snapping
+from ..lengths import length_text
 from ..modal.drag import Drag, DragEnded, Progress
 from ..modal.pointer import Pointer
 from ..modal.request import Request
@@ -69,6 +71,7 @@ class Dragging:
         self._notes = scene_frame.notes(context) + scene_snapping.notes(scene)
         self._snap = scene_snapping.read_snap(context, lambda: self._drag.edit.moving, lambda: self._frame.view)
         self._readers = readers(scene)
+        self._length = functools.partial(length_text, units=scene.unit_settings)
         mouse = interface.plain_event(event, context.region).mouse
         proportional, snaps = scene_frame.read_proportional(context), scene.tool_settings.use_snap
         state = State(Pointer.at(mouse, interface.centre(self._frame)), request, proportional=proportional, snap=snaps)
@@ -112,7 +115,7 @@ class Dragging:
             return
         self._shown = news
         label = say(OPERATORS[drag.state.kind].bl_label)
-        value = drag.transform.text(say) if drag.transform is not None else label
+        value = drag.transform.text(say, self._length) if drag.transform is not None else label
         verdict = outcome_text(drag.result) if drag.result is not None else ""
         told = [text for text in (drag.note, write_failure(drag.report)) if text]
         interface.show(context, drag.state, value, verdict, [*told, *self._notes], self._axes)

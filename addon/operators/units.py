@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import bpy
-
+from ..lengths import SCENE_LENGTHS, unit_length
 from ..modal.expression import Units, evaluate
 
 # Only these are ever handed to Blender, which evaluates what it is given as Python.
@@ -20,10 +18,6 @@ LENGTHS = (
     *("'", '"'),
 )
 ANGLES = ("°", "d", "deg", "degree", "degrees", "r", "rad", "radian", "radians", "'", '"')
-SCENE_LENGTHS = {
-    "KILOMETERS": "km", "METERS": "m", "CENTIMETERS": "cm", "MILLIMETERS": "mm", "MICROMETERS": "um",
-    "MILES": "mi", "FEET": "ft", "INCHES": "in", "THOU": "thou",
-}  # fmt: skip
 DEFAULT_LENGTHS = {"METRIC": "m", "IMPERIAL": "ft"}
 
 
@@ -46,7 +40,7 @@ def _lengths(settings: Any) -> Units:
 
     def factor(name: str) -> float | None:
         name = name or usual
-        return _factor(system, "LENGTH", name) / scale if name in LENGTHS else None
+        return unit_length(system, name) / scale if name in LENGTHS else None
 
     return factor
 
@@ -59,12 +53,6 @@ def _angles(settings: Any) -> Units:
             return usual
         # Blender knows the units by their short names alone.
         short = {"deg": "d", "degree": "d", "degrees": "d", "rad": "r", "radian": "r", "radians": "r"}.get(name, name)
-        return _factor("METRIC", "ROTATION", short) if name in ANGLES else None
+        return unit_length("METRIC", short, "ROTATION") if name in ANGLES else None
 
     return factor
-
-
-@functools.cache
-def _factor(system: str, category: str, name: str) -> float:
-    """A unit in Blender's own. It calculates in single precision, so seven digits are what is meant."""
-    return float(f"{bpy.utils.units.to_value(system, category, '1' + name):.7g}")

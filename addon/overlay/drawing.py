@@ -10,6 +10,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
+from ..lengths import length_text
 from ..wording import say
 from .content import Content, lines_of, texts_of
 
@@ -18,6 +19,7 @@ LINE_WIDTH = 2.0
 FACE_ALPHA = 0.5
 CORNER = (20, 60)  # of the text, pixels from the lower left, beside the toolbar
 TEXT_SIZE = 12
+CLEARANCE_DECIMALS = 6  # distances are small beside motions
 
 
 def colours(context: Any) -> dict[str, tuple[float, float, float]]:
@@ -74,7 +76,4 @@ def _draw(shader: Any, kind: str, points: Any, colour: tuple[float, ...]) -> Non
 
 
 def _length_text(value: float) -> str:
-    units = bpy.context.scene.unit_settings
-    if units.system == "NONE":
-        return f"{value:.4g}"
-    return bpy.utils.units.to_string(units.system, "LENGTH", value * units.scale_length, precision=6)
+    return length_text(value, bpy.context.scene.unit_settings, CLEARANCE_DECIMALS)

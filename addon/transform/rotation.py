@@ -11,6 +11,7 @@ import numpy as np
 
 from ..modal.state import State
 from ..modal.typed_number import Read
+from .decimals import decimal_text
 from .frame import Frame, about
 from .snapping import Snap
 from .view import Vector
@@ -39,9 +40,9 @@ class Rotation:
         """A fraction of the way to it, 0 to 1."""
         return Rotation(fraction * self.angle, self.axis)
 
-    def text(self, say: Callable[[str], str] = str) -> str:
-        """For the header; `say` puts a text into the language of the interface."""
-        return say("Rotate {}").format(f"{math.degrees(self.angle):.4g}°")
+    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = decimal_text) -> str:
+        """For the header; `say` puts a text into the language of the interface, `length` writes a length."""
+        return say("Rotate {}").format(f"{decimal_text(math.degrees(self.angle))}°")
 
 
 def read_degrees(text: str) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.typed_number import Read
+from .decimals import decimal_text
 from .frame import Frame, about
 from .snapping import Snap
 from .view import Pixel, Vector
@@ -36,10 +37,10 @@ class Scaling:
         """A fraction of the way to it, 0 to 1."""
         return Scaling(1.0 + fraction * (self.factors - 1.0), self.axes)
 
-    def text(self, say: Callable[[str], str] = str) -> str:
-        """For the header; `say` puts a text into the language of the interface."""
-        x, y, z = self.factors
-        return say("Scale {}").format(f"{x:.4g}" if x == y == z else f"X {x:.4g}  Y {y:.4g}  Z {z:.4g}")
+    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = decimal_text) -> str:
+        """For the header; `say` puts a text into the language of the interface, `length` writes a length."""
+        x, y, z = map(decimal_text, self.factors)
+        return say("Scale {}").format(x if x == y == z else f"X {x}  Y {y}  Z {z}")
 
 
 def measure_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:

@@ -11,6 +11,7 @@ import numpy as np
 from ..modal.constraint import Constraint
 from ..modal.state import State
 from ..modal.typed_number import Read
+from .decimals import decimal_text
 from .frame import Frame
 from .snapping import Snap
 from .view import Vector, View
@@ -40,11 +41,11 @@ class Translation:
         """A fraction of the way to it, 0 to 1."""
         return Translation(fraction * self.vector)
 
-    def text(self, say: Callable[[str], str] = str) -> str:
-        """For the header; `say` puts a text into the language of the interface."""
-        x, y, z = self.vector
-        length = float(np.linalg.norm(self.vector))
-        return say("Move {}  (distance {})").format(f"X {x:.4g}  Y {y:.4g}  Z {z:.4g}", f"{length:.4g}")
+    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = decimal_text) -> str:
+        """For the header; `say` puts a text into the language of the interface, `length` writes a length."""
+        x, y, z = map(length, self.vector)
+        distance = length(float(np.linalg.norm(self.vector)))
+        return say("Move {}  (distance {})").format(f"X {x}  Y {y}  Z {z}", distance)
 
 
 def measure_translation(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Translation:

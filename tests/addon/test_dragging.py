@@ -41,8 +41,8 @@ class Value(SimpleNamespace):
 
     rotation = None
 
-    def text(self, say: Callable[[str], str] = str) -> str:
-        return f"{self.value}"
+    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = str) -> str:
+        return length(self.value)
 
 
 class Probe(Dragging):
@@ -52,7 +52,7 @@ class Probe(Dragging):
 
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
-        self._frame, self._snap, self._readers = Frame(np.zeros(3)), None, {}
+        self._frame, self._snap, self._readers, self._length = Frame(np.zeros(3)), None, {}, str
         self._axes, self._notes = ("GLOBAL", "LOCAL"), []
 
     def report(self, kind: set, text: str) -> None:
