@@ -8,6 +8,7 @@ from typing import Any
 
 from ..settings import edit_settings
 from ..wording import say
+from .problem import Problem, listed
 
 
 @dataclass(frozen=True)
@@ -15,12 +16,12 @@ class Outcome:
     """What came of it.
 
     Attributes:
-        free: the scene is free of intersections now.
+        problem: why the scene is not free of intersections; None if it is.
         wrote: something was written.
-        text: what to tell the user, empty for nothing.
+        text: what to tell the user of that.
     """
 
-    free: bool
+    problem: Problem | None = None
     wrote: bool = False
     text: str = ""
 
@@ -38,13 +39,6 @@ def take_strokes(context: Any) -> None:
     context.view_layer.update()
 
 
-def differs(accepted: Any, present: Any) -> bool:
-    """Are any controls other than accepted?"""
-    from stiv.blender import compare
-
-    return bool(compare(accepted, present))
-
-
 def test(context: Any) -> Outcome:
     """Is the scene free as it is, but for what may intersect?"""
     from stiv.blender import check_scene
@@ -53,11 +47,8 @@ def test(context: Any) -> Outcome:
     try:
         pairs = settings.excluded.others(check_scene(context, settings).pairs)
     except ValueError as error:
-        return Outcome(False, text=str(error))
-    if not pairs:
-        return Outcome(True)
-    names = sorted({each.object for pair in pairs for each in (pair.first, pair.second)})
-    return Outcome(False, text=say("{} pairs of faces intersect: {}").format(len(pairs), listed(names)))
+        return Outcome(Problem(reason=str(error)))
+    return Outcome(Problem(tuple(dict.fromkeys(pairs))) if pairs else None)
 
 
 def correct(context: Any, accepted: Any) -> Outcome:
@@ -72,25 +63,37 @@ def correct(context: Any, accepted: Any) -> Outcome:
     except (ValueError, SceneChangedError) as error:
         return _tested_instead(context, str(error))
     if not followed.corrected:
-        return Outcome(True)
-    told = say("corrected {}").format(listed(followed.names))
+        return Outcome()
+    told = say("corrected {}").format(listed(followed.names, say))
     if followed.blocking:
-        told = say("corrected {}, in the way: {}").format(listed(followed.names), listed(followed.blocking))
-    return Outcome(True, True, told)
+        told = say("corrected {}, in the way: {}").format(listed(followed.names, say), listed(followed.blocking, say))
+    return Outcome(wrote=True, text=told)
 
 
-def listed(names: Any, most: int = 3) -> str:
-    """Some names, and how many more there are."""
-    shown = ", ".join(list(names)[:most])
-    return say("{} and {} more").format(shown, len(names) - most) if len(names) > most else shown
+def revert(context: Any, accepted: Any, frame: int) -> tuple[str, ...]:
+    """Put the accepted state back, at its frame; names of the objects that were written.
+
+    Raises ValueError naming an object whose structure changed, before anything is changed.
+    """
+    from stiv.blender import revert as restore_state
+
+    present = context.scene.frame_current
+    if present == frame:
+        return tuple(restore_state(context, accepted))
+    context.scene.frame_set(frame)
+    try:
+        return tuple(restore_state(context, accepted))
+    except ValueError:
+        context.scene.frame_set(present)
+        raise
 
 
 def _tested_instead(context: Any, reason: str) -> Outcome:
     """The scene as it is, if free; otherwise why it could not be corrected."""
     found = test(context)
-    if found.free or not reason:
+    if found.problem is None or not found.problem.pairs or not reason:
         return found
-    return Outcome(False, text=say("{}; not corrected: {}").format(found.text, reason))
+    return Outcome(replace(found.problem, reason=reason))
 
 
 def _settings(context: Any) -> Any:

@@ -98,6 +98,13 @@ def decide(guard: Guard, seen: Seen) -> tuple[Guard, Action]:
     return _wait_for_quiet(guard, seen)
 
 
+def is_new_result(guard: Guard, seen: Seen, action: Action) -> bool:
+    """Is what an action deals with the result of a tool or a script, and none that undo or redo brought back?"""
+    if guard.history and seen.step == guard.restored:
+        return False
+    return action is not Action.ACCEPT or (seen.step is not None and seen.step != guard.step)
+
+
 def _is_after_history(guard: Guard) -> bool:
     """A step that is not the one gone back to is new: the redo panel's may lie where the one before has been freed."""
     return guard.history and guard.restored is not None

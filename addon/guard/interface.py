@@ -7,9 +7,13 @@ from typing import Any
 
 import bpy
 
+from ..overlay import showing
 from ..wording import say
+from .problem import Problem
 
-SHOWN = 6.0  # seconds for which the status bar keeps a message
+SHOWN = 6.0  # seconds for which the status bar keeps what was corrected
+
+_alert = ""  # what the status bar says of an intersecting scene, until that is solved
 
 
 def window() -> Any:
@@ -25,32 +29,66 @@ def is_busy() -> bool:
     )
 
 
-def tell(wrote: str, problem: str) -> None:
-    """Say in the status bar what was corrected, or why that was not possible; have the sidebars drawn again."""
+def tell(context: Any, wrote: str, problem: Problem | None) -> None:
+    """Say what was corrected, for a while in the status bar; or, until it is solved, what intersects.
+
+    That stands in the status bar and over the view in red, and in the sidebar.
+    """
+    global _alert
     _redraw_sidebars()
-    text = problem or wrote
-    if not text:
-        return
-    for workspace in bpy.data.workspaces:
-        workspace.status_text_set(say("Live guard: {}").format(text))
-    _forget_clearing()
-    bpy.app.timers.register(clear_when_idle, first_interval=SHOWN)
+    _show_in_view(context, problem)
+    if problem is not None:
+        _forget_clearing()
+        _alert = say("Live guard: {}").format(problem.headline(say))
+        _set_status(draw_alert)
+    elif wrote:
+        _forget_clearing()
+        _alert = ""
+        _set_status(say("Live guard: {}").format(wrote))
+        bpy.app.timers.register(clear_when_idle, first_interval=SHOWN)
+    elif _alert:
+        clear()
+
+
+def draw_alert(header: Any, context: Any) -> None:
+    """The status bar while something intersects: that in red with the way back, then what else Blender shows there."""
+    row = header.layout.row(align=True)
+    row.alert = True
+    row.label(text=_alert, icon="ERROR")
+    row.operator("stiv.guard_revert")
+    type(header)._draw_orig(header, context)  # kept by Blender when a function takes its place
 
 
 def clear_when_idle() -> float | None:
     """Give the status bar back, unless a tool has it."""
     if is_busy():
         return 1.0
-    for workspace in bpy.data.workspaces:
-        workspace.status_text_set(None)
+    _set_status(None)
     return None
 
 
 def clear() -> None:
     """Take a message away at once, if there is one."""
-    if bpy.app.timers.is_registered(clear_when_idle):
+    global _alert
+    if _alert or bpy.app.timers.is_registered(clear_when_idle):
+        _alert = ""
         _forget_clearing()
-        clear_when_idle()
+        _set_status(None)
+    showing.show_alert(())
+
+
+def _set_status(content: Any) -> None:
+    """A text, a function that draws, or None for what Blender shows."""
+    for workspace in bpy.data.workspaces:
+        workspace.status_text_set(content)
+
+
+def _show_in_view(context: Any, problem: Problem | None) -> None:
+    if problem is None:
+        showing.show_alert(())
+        return
+    showing.show_pairs(context, problem.pairs)
+    showing.show_alert((problem.headline(say), *problem.pair_lines(say)))
 
 
 def _forget_clearing() -> None:

@@ -13,32 +13,52 @@ from bpy.app.handlers import persistent
 from .. import availability
 from ..operators import last_edit
 from . import correcting, interface, undo_steps
-from .decision import LOOK_AGAIN, Action, Guard, Seen, decide
+from .decision import LOOK_AGAIN, Action, Guard, Seen, decide, is_new_result
+from .problem import Problem
 
 STEP_NAME = "Live Guard"
 
 
 class Watch:
-    """All that the guard remembers; `state` is the accepted one, at `frame`."""
+    """All that the guard remembers.
+
+    Attributes:
+        state: of all controls when the scene was clear last, at `state_frame`; None before that.
+        frame: at which the scene was last looked at.
+        problem: why the scene is not clear; None if it is.
+        uncorrected: results of tools that still intersect, counted since the guard was turned on.
+    """
 
     def __init__(self) -> None:
         """Nothing accepted yet."""
         self.guard = Guard()
         self.state: Any = None
+        self.state_frame = 0
         self.frame = 0
         self.updates = 0
         self.seen_updates = -1
         self.own_edits = last_edit.written()
-        self.problem = ""
+        self.problem: Problem | None = None
+        self.uncorrected = 0
         self.working = False
 
 
 _watch = Watch()
 
 
-def problem() -> str:
-    """Why the guard cannot act, empty if it can."""
+def problem() -> Problem | None:
+    """Why the guard cannot act; None if it can."""
     return _watch.problem
+
+
+def uncorrected() -> int:
+    """How many results of tools the guard left as they were, although they intersect, since it was turned on."""
+    return _watch.uncorrected
+
+
+def last_clear_state() -> tuple[Any, int] | None:
+    """A `stiv.blender.SceneState` without intersections and its frame; None where the guard saw none so far."""
+    return None if _watch.state is None else (_watch.state, _watch.state_frame)
 
 
 def is_on(context: Any) -> bool:
@@ -82,7 +102,7 @@ def look() -> float | None:
             return _look(context, window)
         except Exception as error:  # a timer that raises is gone, and with it the guard
             traceback.print_exc()
-            _give_up(str(error) or type(error).__name__)
+            _give_up(Problem(reason=str(error) or type(error).__name__))
             return None
 
 
@@ -124,15 +144,15 @@ def _act(context: Any, window: Any, action: Action, seen: Seen) -> None:
     if action is Action.ACCEPT:
         outcome = correcting.test(context)
     else:
-        outcome = correcting.Outcome(False)
-        if action is Action.WRITE:
-            outcome = correcting.test(context)
-        if not outcome.free:
+        outcome = correcting.test(context) if action is Action.WRITE else None
+        if outcome is None or outcome.problem is not None:
             outcome = correcting.correct(context, watch.state)
     if outcome.wrote:
         _record(window, action, seen)
+    if outcome.problem is not None and watch.state is not None and is_new_result(watch.guard, seen, action):
+        watch.uncorrected += 1
     _settle(context, outcome)
-    interface.tell(outcome.text if outcome.wrote else "", watch.problem)
+    interface.tell(context, outcome.text, watch.problem)
 
 
 def _record(window: Any, action: Action, seen: Seen) -> None:
@@ -146,19 +166,19 @@ def _settle(context: Any, outcome: correcting.Outcome) -> None:
     watch = _watch
     watch.own_edits = last_edit.written()
     watch.frame = context.scene.frame_current
-    watch.problem = "" if outcome.free else outcome.text
-    if outcome.free:
-        watch.state = correcting.read(context)
-    watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.free)
+    watch.problem = outcome.problem
+    if outcome.problem is None:
+        watch.state, watch.state_frame = correcting.read(context), watch.frame
+    watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.problem is None)
     # Reading a mesh in Edit Mode marks it as changed: told while the guard works, it is no change to look at again.
     context.view_layer.update()
 
 
-def _give_up(reason: str) -> None:
+def _give_up(problem: Problem) -> None:
     """Until the next change, which is tried again."""
-    _watch.problem = reason
+    _watch.problem = problem
     _watch.seen_updates = _watch.updates
-    interface.tell("", reason)
+    interface.tell(bpy.context, "", problem)
 
 
 def _arm() -> None:

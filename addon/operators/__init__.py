@@ -6,6 +6,7 @@ from .contract import STIV_OT_contract
 from .drag import STIV_OT_drag
 from .exclude import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .expand import STIV_OT_expand
+from .guard_revert import STIV_OT_guard_revert
 from .handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
 from .measure import STIV_OT_measure
@@ -26,6 +27,7 @@ CLASSES = (
     *RESHAPING,
     STIV_OT_exclude_intersections,
     STIV_OT_clear_exclusions,
+    STIV_OT_guard_revert,
     STIV_OT_handle_add,
     STIV_OT_handle_remove,
     STIV_OT_loop_add,

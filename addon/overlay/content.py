@@ -30,6 +30,7 @@ class Content:
         clearance: the nearest pair.
         milliseconds: what the last step of an edit took.
         frames: drawn steps of the edit a second.
+        alert: lines on what the live guard could not correct.
     """
 
     contacts: tuple[Any, Any] | None = None
@@ -37,11 +38,16 @@ class Content:
     clearance: Clearance | None = None
     milliseconds: float | None = None
     frames: float | None = None
+    alert: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         """Is there anything?"""
         return bool(
-            self.contacts is not None or len(self.intersecting) or self.clearance or self.milliseconds is not None
+            self.contacts is not None
+            or len(self.intersecting)
+            or self.clearance
+            or self.milliseconds is not None
+            or self.alert
         )
 
 

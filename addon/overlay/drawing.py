@@ -51,13 +51,15 @@ def draw_shapes(content: Content, chosen: Any) -> None:
 
 
 def draw_text(content: Content, chosen: Any) -> None:
-    """Numbers, in the lower left corner."""
+    """Numbers, in the lower left corner, below what could not be corrected."""
     context = bpy.context
-    scale = context.preferences.system.ui_scale
+    scale, colour = context.preferences.system.ui_scale, colours(context)
     blf.size(0, TEXT_SIZE * scale)
-    blf.color(0, *colours(context)["text"], 1.0)
     left = toolbar_edge(context.area, context.region) + CORNER[0] * scale
-    for number, text in enumerate(reversed(texts_of(content, chosen, _length_text, say))):
+    lines = [(text, "intersecting") for text in content.alert]
+    lines += [(text, "text") for text in texts_of(content, chosen, _length_text, say)]
+    for number, (text, kind) in enumerate(reversed(lines)):
+        blf.color(0, *colour[kind], 1.0)
         blf.position(0, left, (CORNER[1] + 1.5 * TEXT_SIZE * number) * scale, 0)
         blf.draw(0, text)
 

@@ -117,6 +117,13 @@ def show_pairs(context: Any, pairs: Any) -> None:
     _redraw()
 
 
+def show_alert(lines: tuple[str, ...]) -> None:
+    """What the live guard could not correct, in red until others are given; none takes them away."""
+    if lines != _content.alert:
+        _content.alert = lines
+        _redraw()
+
+
 def show_clearance(found: Any) -> None:
     """The nearest pair, a `stiv.LeastDistance` or None; goes with the next change of the scene."""
     _content.clearance = clearance_of(found)

@@ -6,9 +6,11 @@ from __future__ import annotations
 import bpy
 
 from ..guard import watching
+from ..guard.problem import Problem
+from ..wording import say
 from .drawing import SubPanel, draw_lines
 
-WAYS_OUT = ("stiv.check", "stiv.repair", "stiv.exclude_intersections")
+WAYS_OUT = ("stiv.guard_revert", "stiv.check", "stiv.repair", "stiv.exclude_intersections")
 
 
 class STIV_PT_guard(SubPanel, bpy.types.Panel):
@@ -26,17 +28,23 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         layout = self.layout
         if not context.scene.stiv.live_guard:
             layout.label(text="Off: tools may go through surfaces")
-        elif watching.problem():
-            layout.label(text="The guard waits for a free scene", icon="ERROR")
-            draw_lines(layout, watching.problem())
-            column = layout.column(align=True)
-            for name in WAYS_OUT:
-                if is_registered(name):
-                    column.operator(name)
+        elif (problem := watching.problem()) is not None:
+            draw_alert(layout, problem)
         else:
-            layout.label(text="Every tool is corrected", icon="CHECKMARK")
+            layout.label(text="The scene is clear", icon="CHECKMARK")
+        if watching.uncorrected():
+            layout.label(text=say("Results not corrected: {}").format(watching.uncorrected()))
 
 
-def is_registered(name: str) -> bool:
-    """Is there an operator of this name?"""
-    return hasattr(bpy.types, name.replace("stiv.", "STIV_OT_"))
+def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:
+    """What intersects, in red, why that was not corrected, and the ways out."""
+    box = layout.box()
+    box.alert = True
+    box.label(text="The scene intersects", icon="ERROR")
+    draw_lines(box, problem.headline(say))
+    draw_lines(box, "\n".join(problem.pair_lines(say)))
+    if problem.pairs and problem.reason:
+        draw_lines(layout, say("Not corrected: {}").format(problem.reason))
+    column = layout.column(align=True)
+    for name in WAYS_OUT:
+        column.operator(name)

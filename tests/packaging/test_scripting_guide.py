@@ -56,5 +56,5 @@ def test_every_setting_is_there() -> None:
 
 
 def test_every_name_of_the_package_is_there() -> None:
-    for name in re.findall(r"`([a-z]+_scene|read_state|compare|follow|[A-Z]\w+)`", GUIDE):
+    for name in re.findall(r"`([a-z]+_scene|read_state|compare|follow|revert|[A-Z]\w+)`", GUIDE):
         assert hasattr(stiv.blender, name) or name in ("SCENE", "ON", "OFF", "GLOBAL", "LOCAL", "RuntimeError"), name

@@ -34,6 +34,7 @@ class Driver:
         from guard_scenarios import GUARD
         from guard_sculpting import GUARD_SCULPTING
         from guard_switch import GUARD_SWITCH
+        from guard_uncorrected import GUARD_UNCORRECTED
         from guide_pictures import PICTURES
         from languages import LANGUAGES
         from measuring import MEASURES
@@ -46,7 +47,7 @@ class Driver:
 
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
-        guard = GUARD | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH
+        guard = GUARD | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | LANGUAGES | SEQUENCES | PICTURES

@@ -16,6 +16,7 @@ from stiv.blender.motion import Influence, Motion
 from stiv.blender.nearby import begin_nearby
 from stiv.blender.repairing import BlenderRepair, RepairSettings, repair_scene
 from stiv.blender.reshaping import ReshapeReport
+from stiv.blender.reverting import revert
 from stiv.blender.scene_state import ObjectState, SceneState, read_state
 from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
 from stiv.blender.showing import WriteReport
@@ -60,5 +61,6 @@ __all__ = [
     "refresh",
     "remove_refined",
     "repair_scene",
+    "revert",
     "triangles_of",
 ]

@@ -58,12 +58,20 @@ def compare(before: SceneState, after: SceneState) -> Changes:
             return Changes((), f'object "{state.reference.name}" was placed and deformed at once')
         if change.placed or change.points is not None:
             found.append(change)
-    return Changes(tuple(found))
+    return Changes(tuple(found), "" if found else _posed(before, after))
+
+
+def _posed(before: SceneState, after: SceneState) -> str:
+    """Which pose or shape keys changed; "" for none. Beside changed controls, drivers may have changed them."""
+    for number, state in after.items():
+        if state.posture != before[number].posture:
+            return f'the pose or the shape keys of object "{state.reference.name}" were changed'
+    return ""
 
 
 def _compare(before: ObjectState, after: ObjectState) -> Change:
     points = None
-    if before.points is not None and after.points is not None and not np.array_equal(before.points, after.points):
+    if before.points is not None and after.points is not None and not before.has_points_of(after):
         points = (before.points != after.points).any(axis=1)
     return Change(
         after.reference, before.location != after.location, before.rotation != after.rotation,

@@ -13,6 +13,7 @@ from stiv.blender.cage import CageWriter, read_cage
 from stiv.blender.evaluated_scene import is_visible
 from stiv.blender.lattice_points import LatticeWriter, read_points
 from stiv.blender.object_transform import ROTATION_PROPERTIES
+from stiv.blender.posture import Posture, read_posture
 from stiv.blender.references import ObjectReference
 
 
@@ -28,6 +29,7 @@ class ObjectState:
         world: world matrix, (4, 4).
         points: local positions of cage vertices or lattice points, (m, 3); None for other types.
         connectivity: checksum of which vertices are joined; 0 for what is no mesh.
+        posture: its pose and the values of its shape keys.
     """
 
     reference: ObjectReference
@@ -39,11 +41,23 @@ class ObjectState:
     world: Floats
     points: Singles | None
     connectivity: int
+    posture: Posture
 
     @property
     def kind(self) -> tuple[int, str, int, int]:
         """What must be the same for two states of an object to be joined by a motion of its controls."""
         return self.parent, self.rotation_property, -1 if self.points is None else len(self.points), self.connectivity
+
+    @property
+    def placement(self) -> tuple[tuple[float, ...], ...]:
+        """Location, rotation and scale."""
+        return self.location, self.rotation, self.scale
+
+    def has_points_of(self, other: "ObjectState") -> bool:
+        """Are the vertices or points where those of another state of the object are, to the last bit?"""
+        if self.points is None or other.points is None:
+            return self.points is other.points
+        return np.array_equal(self.points, other.points)
 
     def restore_placement(self) -> None:
         """Write location, rotation and scale back. Raises SceneChangedError."""
@@ -69,16 +83,18 @@ def read_state(context: bpy.types.Context) -> SceneState:
     """All visible objects as they are now."""
     context.view_layer.update()
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
-    return {ob.session_uid: _read(ob) for ob in objects}
+    return {ob.session_uid: read_object(ob) for ob in objects}
 
 
-def _read(ob: bpy.types.Object) -> ObjectState:
+def read_object(ob: bpy.types.Object) -> ObjectState:
+    """One object as it is now."""
     if ob.type == "MESH" and ob.mode == "EDIT":
         ob.update_from_editmode()
     rotation = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
     return ObjectState(
         ObjectReference.of(ob), 0 if ob.parent is None else ob.parent.session_uid, rotation, tuple(ob.location),
         tuple(getattr(ob, rotation)), tuple(ob.scale), as_matrix(ob.matrix_world), _points(ob), _connectivity(ob),
+        read_posture(ob),
     )  # fmt: skip
 
 

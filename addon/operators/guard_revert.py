@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.guard_revert`: from a result that the live guard could not correct to the last state without intersections."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..guard import correcting, watching
+from ..guard.problem import listed
+from ..wording import say
+from .native_module import NeedsNativeModule
+
+
+class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
+    """Put objects, vertices, poses and shape keys back to the last state without intersections"""
+
+    bl_idname = "stiv.guard_revert"
+    bl_label = "Back to Last Clear State"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    @classmethod
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """While the guard watches an intersecting scene that it has seen clear before."""
+        if not watching.is_on(context) or watching.last_clear_state() is None:
+            cls.poll_message_set("The live guard has seen no clear state yet")
+            return False
+        if watching.problem() is None:
+            cls.poll_message_set("Nothing intersects")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write, test, and say what is left."""
+        state, frame = watching.last_clear_state()
+        try:
+            names = correcting.revert(context, state, frame)
+        except ValueError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if context.mode == "SCULPT":
+            correcting.take_strokes(context)
+        left = correcting.test(context).problem
+        if left is not None:
+            self.report({"WARNING"}, say("{}; use Undo for what else changed").format(left.headline(say)))
+        else:
+            self.report({"INFO"}, say("Restored {}").format(listed(names, say)))
+        return {"FINISHED"}

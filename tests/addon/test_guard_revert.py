@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the live guard cannot correct: it says what intersects, counts it, and one operator goes back."""
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+pytest.importorskip("stiv._native")
+
+from guarding import box, expect_free, look, move, names_of_steps, watched_scene  # noqa: E402
+
+from stiv_addon.guard import interface, watching  # noqa: E402
+from stiv_addon.overlay import showing  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture(autouse=True)
+def scene() -> Iterator[None]:
+    yield from watched_scene()
+
+
+def mirror_box() -> None:
+    for vertex in box().data.vertices:
+        vertex.co.y += 0.6
+    box().modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+
+
+def rig_box(in_edit_mode: bool = True) -> None:
+    bpy.ops.object.armature_add(location=(0, 0, -3))
+    modifier = box().modifiers.new("Armature", "ARMATURE")
+    modifier.object, modifier.show_in_editmode = bpy.context.object, in_edit_mode
+    bpy.context.object.name = "Rig"
+    box().vertex_groups.new(name="Bone").add(range(8), 1.0, "REPLACE")
+
+
+def watched_again(change: Any) -> None:
+    """The scene changed while the guard is off; then it is on, with Box alone selected."""
+    bpy.context.scene.stiv.live_guard = False
+    change()
+    bpy.ops.object.select_all(action="DESELECT")
+    box().select_set(True)
+    bpy.context.view_layer.objects.active = box()
+    bpy.context.scene.stiv.live_guard = True
+    bpy.ops.ed.undo_push(message="again")
+    look()
+
+
+def positions() -> np.ndarray:
+    if box().mode == "EDIT":
+        box().update_from_editmode()
+    return np.array([vertex.co for vertex in box().data.vertices])
+
+
+def shown_in_status_bar() -> tuple[list[str], list[str], bool]:
+    """Labels and buttons that the guard draws, and whether they are red."""
+    drawn: tuple[list[str], list[str]] = ([], [])
+    row = SimpleNamespace(
+        alert=False, label=lambda text, icon: drawn[0].append(text), operator=lambda name: drawn[1].append(name)
+    )
+    header = type("Header", (), {"_draw_orig": lambda self, context: None})()
+    header.layout = SimpleNamespace(row=lambda align: row)
+    interface.draw_alert(header, bpy.context)
+    return *drawn, row.alert
+
+
+@pytest.mark.parametrize(("change", "modifier"), [(mirror_box, "Mirror"), (rig_box, "Armature")])
+def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change: Any, modifier: str) -> None:
+    watched_again(change)
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    before, steps = positions(), names_of_steps()
+    assert not bpy.ops.stiv.guard_revert.poll()
+    move(1.8)
+    look()
+    problem = watching.problem()
+    assert problem.names == ["Box", "Wall"] and f'modifier "{modifier}"' in problem.reason
+    assert watching.uncorrected() == 1
+    labels, buttons, is_red = shown_in_status_bar()
+    assert is_red and buttons == ["stiv.guard_revert"]
+    first = problem.pairs[0]
+    expected = f"Box, Wall intersect: {len(problem.pairs)} face pairs"
+    assert labels == [f"Live guard: {expected}, first {first.first.number} and {first.second.number}"]
+    assert showing.content().alert[0].startswith(expected) and len(showing.content().intersecting)
+    move(0.1)
+    look()
+    assert watching.uncorrected() == 2
+    moved = positions()
+
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert np.array_equal(positions(), before)
+    expect_free()
+    assert watching.problem() is None and watching.uncorrected() == 2
+    assert not showing.content().alert and not interface._alert
+    assert names_of_steps() == [*steps, "Move", "Move", "Back to Last Clear State"]
+    bpy.ops.ed.undo()
+    look()
+    assert np.array_equal(positions(), moved)
+    assert watching.problem().names == ["Box", "Wall"] and watching.uncorrected() == 2
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
+    watched_again(lambda: rig_box(in_edit_mode=False))
+    bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0
+    bpy.ops.ed.undo_push(message="pose")
+    look()
+    assert "the pose or the shape keys of object" in watching.problem().reason
+    box().location.y = 1.0
+    bpy.ops.ed.undo_push(message="move")
+    look()
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert watching.problem() is None
+    assert bpy.data.objects["Rig"].pose.bones["Bone"].location.x == 0.0 and box().location.y == 0.0
+
+
+def test_the_frame_of_the_clear_state_comes_back_with_it() -> None:
+    box().keyframe_insert("location", frame=1)
+    box().location.x = 2.5
+    box().keyframe_insert("location", frame=20)
+    bpy.context.scene.frame_set(1)
+    look()
+    bpy.context.scene.frame_set(20)
+    look()
+    assert watching.problem().names == ["Box", "Wall"] and watching.uncorrected() == 0
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert bpy.context.scene.frame_current == 1 and watching.problem() is None
+
+
+def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_named() -> None:
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(0.4, 0, 0))
+    look()
+    box().location.y = 0.1
+    bpy.ops.ed.undo_push(message="moved")
+    look()
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert box().location.y == 0.0
+    assert watching.problem().names == ["Box", "Cube"]
+    mesh = box().data
+    mesh.vertices.add(1)
+    mesh.update()
+    with pytest.raises(RuntimeError, match='object "Box": its structure has changed; use Undo instead'):
+        bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True)
+
+
+def test_a_stroke_is_taken_back_in_sculpt_mode_and_undo_does_not_spoil_the_mesh() -> None:
+    watched_again(mirror_box)
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
+    look()
+    before = positions()
+    for vertex in box().data.vertices:
+        vertex.co.x += 1.8
+    box().data.update()
+    bpy.context.view_layer.update()
+    look()
+    assert watching.problem().names == ["Box", "Wall"]
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert np.array_equal(positions(), before) and watching.problem() is None
+    expect_free()
+    bpy.ops.ed.undo()
+    look()
+    assert np.array_equal(positions(), before)
+    bpy.ops.object.mode_set(mode="OBJECT")

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live guard where it cannot correct: a mirrored mesh moved into the wall, named in red, taken back by a click."""
+
+from __future__ import annotations
+
+import bpy
+import extension
+import scenes
+from guard_scenarios import at_rest, guarded, steps, with_tool
+from guard_switch import open_tab
+from playing import expect_free
+from scenes import WALL_FACE
+from simulation import Steps, Window
+
+BUTTON = "Back to Last Clear State"
+
+
+def add_mirrored_box() -> object:
+    """A box above y = 0.1, and its image below."""
+    box = scenes.add_box()
+    for vertex in box.data.vertices:
+        vertex.co.y += 0.6
+    box.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+    return box
+
+
+def guard_mirrored(window: Window) -> Steps:
+    """Moved in Edit Mode: the result stays, everything says so, and a click in the status bar takes it back."""
+    watching = extension.module("guard.watching")
+    yield from guarded(window, add_mirrored_box, "Box", "EDIT")
+    with window.override():
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.ed.undo_push(message="selected")
+    yield from at_rest(window)
+    before, named = xs(), steps()
+    yield from open_tab(window)
+    yield from with_tool(window, "G", (WALL_FACE, 0.0, 0.0))
+    assert watching.problem().names == ["Box", "Wall"], watching.problem()
+    assert watching.uncorrected() == 1, watching.uncorrected()
+    assert xs() != before, "the result of the tool is gone"
+    window.picture("guard_mirrored")
+    yield from click_in_status_bar(window, lambda: watching.problem() is None)
+    assert xs() == before, xs()
+    assert steps() == [*named, "'Move'", f"'{BUTTON}'"], steps()
+    expect_free(window)
+    window.picture("guard_mirrored_taken_back")
+    yield from window.undo()
+    yield from at_rest(window)
+    assert watching.problem().names == ["Box", "Wall"], watching.problem()
+    window.area.spaces.active.show_region_ui = False
+    bpy.context.scene.stiv.live_guard = False
+    yield from window.settle()
+    assert not extension.module("overlay.showing").content().alert
+
+
+def click_in_status_bar(window: Window, is_done: object) -> Steps:
+    """Click along the lowest row of the window, where the guard draws its button after the text, until it is done."""
+    for x in range(300, window.handle.width, 40):
+        window.move(x - 1, 10)
+        yield
+        window.move(x, 10)
+        yield
+        window.key("LEFTMOUSE")
+        yield from at_rest(window)
+        if is_done():
+            return
+    raise AssertionError("the status bar has no button")
+
+
+def xs() -> list[float]:
+    """The x of each vertex of the box."""
+    box = bpy.data.objects["Box"]
+    box.update_from_editmode()
+    return [vertex.co.x for vertex in box.data.vertices]
+
+
+GUARD_UNCORRECTED = {"guard_mirrored": guard_mirrored}
