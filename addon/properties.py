@@ -15,6 +15,8 @@ from bpy.props import (
 from . import live_loops
 from .operators.last_edit import note_written
 
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # may be chosen for a library override too
+
 ROLES = (
     ("auto", "Automatic", "Controls where the object has some that are understood, otherwise rigid or an obstacle"),
     ("controls", "Controls", "Gives way by its cage vertices or by the points of its lattice"),
@@ -150,10 +152,13 @@ class StivLoop(bpy.types.PropertyGroup):
 class StivObjectSettings(bpy.types.PropertyGroup):
     """How an object takes part."""
 
-    role: EnumProperty(name="Role", description="How the object takes part", items=ROLES, default="auto")
-    deformation: EnumProperty(
-        name="Deformation", description="By what the object is moved and gives way", items=DEFORMATIONS, default="auto"
+    role: EnumProperty(
+        name="Role", description="How the object takes part", items=ROLES, default="auto", override=OVERRIDABLE
     )
+    deformation: EnumProperty(
+        name="Deformation", description="By what the object is moved and gives way", items=DEFORMATIONS, default="auto",
+        override=OVERRIDABLE,
+    )  # fmt: skip
     handles: CollectionProperty(type=StivHandleGroup, name="Handles", description="Vertex groups that are handles")
     anchor: StringProperty(name="Anchor", description="Vertex group that stays where it is")
     rest: EnumProperty(name="Rest", description="What is no handle", items=RESTS, default="follows")
@@ -184,7 +189,7 @@ CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, Sti
 def register() -> None:
     """Attach the settings to Blender's types."""
     bpy.types.Scene.stiv = PointerProperty(type=StivSceneSettings)
-    bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings)
+    bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings, override=OVERRIDABLE)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
     bpy.types.WindowManager.stiv_last_edit = StringProperty(
         name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"}, update=note_written

@@ -13,7 +13,7 @@ TRANSFORM_PATHS = ("location", "rotation", "scale", "delta_")
 
 def check_placement(ob: bpy.types.Object) -> None:
     """Refuse an object whose location, rotation and scale do not decide where it stands. Raises InputError."""
-    _check_local(ob, ob, "object")
+    _check_own_placement(ob)
     _check_size(ob)
     if any(path.startswith(TRANSFORM_PATHS) for path in controlled_paths(ob)):
         raise InputError(
@@ -37,7 +37,9 @@ def check_unconstrained(ob: bpy.types.Object) -> None:
 def check_data(ob: bpy.types.Object) -> None:
     """Refuse an object whose vertices or points cannot be written, or would not show. Raises InputError."""
     kind = ob.type.lower()
-    _check_local(ob, ob.data, kind)
+    if ob.data.override_library is not None:
+        raise InputError(f'object "{ob.name}": its {kind} is a library override; make it local or an obstacle')
+    _check_not_linked(ob, ob.data, kind)
     _check_size(ob)
     others = [other.name for other in bpy.data.objects if other.data == ob.data and other != ob]
     if others:
@@ -53,11 +55,17 @@ def check_data(ob: bpy.types.Object) -> None:
         )
 
 
-def _check_local(ob: bpy.types.Object, data: bpy.types.ID, kind: str) -> None:
+def _check_not_linked(ob: bpy.types.Object, data: bpy.types.ID, kind: str) -> None:
     if data.library is not None:
         raise InputError(f'object "{ob.name}": its {kind} is linked from another file; make it local or an obstacle')
-    if data.override_library is not None:
-        raise InputError(f'object "{ob.name}": its {kind} is a library override; make it local or an obstacle')
+
+
+def _check_own_placement(ob: bpy.types.Object) -> None:
+    """A library override has a placement of its own, unless Blender alone may change it."""
+    if ob.library is not None:
+        raise InputError(f'object "{ob.name}": it is linked; make a library override of it, or an obstacle')
+    if ob.override_library is not None and ob.override_library.is_system_override:
+        raise InputError(f'object "{ob.name}": its override is not editable; make it editable in the Outliner')
 
 
 def _check_size(ob: bpy.types.Object) -> None:
