@@ -16,6 +16,7 @@ case ${1:-} in
         cpp_files | xargs $bin/clang-format -i
         $bin/ruff check --fix .
         $bin/ruff format .
+        git ls-files '*.md' ':!.github' | xargs $bin/python tools/wrap_documents.py
         ;;
     *) echo "lint.sh: name one check, or --fix" >&2; exit 2 ;;
 esac

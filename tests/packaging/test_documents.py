@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tools import check_documents
+from tools import check_documents, wrap_documents
 
 RULES = check_documents.dialect(check_documents.DIALECT.read_text(encoding="utf-8"))
 ROOT = check_documents.ROOT
@@ -45,6 +45,21 @@ def test_sentences_and_lines_that_are_too_long_are_found(
 ) -> None:
     assert lines(check(bad)) == [2]
     assert lines(check(good)) == []
+
+
+def test_wrapping_breaks_long_lines_and_nothing_else() -> None:
+    code = "```\n" + "code " * 30 + "\n```\n\n| " + "cell " * 30 + "|\n\n$$\na +\n" + "b " * 70 + "$$\n"
+    text = f"# Title\n\n- {'word ' * 21}`a span of code` - and $x + y$\n  more\n\n{code}"
+    wrapped = wrap_documents.wrapped(text)
+    assert wrapped.split("\n")[2:5] == [f"- {('word ' * 21).strip()}", "  `a span of code` - and $x + y$ more", ""]
+    assert wrapped.endswith(code)
+    assert wrap_documents.wrapped(wrapped) == wrapped
+
+
+@pytest.mark.parametrize("path", check_documents.files(".md"), ids=lambda path: path.name)
+def test_wrapping_keeps_every_word(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert wrap_documents.wrapped(text).split() == text.split()
 
 
 def test_links_to_nothing_are_found(tmp_path: Path) -> None:
