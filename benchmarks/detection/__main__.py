@@ -6,8 +6,11 @@ Milliseconds, the least of the repeats, all measured in turn: processor time for
     build      a new detector and its first find: every event with its own time
     first      a full detection by a detector that has its trees: every event with its own time
     again      a further find from the same start, to a nearer end: the next round of one edit
-    broad      ipctk's LBVH: candidates only
-    earliest   that, and the quicker of ipctk's narrow phases: the earliest time only
+    all        ipctk given everything: LBVH and the quicker of its narrow phases, for the earliest time only
+    at best    the same in its quickest setting: static pairs filtered, or culled to what moves (stiv.bench.peer_mesh)
+    mesh       culling and ipctk's own mesh for that, made once a drag: not in "all" nor "at best"
+
+all/build compares cold starts: our connectivity and trees are new; (all+mesh)/build counts those of ipctk too.
 
 `python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--vectors avx512 avx2 baseline] [--models FOLDER]
 [--json FILE]`. ipctk comes with tools/requirements/bench.txt; without it its columns stay empty. `--vectors` limits our

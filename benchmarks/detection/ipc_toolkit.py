@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow phases."""
+"""The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow phases.
+
+Its documentation lets a user give it less than everything: see stiv.bench.peer_mesh for the settings.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from types import ModuleType
 
-import numpy as np
-
 from blend_fixtures.scenes.detection_steps import Step
+from stiv.bench.peer_mesh import LinearStep, peer_mesh
 
 NARROW_PHASES = ("additive", "tight inclusion")
 
@@ -16,14 +18,19 @@ NARROW_PHASES = ("additive", "tight inclusion")
 class Peer:
     """One step prepared for ipctk: its mesh and column-major positions, which are not part of what is timed."""
 
-    def __init__(self, ipctk: ModuleType, step: Step, threads: int) -> None:
+    def __init__(self, ipctk: ModuleType, step: Step, threads: int, setting: str = "everything") -> None:
         ipctk.set_num_threads(threads)
         ipctk.set_logger_level(ipctk.off)
         self._ipctk = ipctk
-        self._start, self._end = np.asfortranarray(step.start), np.asfortranarray(step.end)
-        self._mesh = ipctk.CollisionMesh(self._start, ipctk.edges(step.triangles), step.triangles)
+        self._step, self._setting = LinearStep(step.triangles, step.start, step.end), setting
+        self.build_mesh()
         self._narrow = dict(zip(NARROW_PHASES, (ipctk.AdditiveCCD(), ipctk.TightInclusionCCD()), strict=True))
         self._candidates = ipctk.Candidates()
+
+    def build_mesh(self) -> None:
+        """Cull and order the triangles as the setting says, and make the peer's mesh of them."""
+        given = peer_mesh(self._ipctk, self._step, self._setting)
+        self._mesh, self._start, self._end = given.mesh, given.start, given.end
 
     def find_candidates(self) -> None:
         """Broad phase: all pairs of vertices and faces, and of edges, whose swept boxes overlap."""

@@ -14,10 +14,28 @@ import numpy as np
 import stiv
 from blend_fixtures.scenes.detection_steps import Step
 from stiv import _native
+from stiv.bench.peer_mesh import LinearStep, settings_of
 
 from .ipc_toolkit import NARROW_PHASES, Peer
 
 PATIENCE = 3.0  #: a narrow phase this many times slower than the best one so far is not run again
+
+
+@dataclass
+class PeerFigures:
+    """What the peer took for one step in one of its settings; milliseconds."""
+
+    mesh: float  #: culling, and making its mesh: once a drag
+    broad: float
+    narrow: dict[str, float]
+    earliest: dict[str, float]  #: time found, by narrow phase
+    candidates: int  #: pairs of vertex and face or two edges whose swept boxes overlap
+
+    @property
+    def best(self) -> tuple[str, float]:
+        """The quicker narrow phase and the milliseconds of a whole detection with it, the mesh being there."""
+        name = min(self.narrow, key=lambda narrow: self.narrow[narrow])
+        return name, self.broad + self.narrow[name]
 
 
 @dataclass
@@ -33,18 +51,13 @@ class Figures:
     build: float  #: a new detector and its first find
     first: float  #: a find of a kept detector from a start that it has not seen: one full detection
     again: float  #: a further find from the same start to a nearer end: the next round of an edit
-    candidates: int | None = None  #: pairs of vertex and face or two edges whose swept boxes overlap, by the peer
-    peer_broad: float | None = None
-    peer_narrow: dict[str, float] = field(default_factory=dict)
-    peer_earliest: dict[str, float] = field(default_factory=dict)  #: time found, by narrow phase
+    peer: dict[str, PeerFigures] = field(default_factory=dict)  #: by its settings; empty where it is not installed
 
     @property
-    def peer_best(self) -> tuple[str, float] | None:
-        """The peer's quicker narrow phase and the milliseconds of a whole detection with it."""
-        if self.peer_broad is None:
-            return None
-        name = min(self.peer_narrow, key=lambda narrow: self.peer_narrow[narrow])
-        return name, self.peer_broad + self.peer_narrow[name]
+    def peer_best(self) -> tuple[str, float]:
+        """The peer's quickest setting and the milliseconds of a whole detection in it."""
+        setting = min(self.peer, key=lambda name: self.peer[name].best[1])
+        return setting, self.peer[setting].best[1]
 
 
 class Stopwatch:
@@ -64,19 +77,20 @@ class Stopwatch:
 def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) -> Figures:
     """Time everything `repeats` times in turn, so that what else the machine does falls on all alike."""
     watch = Stopwatch(threads)
-    peer = Peer(ipctk, step, threads) if ipctk else None
+    settings = settings_of(LinearStep(step.triangles, step.start, step.end)) if ipctk else ()
+    peers = {setting: Peer(ipctk, step, threads, setting) for setting in settings} if ipctk else {}
     detector = stiv.Detector(step.triangles, threads=threads)
     detector.find(step.start, step.end)
     motion = step.end - step.start
     nearer = step.start + 0.9 * motion
-    earliest: dict[str, float] = {}
+    earliest: dict[str, dict[str, float]] = {setting: {} for setting in peers}
     for _ in range(repeats):
         watch.run("build", lambda: stiv.Detector(step.triangles, threads=threads).find(step.start, step.end))
         detector.find(step.start - 3 * motion, step.start - 2 * motion)  # an edit before: nothing of this one is known
         watch.run("first", lambda: detector.find(step.start, step.end))
         watch.run("again", lambda: detector.find(step.start, nearer))
-        if peer:
-            _race(peer, watch, earliest)
+        for setting, peer in peers.items():
+            _race(setting, peer, watch, earliest[setting])
     events = detector.find(step.start, step.end)
     least = watch.least
     figures = Figures(
@@ -90,19 +104,24 @@ def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) ->
         least["first"],
         least["again"],
     )
-    if peer:
-        figures.candidates, figures.peer_broad = peer.candidate_count, least["broad"]
-        figures.peer_narrow = {name: least[name] for name in NARROW_PHASES}
-        figures.peer_earliest = earliest
+    for setting, peer in peers.items():
+        figures.peer[setting] = PeerFigures(
+            least[f"{setting} mesh"],
+            least[f"{setting} broad"],
+            {name: least[f"{setting} {name}"] for name in NARROW_PHASES},
+            earliest[setting],
+            peer.candidate_count,
+        )
     return figures
 
 
-def _race(peer: Peer, watch: Stopwatch, earliest: dict[str, float]) -> None:
-    watch.run("broad", peer.find_candidates)
-    best = min(watch.least.get(name, np.inf) for name in NARROW_PHASES)
+def _race(setting: str, peer: Peer, watch: Stopwatch, earliest: dict[str, float]) -> None:
+    watch.run(f"{setting} mesh", peer.build_mesh)
+    watch.run(f"{setting} broad", peer.find_candidates)
+    best = min(watch.least.get(f"{setting} {name}", np.inf) for name in NARROW_PHASES)
     for name in NARROW_PHASES:
-        if watch.least.get(name, 0.0) <= PATIENCE * best:
-            watch.run(name, partial(_note_earliest, peer, name, earliest))
+        if watch.least.get(f"{setting} {name}", 0.0) <= PATIENCE * best:
+            watch.run(f"{setting} {name}", partial(_note_earliest, peer, name, earliest))
 
 
 def _note_earliest(peer: Peer, narrow_phase: str, earliest: dict[str, float]) -> None:

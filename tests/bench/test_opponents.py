@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 import stiv
+from blend_fixtures.scenes.detection_steps import knot, local_edit
 from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.sessions import real_models
 from blend_fixtures.scenes.shape import joined
 from stiv.bench.cloth import kept
 from stiv.bench.models import largest_part
+from stiv.bench.peer_mesh import LinearStep, culled, moving_first, settings_of
 from stiv.bench.race import with_detection
 from stiv.command_line import program
 
@@ -64,3 +66,20 @@ def test_models_that_are_absent_are_left_out_and_named(tmp_path, capsys):
 )
 def test_models_need_their_folder_and_nothing_else_takes_one(arguments):
     assert program.run(["bench", *arguments]) == 2
+
+
+def test_the_peer_culled_to_what_moves_is_given_every_contact():
+    whole = local_edit()
+    step = LinearStep(whole.triangles, whole.start, whole.end)
+    less = moving_first(culled(step))
+    count = int(step.moves.sum())
+    assert settings_of(step) == ("everything", "filter", "culled")
+    assert less.moves[:count].all() and not less.moves[count:].any()
+    assert len(less.triangles) < len(step.triangles) / 10
+    times = [np.sort(stiv.Detector(s.triangles).find(s.start, s.end).time) for s in (step, less)]
+    assert len(times[0]) > 100 and np.array_equal(times[0], times[1])
+
+
+def test_where_everything_moves_the_peer_can_leave_nothing_out():
+    step = knot()
+    assert settings_of(LinearStep(step.triangles, step.start, step.end)) == ("everything",)

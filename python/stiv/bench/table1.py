@@ -124,7 +124,7 @@ def shares(figures: Sequence[EditFigures]) -> dict[str, float]:
 def table_text(rows: Sequence[dict[str, Any]]) -> str:
     """The table as the paper prints it, a line each for the paper's own figures, its method here, and ours."""
     head = (
-        f"{'Model':9} {'by':26} {'Vertices':>8} {'Triangles':>9} {'step':>7} {'Collisions':>10} {'Regions':>7} "
+        f"{'Model':9} {'by':32} {'Vertices':>8} {'Triangles':>9} {'step':>7} {'Collisions':>10} {'Regions':>7} "
         f"{'Iterations':>13} {'ms/iteration':>15} {'ms/edit':>15} {'energy':>9} {'left':>5}"
     )
     lines = [head, "-" * len(head)]
@@ -141,7 +141,7 @@ def _published_line(scene: str) -> str:
     values = PUBLISHED[scene]
     each = tuple(ms / n for ms, n in zip(values["ms_per_edit"], values["iterations"], strict=True))
     return (
-        f"{scene:9} {'paper, i5 3.6 GHz, 1 thread':26} {values['vertices']:8d} {values['triangles']:9d} "
+        f"{scene:9} {'paper, i5 3.6 GHz, 1 thread':32} {values['vertices']:8d} {values['triangles']:9d} "
         f"{'':7} {values['collisions']:10.2f} {values['regions']:7.2f} {_pair(values['iterations']):>13} "
         f"{_pair(each):>15} {_pair(values['ms_per_edit']):>15} {'':>9} {'':>5}"
     )
@@ -153,7 +153,7 @@ def _line(scene: str, preset: str, kinds: dict[str, dict[str, Any]], rows: Seque
     baseline = next((r for r in rows if (r["scene"], r["preset"], r["constraints"]) == (scene, "paper", "many")), first)
     name = f"{NAMES[preset]}, {first['threads']} thr., {first['time'][:5]}"
     return (
-        f"{'':9} {name:26} {first['vertices']:8d} {first['triangles']:9d} {100 * first['step']:6.2f}% "
+        f"{'':9} {name:32} {first['vertices']:8d} {first['triangles']:9d} {100 * first['step']:6.2f}% "
         f"{first['collisions']:10.2f} "
         f"{first['regions']:7.2f} {_pair(r['iterations'] for r in both):>13} "
         f"{_pair(r['ms_per_iteration'] for r in both):>15} {_pair(r['ms_per_edit'] for r in both):>15} "
