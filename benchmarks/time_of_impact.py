@@ -110,7 +110,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=10000, help="random queries of each sort and kind, default: 10000")
     parser.add_argument("--seed", type=int, default=1, help="default: 1")
     parser.add_argument(
-        "--queries", type=Path, help="folder of published queries, as STIV_CCD_QUERIES names for the tests"
+        "--queries", type=Path, help="folder of published queries, in the format of tests/detection/sample_queries"
     )
     arguments = parser.parse_args()
     if arguments.queries:
