@@ -50,6 +50,15 @@ class Seams:
         return Seams.of(np.where(kept, first[self.index], own).astype(np.int32))
 
 
+def common_seams(one: Seams | None, other: Seams | None) -> Seams | None:
+    """The seams that two shapes of the same vertices both have."""
+    if one is None or other is None:
+        return None
+    both = one.index.astype(np.int64) * len(other.first) + other.index
+    _, first, index = np.unique(both, return_index=True, return_inverse=True)
+    return Seams.of(first[index.reshape(-1)].astype(np.int32))
+
+
 def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: float = 0.0) -> Seams | None:
     """Find the vertices of a mesh that are in the same place, exactly; -0.0 and 0.0 are the same.
 
@@ -63,6 +72,29 @@ def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: fl
     if rounding > 0 and len(triangles):
         leaders = _rounded(positions, leaders, _open_vertices(triangles, leaders), rounding)
     return Seams.of(leaders)
+
+
+def object_seams(positions: NDArray[np.floating], triangles: Indices, owners: Indices) -> Seams | None:
+    """Find the seams within each of several objects on the same vertices.
+
+    owners  (f,) the object of each triangle; vertices of triangles of two objects stand alone
+    """
+    first = np.full(len(positions), np.iinfo(np.int32).max, np.int32)
+    last = np.full(len(positions), -1, np.int32)
+    np.minimum.at(first, triangles, owners[:, None])
+    np.maximum.at(last, triangles, owners[:, None])
+    return group_seams(positions, np.where(first == last, first, -1))
+
+
+def group_seams(positions: NDArray[np.floating], groups: Indices) -> Seams | None:
+    """Find vertices in exactly the same place that belong to the same group, (n,); those of group -1 stand alone."""
+    leaders = _coincident(positions)
+    own = np.arange(len(leaders), dtype=np.int32)
+    if np.array_equal(leaders, own):
+        return None
+    keys = leaders.astype(np.int64) * (int(groups.max()) + 1) + groups
+    _, first, index = np.unique(keys, return_index=True, return_inverse=True)
+    return Seams.of(np.where(groups < 0, own, first[index.reshape(-1)]).astype(np.int32))
 
 
 def seam_pairs(seams: Seams | None, triangles: Indices, faces: Indices) -> Indices:

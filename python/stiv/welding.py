@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv._native import InputError
 from stiv.arrays import Indices, as_floats
-from stiv.seams import find_seams
+from stiv.seams import group_seams
 from stiv.surface import Surface, as_surface
 
 
@@ -66,14 +66,10 @@ def join_seams(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
     """
     q = as_floats(positions, "positions", (None, 3))
     before = as_surface(surface, len(q))
-    leaders = np.arange(len(q), dtype=np.int32)
-    for body in range(len(before.bodies)):
-        members = np.flatnonzero(before.vertex_body == body).astype(np.int32)
-        seams = find_seams(q[members], np.empty((0, 3), np.int32))
-        if seams is not None:
-            leaders[members] = members[seams.leaders]
-    kept, vertex_map = np.unique(leaders, return_inverse=True)
-    index: Indices = vertex_map.astype(np.int32)
+    seams = group_seams(q, before.vertex_body)
+    if seams is None:
+        return Welded(before, q, np.arange(len(q), dtype=np.int32))
+    kept, index = seams.first, seams.index
     after = Surface(
         index[before.triangles],
         len(kept),

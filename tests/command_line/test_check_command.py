@@ -5,10 +5,13 @@ import importlib.util
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from json_schemas import read_valid
 
+from stiv import mesh_files
 from stiv.command_line import check, file_checking, program
 
 APART = "o below\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no above\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n"
@@ -42,6 +45,37 @@ def test_pairs_are_named_for_people_and_in_the_report(tmp_path, capsys):
     assert pair["first"] == {"object": "flat", "kind": "triangle", "number": 0}
     assert pair["second"] == {"object": "upright ü", "kind": "triangle", "number": 0}
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
+def unwelded_tetrahedra():
+    """Two tetrahedra of which every triangle has vertices of its own: 4 vertices in 3 triangles each, 12 corners."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+    faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+    vertices = np.concatenate([corners[faces].reshape(-1, 3), corners[faces].reshape(-1, 3) + (0, 0, 2)])
+    return vertices, np.arange(24).reshape(8, 3), np.repeat([0, 1], 4)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".npz"])
+def test_seams_of_an_object_are_counted_and_no_intersections(tmp_path, capsys, suffix):
+    vertices, triangles, owners = unwelded_tetrahedra()
+    mesh = mesh_files.mesh.checked_mesh(vertices, triangles, ("One", "Two"), owners)
+    path, report = tmp_path / f"seams{suffix}", tmp_path / "report.json"
+    mesh_files.write_mesh(path, mesh)
+    assert program.run(["check", "--seams", "--json", str(report), str(path)]) == 0
+    assert "triangle 0 - object" in capsys.readouterr().out
+    (data,) = read_valid(report, "check")["files"]
+    assert (data["intersections"], data["seams"], len(data["seam_pairs"])) == (0, 12, 12)
+    for height, code in ((0.875, 0), (1.0, 4)):  # the tip of one object meets the middle of the other's base
+        moved = vertices - np.outer(owners.repeat(3), (0.25, 0.25, height))
+        mesh_files.write_mesh(path, replace(mesh, vertices=moved))
+        assert program.run(["check", str(path)]) == code
+
+
+def test_doubled_triangles_of_an_object_are_no_seam(tmp_path):
+    path = tmp_path / "doubled.npz"
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], float)
+    np.savez(path, vertices=np.concatenate([corners, corners]), triangles=np.arange(6).reshape(2, 3))
+    assert program.run(["check", str(path)]) == 4
 
 
 def test_many_pairs_are_counted_and_the_first_listed(tmp_path, capsys):

@@ -80,6 +80,12 @@ class Assembly:
         return self.meshes[mesh], int(index - (ends[mesh] - sizes[mesh]))
 
 
+def unjoined_triangles(meshes: Sequence[VisibleMesh]) -> Indices:
+    """Triangles of meshes, one after the other, over the vertices of all as they are, (F, 3)."""
+    starts = np.cumsum([0, *(len(mesh.local) for mesh in meshes)]).astype(np.int32)
+    return _shifted([mesh.triangles for mesh in meshes], starts, (None,) * len(meshes), 3)
+
+
 def mesh_seams(local: Singles, triangles: Indices) -> Seams | None:
     """The seams of a mesh in its own frame: (n, 3), (f, 3)."""
     return find_seams(local, triangles, ROUNDING)

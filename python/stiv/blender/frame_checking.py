@@ -16,12 +16,13 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Floats
-from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.assembly import Assembly, assemble, mesh_seams, unjoined_triangles
 from stiv.blender.assembly import Element as FoundElement
-from stiv.blender.checking import find_pairs, read_surface
+from stiv.blender.checking import find_pairs, read_surface, seam_faces
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.event_elements import EventElements
-from stiv.checks.findings import CROSSING, Element, Finding, Look, Shapes
+from stiv.checks.findings import CROSSING, Element, Finding, Look, SeamPairs, Shapes
+from stiv.seams import Seams, common_seams
 
 
 def check_frames(
@@ -58,13 +59,13 @@ def scene_frames(context: bpy.types.Context) -> tuple[int, int]:
     return context.scene.frame_start, context.scene.frame_end
 
 
-def shapes_of(assembly: Assembly) -> Shapes:
-    """The assembly's triangles with the objects and faces they belong to."""
+def shapes_of(assembly: Assembly, positions: Floats) -> Shapes:
+    """The triangles of an assembly at positions of its surface, (N, 3), with the objects and faces they belong to."""
     names = tuple(dict.fromkeys(mesh.owner.name for mesh in assembly.meshes))
     owner = [np.full(len(mesh.triangles), names.index(mesh.owner.name), np.int32) for mesh in assembly.meshes]
     return Shapes(
-        assembly.positions,
-        assembly.surface.triangles,
+        np.concatenate([np.empty((0, 3)), *(positions[assembly.vertices(k)] for k in range(len(assembly.meshes)))]),
+        unjoined_triangles(assembly.meshes),
         names,
         np.concatenate([np.empty(0, np.int32), *owner]),
         np.concatenate([np.empty(0, np.int32), *(mesh.faces for mesh in assembly.meshes)]),
@@ -84,7 +85,8 @@ def _read(context: bpy.types.Context, objects: Collection[str]) -> Assembly:
 def _at_rest(assembly: Assembly, frame: float | None, threads: int) -> Look:
     pairs = find_pairs(assembly, threads)
     found = (Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs)
-    return Look(shapes_of(assembly), frame, None, tuple(found))
+    seams = tuple(SeamPairs(name, "face", faces) for name, faces in seam_faces(assembly, pairs) if len(faces))
+    return Look(shapes_of(assembly, assembly.positions), frame, None, tuple(found), seams=seams)
 
 
 def _between(before: Assembly, after: Assembly, start: Look, end: Look, threads: int) -> Look:
@@ -93,8 +95,10 @@ def _between(before: Assembly, after: Assembly, start: Look, end: Look, threads:
     Pairs of objects that meet at one of the two frames were found there, and are left out.
     """
     pairs, notes = _matched(before, after, f"between frames {start.frame:g} and {end.frame:g}")
-    moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs])
-    goal = np.concatenate([np.empty((0, 3)), *(other.world() for _, other in pairs)])
+    seams = [_seams_of_both(one, other) for one, other in pairs]
+    moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs], seams=seams)
+    world = (moving.joined(place, other.world()) for place, (_, other) in enumerate(pairs))
+    goal = np.concatenate([np.empty((0, 3)), *world])
     known = {finding.objects for look in (start, end) for finding in look.findings}
     found = [
         replace(each, frame=start.frame, to_frame=end.frame)
@@ -102,7 +106,7 @@ def _between(before: Assembly, after: Assembly, start: Look, end: Look, threads:
         if each.objects not in known
     ]
     first = min((finding.time for finding in found if finding.time is not None), default=0.0)
-    shapes = replace(shapes_of(moving), positions=moving.positions + first * (goal - moving.positions))
+    shapes = shapes_of(moving, moving.positions + first * (goal - moving.positions))
     return Look(shapes, start.frame, end.frame, tuple(found), tuple(notes))
 
 
@@ -154,3 +158,10 @@ def _by_name(assembly: Assembly) -> dict[tuple[int, str, int], VisibleMesh]:
 def _mobility(one: VisibleMesh, other: VisibleMesh) -> str:
     """What keeps its shape cannot cross itself; its straight ways between frames would only make it seem to."""
     return "rigid" if np.array_equal(one.local, other.local) else "deformable"
+
+
+def _seams_of_both(one: VisibleMesh, other: VisibleMesh) -> Seams | None:
+    """The seams of a mesh that stay closed from one frame to the next; what keeps its shape needs none."""
+    if _mobility(one, other) == "rigid":
+        return None
+    return common_seams(*(mesh_seams(mesh.local, mesh.triangles) for mesh in (one, other)))

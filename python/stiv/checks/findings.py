@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-INTERSECTION, CROSSING = "intersection", "crossing"
+INTERSECTION, CROSSING, SEAM = "intersection", "crossing", "seam"
 
 
 @dataclass(frozen=True, order=True)
@@ -30,6 +31,7 @@ class Finding:
 
     `kind` is "intersection" where they meet in the pose of `frame` (None: of what has no frames), and "crossing" where
     both poses are free there, but the straight way from `frame` to `to_frame` is not: it meets at the fraction `time`.
+    A "seam" is no intersection: two faces of an object that touch in coincident vertices alone.
     """
 
     first: Element
@@ -52,6 +54,31 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class SeamPairs:
+    """Faces of an object that touch along seams: pairs of their numbers, (k, 2). `kind` is that of the elements."""
+
+    object: str
+    kind: str
+    pairs: NDArray[np.int32]
+
+    def findings(self) -> Iterator[Finding]:
+        """Each pair as a finding."""
+        for a, b in self.pairs.tolist():
+            yield Finding(Element(self.object, self.kind, a), Element(self.object, self.kind, b), SEAM)
+
+
+def merged_seams(looks: Sequence[SeamPairs]) -> tuple[SeamPairs, ...]:
+    """Those of each object together, each pair once."""
+    found: dict[tuple[str, str], list[NDArray[np.int32]]] = {}
+    for each in looks:
+        found.setdefault((each.object, each.kind), []).append(each.pairs)
+    return tuple(
+        SeamPairs(*key, pairs[0] if len(pairs) == 1 else np.unique(np.concatenate(pairs), axis=0))
+        for key, pairs in found.items()
+    )
+
+
+@dataclass(frozen=True)
 class Shapes:
     """The triangles that were tested, in the pose of a finding, with the elements they belong to."""
 
@@ -71,6 +98,7 @@ class Look:
     to_frame: float | None = None
     findings: tuple[Finding, ...] = ()
     notes: tuple[str, ...] = ()  #: what could not be tested
+    seams: tuple[SeamPairs, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -88,11 +116,17 @@ class FileCheck:
     error: str = ""
     seconds: float = 0.0
     pictures: tuple[str, ...] = field(default=())
+    seams: tuple[SeamPairs, ...] = ()
 
     @property
     def triangle_pairs(self) -> int:
         """How many pairs of triangles meet, those that the baseline accepts left out."""
         return sum(finding.triangle_pairs for finding in self.findings)
+
+    @property
+    def seam_count(self) -> int:
+        """How many pairs of faces touch along seams."""
+        return sum(len(each.pairs) for each in self.seams)
 
     @property
     def free(self) -> bool:

@@ -9,9 +9,11 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.checks.findings import Element, Finding, Look, Shapes
+from stiv.arrays import Indices
+from stiv.checks.findings import Element, Finding, Look, SeamPairs, Shapes
 from stiv.mesh_files import Mesh
 from stiv.mesh_files.mesh import checked_mesh
+from stiv.seams import Seams, object_seams, seam_pairs
 
 
 def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
@@ -21,8 +23,27 @@ def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
     def element(triangle: int) -> Element:
         return Element(shapes.names[shapes.owner[triangle]], "triangle", int(shapes.number[triangle]))
 
-    pairs = stiv.find_intersections(shapes.positions, shapes.triangles)
-    return Look(shapes, findings=tuple(Finding(element(a), element(b)) for a, b in pairs.tolist()))
+    seams = object_seams(shapes.positions, shapes.triangles, shapes.owner)
+    pairs = _pairs(shapes, seams)
+    findings = tuple(Finding(element(a), element(b)) for a, b in pairs.tolist())
+    return Look(shapes, findings=findings, seams=_seam_pairs(shapes, seams, set(map(tuple, pairs.tolist()))))
+
+
+def _seam_pairs(shapes: Shapes, seams: Seams | None, meeting: set[tuple[int, ...]]) -> tuple[SeamPairs, ...]:
+    """The pairs of triangles on seams of each object, without those that meet."""
+    pairs = seam_pairs(seams, shapes.triangles, np.arange(len(shapes.triangles), dtype=np.int32))
+    if meeting:
+        pairs = pairs[np.array([(a, b) not in meeting for a, b in pairs.tolist()], bool)]
+    owner = shapes.owner[pairs[:, 0]]
+    return tuple(
+        SeamPairs(shapes.names[of], "triangle", shapes.number[pairs[owner == of]]) for of in np.unique(owner).tolist()
+    )
+
+
+def _pairs(shapes: Shapes, seams: Seams | None) -> Indices:
+    if seams is None:
+        return stiv.find_intersections(shapes.positions, shapes.triangles)
+    return stiv.find_intersections(shapes.positions[seams.first], seams.index[shapes.triangles])
 
 
 def shapes_of(mesh: Mesh) -> Shapes:

@@ -13,7 +13,7 @@ LISTED_PAIRS = 100  # of each file, in the report
 SHOWN_PAIRS = 10  # of each file, on the terminal
 
 
-def report_of(checks: Sequence[FileCheck]) -> dict[str, Any]:
+def report_of(checks: Sequence[FileCheck], with_seams: bool = False) -> dict[str, Any]:
     """The report on all files."""
     return {
         "schema": SCHEMA,
@@ -21,13 +21,14 @@ def report_of(checks: Sequence[FileCheck]) -> dict[str, Any]:
         "free": all(check.free for check in checks),
         "intersections": sum(len(check.findings) for check in checks),
         "triangle_pairs": sum(check.triangle_pairs for check in checks),
-        "files": [file_report(check) for check in checks],
+        "files": [file_report(check, with_seams) for check in checks],
     }
 
 
-def file_report(check: FileCheck) -> dict[str, Any]:
-    """The part of the report on one file."""
-    return {
+def file_report(check: FileCheck, with_seams: bool = False) -> dict[str, Any]:
+    """The part of the report on one file; seams are counted, and with `with_seams` listed."""
+    listed = {"seam_pairs": [_pair(seam) for each in check.seams for seam in each.findings()]} if with_seams else {}
+    return listed | {
         "file": check.file,
         "objects": list(check.objects),
         "vertices": check.vertices,
@@ -37,6 +38,7 @@ def file_report(check: FileCheck) -> dict[str, Any]:
         "intersections": len(check.findings),
         "triangle_pairs": check.triangle_pairs,
         "accepted": len(check.accepted),
+        "seams": check.seam_count,
         "pairs": [_pair(finding) for finding in check.findings[:LISTED_PAIRS]],
         "pictures": list(check.pictures),
         "notes": list(check.notes),
@@ -45,8 +47,8 @@ def file_report(check: FileCheck) -> dict[str, Any]:
     }
 
 
-def summary(check: FileCheck) -> str:
-    """What a file was found to be, one line a fact."""
+def summary(check: FileCheck, with_seams: bool = False) -> str:
+    """What a file was found to be, one line a fact; with `with_seams` the pairs of faces on seams too."""
     if check.error:
         return f"stiv: {check.file}: {check.error}"
     size = f"{check.vertices:,} vertices, {check.triangles:,} triangles, {len(check.objects)} objects"
@@ -54,6 +56,8 @@ def summary(check: FileCheck) -> str:
         size += f", {len(check.frames)} frames"
     accepted = f"; {len(check.accepted):,} pairs accepted by the baseline" if check.accepted else ""
     notes = [f"  note: {note}" for note in check.notes]
+    notes += [f"  pairs of faces that touch along seams alone: {check.seam_count:,}"] if check.seams else []
+    notes += [f"  seam: {seam}" for each in check.seams for seam in each.findings()] if with_seams else []
     if check.free:
         return "\n".join([f"{check.file}: free of intersections ({size}, {check.seconds:.2f} s){accepted}", *notes])
     lines = [f"{check.file}: {counted(len(check.findings), check.triangle_pairs)} ({size}){accepted}"]

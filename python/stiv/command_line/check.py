@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = f"""\
 Tests exactly whether any two triangles meet other than in the vertices and edges they share. Touching, coplanar
-overlap and duplicates count. Of a .blend, every visible mesh is taken as Blender evaluates it; scripts in it are not
-run. Mesh files: {", ".join(SUFFIXES)}. docs/checks.md says more."""
+overlap and duplicates count. Faces of an object that touch in coincident vertices alone are a seam: seams are
+counted, and are no intersections. Of a .blend, every visible mesh is taken as Blender evaluates it; scripts in
+it are not run. Mesh files: {", ".join(SUFFIXES)}. docs/checks.md says more."""
 _EXAMPLES = """\
 examples:
   stiv check plant.blend
@@ -62,6 +63,7 @@ def add_to(subcommands: Subparsers) -> None:
         help="test these frames, and what meets on the straight ways between them; `scene` for the scene's own range",
     )
     parser.add_argument("--subframes", type=int, default=1, metavar="N", help="poses for each step of frames (1)")
+    parser.add_argument("--seams", action="store_true", help="list the pairs of faces that touch along seams alone")
     parser.add_argument("--baseline", type=Path, metavar="F", help="findings in F are known and accepted")
     parser.add_argument("--write-baseline", action="store_true", help="write what is found to the baseline's file")
     parser.add_argument("--json", type=Path, metavar="F", help="write the result, with the pairs, to F")
@@ -86,7 +88,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
             checks.append(_checked(path, arguments, baseline, lambda note: advance(note, 0)))
             advance(path.name)
     for check in checks:
-        print(summary(check), file=sys.stderr if check.error else sys.stdout)
+        print(summary(check, arguments.seams), file=sys.stderr if check.error else sys.stdout)
     if all(check.error for check in checks):
         return ExitCode.BAD_INPUT  # nothing is written
     _write(arguments, checks)
@@ -131,7 +133,7 @@ def _write(arguments: argparse.Namespace, checks: list[FileCheck]) -> None:
     if arguments.write_baseline:
         write_json(arguments.baseline, baseline_of(checks, arguments.baseline.parent))
     if arguments.json is not None:
-        write_json(arguments.json, report_of(checks))
+        write_json(arguments.json, report_of(checks, arguments.seams))
     if arguments.junit is not None:
         with written_atomically(arguments.junit) as temporary:
             temporary.write_bytes(junit_xml(checks))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
-from stiv.checks.findings import FileCheck, Finding, Look
+from stiv.checks.findings import FileCheck, Finding, Look, SeamPairs, merged_seams
 from stiv.checks.mesh_check import check_mesh
 from stiv.checks.pictures import write_picture
 from stiv.command_line.blender_module import require_blender
@@ -85,6 +85,7 @@ def _summed(
     path: Path, looks: Iterable[Look], choices: Choices, on_look: Callable[[str], None], begin: float
 ) -> FileCheck:
     found: list[Finding] = []
+    seams: list[SeamPairs] = []
     notes: list[str] = []
     frames: list[float] = []
     pictures: list[str] = []
@@ -100,11 +101,12 @@ def _summed(
             on_look("" if look.frame is None else f"frame {look.frame:g}")
         found += look.findings
         notes += look.notes
+        seams += look.seams
         if choices.pictures is not None:
             pictures += _pictures(path, look, choices.pictures, shown)
     return FileCheck(
         path.as_posix(), tuple(names), vertices, triangles, tuple(frames), tuple(found), (), tuple(notes), "",
-        time.perf_counter() - begin, tuple(pictures),
+        time.perf_counter() - begin, tuple(pictures), merged_seams(seams),
     )  # fmt: skip
 
 
