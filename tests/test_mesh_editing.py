@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+from oracles import exact
 
 import stiv
 from stiv.command_line import program
@@ -44,6 +45,19 @@ def test_an_object_does_not_go_through_another(mode):
     assert report["rounds"] > 0
     assert (mesh.vertices[4:, 2] > 0).all() and mesh.vertices[4:, 2].max() < 1
     assert len(stiv.find_intersections(mesh.vertices, mesh.triangles)) == 0
+
+
+def test_a_seam_stays_closed_where_one_side_of_it_is_moved():
+    apart = np.concatenate([SHEET[FACES].reshape(-1, 3), 0.5 * SHEET[FACES].reshape(-1, 3) + (0, 0, 1)])
+    owners = np.array([0, 0, 1, 1], np.int32)
+    mesh = checked_mesh(apart, np.arange(12).reshape(4, 3), ("Below", "Above ü"), owners)
+    mesh, (report,) = edited(move(-1.5, mode="EDIT", points=[0, 1]), mesh=mesh)
+    assert report["rounds"] > 0
+    assert mesh.vertices[[6, 7], 2].max() < 0.1 < mesh.vertices[10, 2]
+    for one, other in ((6, 9), (8, 10)):
+        np.testing.assert_array_equal(mesh.vertices[one], mesh.vertices[other])
+    places, index = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    assert exact.find_intersections(places, index.reshape(-1)[mesh.triangles]) == set()
 
 
 def test_points_are_counted_within_their_object():

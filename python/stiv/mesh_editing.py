@@ -65,13 +65,27 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
     moved = members if step.points is None else members[_points(step, members)]
     if len(moved) == 0:
         raise InputError("nothing is selected that may move")
-    map_of = _point_map if step.mode == "EDIT" else _object_map
-    deformation, controls, goal = map_of(step, mesh.vertices[moved])
-    whole = stiv.concatenate([(deformation, moved)], mesh.vertices)
     kind = "deformable" if step.mode == "EDIT" or step.operator == "scale" else "rigid"
+    surface = _surface(mesh, owners, chosen, kind)
+    if kind == "deformable":
+        joined = stiv.join_seams(surface, mesh.vertices)
+    else:  # what keeps its shape keeps its seams
+        joined = stiv.Welded(surface, mesh.vertices, np.arange(len(mesh.vertices), dtype=np.int32))
+    moved = np.unique(joined.vertex_map[moved])
+    map_of = _point_map if step.mode == "EDIT" else _object_map
+    deformation, controls, goal = map_of(step, joined.positions[moved])
+    whole = stiv.concatenate([(deformation, moved)], joined.positions)
+    options = stiv.EditOptions(single_precision=False, **_options({**settings, **step.settings}))
+    result = stiv.EditSession(joined.surface, whole, controls, options).edit(goal)
+    result = replace(result, surface=result.surface[joined.vertex_map])
+    return result, 1000 * (time.perf_counter() - begin)
+
+
+def _surface(mesh: Mesh, owners: Indices, chosen: list[int], kind: str) -> stiv.Surface:
+    """The mesh with one body an object, those chosen of a mobility, all others fixed."""
     bodies = [stiv.Body(name, kind if index in chosen else "fixed") for index, name in enumerate(mesh.object_names)]
     loose = stiv.Body("loose vertices", "fixed")
-    surface = stiv.Surface(
+    return stiv.Surface(
         mesh.triangles,
         len(mesh.vertices),
         None,
@@ -79,9 +93,6 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
         [*bodies, loose],
         [(a, b) for a in chosen for b in chosen if a <= b] if kind == "rigid" else [],
     )
-    options = stiv.EditOptions(single_precision=False, **_options({**settings, **step.settings}))
-    result = stiv.EditSession(surface, whole, controls, options).edit(goal)
-    return result, 1000 * (time.perf_counter() - begin)
 
 
 def _objects(step: EditStep, mesh: Mesh) -> list[int]:

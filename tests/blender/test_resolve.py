@@ -142,3 +142,21 @@ def test_what_cannot_be_resolved_is_refused_by_name(tmp_path: Path, capsys, case
     }
     assert said[case] in capsys.readouterr().err
     assert not (tmp_path / "out.blend").exists()
+
+
+def test_seams_of_a_shape_stay_closed(tmp_path: Path) -> None:
+    add_grid("Plate", 1, 4.0, (0, 0, 0.5))
+    whole = add_grid("Whole", 4)
+    places = np.array([tuple(whole.data.vertices[k].co) for face in whole.data.polygons for k in face.vertices])
+    bpy.data.objects.remove(whole)
+    ob = add("Unwelded", mesh("Unwelded", places, np.arange(64).reshape(16, 4).tolist()))
+    ob.shape_key_add(name="Basis")
+    bulge = ob.shape_key_add(name="Bulge")
+    bulge.data.foreach_set("co", (places + np.exp(-3 * (places**2).sum(axis=1))[:, None] * (0, 0, 1)).ravel())
+    key(bulge, "value", [0.0, 0.4, 0.8, 1.0])
+    assert findings(4)
+    resolved(tmp_path, 4)
+    assert findings(4) == []
+    _, same = np.unique(places, axis=0, return_inverse=True)
+    for frame in range(1, 5):
+        assert len(np.unique(positions("Unwelded", frame), axis=0)) == same.max() + 1 == 25

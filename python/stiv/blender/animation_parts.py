@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import bpy
 import mathutils
@@ -14,7 +15,9 @@ import stiv
 from stiv import InputError
 from stiv.blender.animation_poses import Track
 from stiv.blender.arrays import Floats, as_matrix, transform_points
+from stiv.blender.assembly import mesh_seams
 from stiv.blender.placement import about, nearest_rotation, nearest_turn, rotation_matrix, rotation_vector
+from stiv.seams import Seams, common_seams
 
 SHEAR = 1e-4  # by which a placement may differ from location, rotation and scale, relative to its size
 
@@ -31,12 +34,13 @@ class MovingPart:
     controls: Floats  #: (m, 3) at the first frame
     weight: float
     frame: Floats | None
+    tied: Seams | None = None  #: vertices of a shape that are in one place at all frames, and stay so
 
     def goal(self, tracks: Sequence[Track], frame: int, last: Floats) -> Floats:
         """What the animation asks of the controls at a frame, (m, 3); `last` is what it asked before."""
         track = tracks[self.tracks[0]]
         if self.frame is not None:
-            return track.world(frame)
+            return track.world(frame) if self.tied is None else track.world(frame)[self.tied.first]
         motion = track.motion(frame)
         turn = nearest_turn(rotation_vector(nearest_rotation(motion[:3, :3])), last[1])
         return np.array([transform_points(motion, self.controls[:1])[0], turn])
@@ -76,8 +80,18 @@ def _shape(tracks: Sequence[Track], index: int, hold: Collection[str]) -> Moving
     """Vertices are stored in the frame that Blender makes of the object's first placement."""
     track = tracks[index]
     frame = as_matrix(mathutils.Matrix.LocRotScale(*stored_placement(track.mesh.owner.find(), track.matrices[0])))
-    world = track.world(0)
-    return MovingPart((index,), stiv.identity(len(world)), world, _weight(tracks, (index,), hold), frame)
+    tied = _seams(track)
+    world = track.world(0) if tied is None else track.world(0)[tied.first]
+    return MovingPart((index,), stiv.identity(len(world)), world, _weight(tracks, (index,), hold), frame, tied)
+
+
+def _seams(track: Track) -> Seams | None:
+    """The seams of a mesh that are closed at every frame."""
+    seams = mesh_seams(track.locals[0], track.mesh.triangles)
+    for before, local in pairwise(track.locals):
+        if seams is not None and local is not before:
+            seams = common_seams(seams, mesh_seams(local, track.mesh.triangles))
+    return seams
 
 
 def _rigid_groups(tracks: Sequence[Track]) -> list[tuple[int, ...]]:

@@ -14,6 +14,7 @@ from stiv.blender.animation_parts import MovingPart, make_moving_parts
 from stiv.blender.animation_poses import Track, check_movable
 from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly, assemble
+from stiv.seams import Seams
 
 
 @dataclass(frozen=True)
@@ -143,11 +144,15 @@ class _Solver:
 def _assembly(tracks: Sequence[Track], parts: Sequence[MovingPart]) -> Assembly:
     kinds = {"still": "fixed", "rigid": "rigid", "shape": "deformable"}
     together = [frozenset(tracks[index].mesh.owner.name for index in part.tracks) for part in parts]
-    return assemble([track.mesh for track in tracks], [kinds[track.kind] for track in tracks], together)
+    seams: list[Seams | None] = [None] * len(tracks)
+    for part in parts:
+        seams[part.tracks[0]] = part.tied
+    meshes = [track.mesh for track in tracks]
+    return assemble(meshes, [kinds[track.kind] for track in tracks], together, seams=seams)
 
 
 def _vertices(assembly: Assembly, part: MovingPart) -> Any:
-    return np.concatenate([assembly.vertices(index) for index in part.tracks])
+    return np.concatenate([assembly.range_of(index) for index in part.tracks])
 
 
 def _told(

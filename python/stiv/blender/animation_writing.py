@@ -108,19 +108,21 @@ def _write_shape(part: MovingPart, track: Track, mesh: bpy.types.Mesh, keys: Seq
     for key in keys:
         block = ob.shape_key_add(name=f"frame {key.frame:g}", from_mix=False)
         block.interpolation = "KEY_LINEAR"
-        block.data.foreach_set("co", _local(part.frame, key.controls).ravel())
+        block.data.foreach_set("co", _local(part, key.controls).ravel())
     shapes = mesh.shape_keys
     shapes.use_relative = False
     for key, block in zip(keys, shapes.key_blocks, strict=True):
         shapes.eval_time = block.frame
         shapes.keyframe_insert("eval_time", frame=key.frame)
-    mesh.vertices.foreach_set("co", _local(part.frame, keys[0].controls).ravel())
+    mesh.vertices.foreach_set("co", _local(part, keys[0].controls).ravel())
     mesh.update()
 
 
-def _local(frame: Floats, world: Floats) -> Singles:
-    """Coordinates in the object's frame as they are stored, (m, 3)."""
-    return transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+def _local(part: MovingPart, controls: Floats) -> Singles:
+    """Coordinates of all vertices of a shape in its object's frame as they are stored, (n, 3)."""
+    assert part.frame is not None
+    local = transform_points(np.linalg.inv(part.frame).astype(np.float64), controls).astype(np.float32)
+    return local if part.tied is None else local[part.tied.index]
 
 
 def _place(ob: bpy.types.Object, location: mathutils.Vector, rotation: mathutils.Quaternion, scale: Floats) -> None:

@@ -30,22 +30,24 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
     if choices.weld:
         mesh = welded_mesh(mesh)
     surface = _surface_of(mesh, choices.move)
+    joined = stiv.join_seams(surface, mesh.vertices)
     options = stiv.RepairOptions(
         edit=stiv.EditOptions(separation=choices.separation, time_budget=choices.time_limit),
         max_deviation=choices.max_deviation,
     )
     with share_bar("repair") as progress:
-        result = stiv.repair(surface, mesh.vertices, options, progress=progress)
+        result = stiv.repair(joined.surface, joined.positions, options, progress=progress)
     pairs = _named_pairs(mesh, result.pairs.tolist())
     message = "the time limit ended first" if result.status == "budget" else result.message
     outcome = RepairOutcome(result.status, message, result.pairs_before, pairs, result.deviation, result.contracted)
     if not outcome.free:
         return outcome
+    positions = result.positions[joined.vertex_map]
     with written_atomically(output) as temporary:
         if choices.weld or output.suffix.lower() != source.suffix.lower():
-            write_mesh(temporary, replace(mesh, vertices=result.positions))
+            write_mesh(temporary, replace(mesh, vertices=positions))
         else:
-            write_repositioned(source, temporary, result.positions)
+            write_repositioned(source, temporary, positions)
         _check_written(temporary, surface, output)
     return outcome
 
@@ -68,9 +70,10 @@ def _surface_of(mesh: Mesh, move: tuple[str, ...]) -> stiv.Surface:
 def _check_written(path: Path, surface: stiv.Surface, output: Path) -> None:
     """The file must be free as another program will read it."""
     written = read_mesh(path)
-    if len(stiv.find_intersections(written.vertices, stiv.Surface(
+    joined = stiv.join_seams(stiv.Surface(
         written.triangles, len(written.vertices), vertex_body=surface.vertex_body, bodies=surface.bodies
-    ))):  # fmt: skip
+    ), written.vertices)  # fmt: skip
+    if len(stiv.find_intersections(joined.positions, joined.surface)):
         raise InputError(f"{output}: this kind of file cannot hold the result precisely enough; write .npz or .obj")
 
 

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seams for programmers of the core: surfaces with coincident vertices joined, every face keeping its number."""
+
+import numpy as np
+import pytest
+from oracles import exact
+
+import stiv
+from stiv.seams import Seams, common_seams, find_seams, seam_pairs
+
+
+def grid(count):
+    axis = np.linspace(-1, 1, count + 1)
+    q = np.array([(x, y, 0.1 * np.sin(5 * x * y + y)) for y in axis for x in axis])
+    i = np.arange(len(q)).reshape(count + 1, count + 1)
+    a, b, c, d = i[:-1, :-1].ravel(), i[:-1, 1:].ravel(), i[1:, 1:].ravel(), i[1:, :-1].ravel()
+    return q, np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]).astype(np.int32)
+
+
+def unwelded(count):
+    q, triangles = grid(count)
+    return q[triangles].reshape(-1, 3), np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)
+
+
+def test_joined_seams_are_free_and_an_edit_keeps_them_closed():
+    q, triangles = unwelded(6)
+    wall = np.array([(-9, -9, 0.5), (9, -9, 0.5), (0, 9, 0.5)])
+    positions = np.concatenate([q, wall])
+    bodies = [stiv.Body("sheet"), stiv.Body("wall", "fixed")]
+    surface = stiv.Surface(np.concatenate([triangles, [len(q) + np.arange(3)]]), len(positions), None,
+                           np.repeat([0, 1], [len(q), 3]), bodies)  # fmt: skip
+    assert len(stiv.find_intersections(positions, surface)) > 100
+    joined = stiv.join_seams(surface, positions)
+    assert len(joined.surface.triangles) == len(surface.triangles)
+    np.testing.assert_array_equal(joined.positions[joined.vertex_map], positions)
+    assert len(stiv.find_intersections(joined.positions, joined.surface)) == 0
+    sheet = np.arange(49, dtype=np.int32)
+    deformation = stiv.concatenate([(stiv.identity(49), sheet)], joined.positions)
+    goal = joined.positions[sheet] + (0, 0, 1)
+    result = stiv.EditSession(joined.surface, deformation, joined.positions[sheet]).edit(goal)
+    assert result.status == "corrected"
+    assert result.surface[:49, 2].max() < 0.5
+    assert exact.find_intersections(result.surface, joined.surface.triangles) == set()
+
+
+def test_bodies_are_not_joined_to_each_other_and_doubled_faces_stay():
+    q = np.tile([(0, 0, 0), (1, 0, 0), (0, 1, 0)], (2, 1)).astype(float)
+    triangles = np.arange(6).reshape(2, 3)
+    same = stiv.join_seams(triangles, q)
+    assert same.surface.triangles.tolist() == [[0, 1, 2], [0, 1, 2]]
+    assert stiv.find_intersections(same.positions, same.surface).tolist() == [[0, 1]]
+    apart = stiv.Surface(triangles, 6, None, np.repeat([0, 1], 3), [stiv.Body("one"), stiv.Body("other")])
+    assert stiv.join_seams(apart, q).surface is apart
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
+def test_copies_that_differ_by_rounding_are_found_on_open_edges_alone(scale):
+    q, triangles = unwelded(8)
+    random = np.random.default_rng(1)
+    rounded = ((q + random.uniform(-1, 1, q.shape) * 2.0**-22) * scale).astype(np.float32)
+    assert len(np.unique(rounded, axis=0)) > 300
+    assert find_seams(rounded, triangles) is None or len(find_seams(rounded, triangles).first) > 300
+    seams = find_seams(rounded, triangles, 2.0**-19)
+    np.testing.assert_array_equal(seams.index[triangles], find_seams(q, triangles).index[triangles])
+    assert np.abs(rounded - rounded[seams.leaders]).max() <= 2.0**-19 * np.abs(rounded).max()
+    closed = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], np.int32)
+    assert find_seams(scale * (1 + 2.0**-21 * np.eye(4, 3)), closed, 2.0**-19) is None
+    assert find_seams(scale * (1 + 2.0**-21 * np.eye(4, 3)), closed[:3], 2.0**-19) is not None
+
+
+def test_pairs_along_seams_are_those_that_share_a_place_and_no_vertex_there():
+    q, triangles = unwelded(3)
+    seams = find_seams(q, triangles)
+    faces = np.arange(len(triangles), dtype=np.int32)
+    expected = {
+        (a, b) for a in faces.tolist() for b in faces.tolist()
+        if a < b and set(seams.index[triangles[a]].tolist()) & set(seams.index[triangles[b]].tolist())
+    }  # fmt: skip
+    assert set(map(tuple, seam_pairs(seams, triangles, faces).tolist())) == expected
+    assert len(seam_pairs(None, triangles, faces)) == 0
+
+
+def test_seams_that_two_poses_have():
+    one = Seams.of(np.array([0, 1, 1, 0, 4, 4], np.int32))
+    other = Seams.of(np.array([0, 1, 1, 3, 1, 1], np.int32))
+    assert common_seams(one, other).leaders.tolist() == [0, 1, 1, 3, 4, 4]
+    assert common_seams(one, None) is None
