@@ -38,7 +38,7 @@ Acceptance accept_largest(Problem& problem, const State& accepted, const RoundOu
     }
     ++execution.counters.acceptance_tries;
     const std::optional<double> contact =
-        path_known ? never : problem.earliest_time(accepted.surface, state.surface, outcome.at_any_cost, execution);
+        path_known ? never : problem.earliest_time(accepted.surface, state.surface, outcome.pair_limit, execution);
     const double time = contact.value_or(0);  // too far to be looked at: half of it
     if (time == never && problem.is_free(accepted.surface, state.surface, execution)) {
       acceptance.state = std::move(state);

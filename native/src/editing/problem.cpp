@@ -60,6 +60,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
       rotation_rows_(deformation_->rotation_rows()),
       metric_(metric_of(*deformation_, options_)),
       detector_(surface_, {.broad_phase = options_.broad_phase}),
+      candidate_cache_(detector_),
       intersections_(surface_),
       excluded_(surface_, options_.excluded),
       no_separations_(surface_->bodies().size(), 0) {
@@ -126,64 +127,61 @@ Positions Problem::surface_at(const Controls& controls, Execution& execution) co
   return deformation_->surface_in_range(controls, execution);
 }
 
-std::optional<Events> Problem::find_events(const Positions& from, const Positions& to, bool at_any_cost,
+std::optional<Events> Problem::find_events(const Positions& from, const Positions& to, PairLimit limit,
                                            Execution& execution) {
   const ScopedTimer timer(execution.timings.detection);
   const Positions start = centred(from), end = centred(to);
   Detector& detector = round_detector_ ? *round_detector_ : detector_;
-  return remaining_events(detector, start, end, proximity_of_rounds(), at_any_cost, execution);
+  return remaining_events(detector, start, end, proximity_of_rounds(), limit, execution);
 }
 
-const std::vector<Index>& Problem::kept_vertices(Execution& execution) {
-  static const std::vector<Index> none;
-  if (round_detector_) return none;
-  const ScopedTimer timer(execution.timings.detection);
-  return detector_.kept_vertices(execution);
-}
-
-Positions Problem::surface_rows(const Controls& controls, std::span<const Index> vertices, Execution& execution) const {
-  const ScopedTimer timer(execution.timings.deformation);
-  Positions rows = deformation_->surface_rows(controls, vertices, execution);
-  flush_below_range(rows);
-  return rows;
-}
-
-Events Problem::find_events_among_kept(const Positions& from, State& to, Execution& execution) {
-  const std::vector<Index>& vertices = kept_vertices(execution);
-  if (vertices.empty()) return {};
-  const Positions end = surface_rows(to.controls, vertices, execution);
-  const ScopedTimer timer(execution.timings.detection);
-  put_rows(to.surface, vertices, end);
-  Events events =
-      detector_.find_among_kept(centred(rows_of(from, vertices)), centred(end), proximity_of_rounds(), execution);
-  excluded_.remove_from(events);
+// Detectors of rounds with a narrow phase of their own have no cache.
+Events Problem::find_cached_events(const Positions& from, State& to, Execution& execution) {
+  if (round_detector_) return {};
+  double placing = 0;
+  const auto place = [&](std::span<const Index> vertices) {
+    const ScopedTimer timer(placing);
+    Positions end = deformation_->surface_rows(to.controls, vertices, execution);
+    flush_below_range(end);
+    put_rows(to.surface, vertices, end);
+    return CandidateCache::Rows{centred(rows_of(from, vertices)), centred(end)};
+  };
+  Events events;
+  {
+    const ScopedTimer timer(execution.timings.detection);
+    events = candidate_cache_.find(place, proximity_of_rounds(), execution);
+    excluded_.remove_from(events);
+  }
+  execution.timings.detection -= placing;
+  execution.timings.deformation += placing;
   return events;
 }
 
-void Problem::leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution) {
+void Problem::prune_cached_candidates(const Positions& from, const Positions& to, Execution& execution) {
   if (round_detector_) return;
   const ScopedTimer timer(execution.timings.detection);
-  detector_.leave_kept(centred(from), centred(to), proximity_of_rounds(), execution);
+  candidate_cache_.prune(centred(from), centred(to), proximity_of_rounds(), execution);
 }
 
 std::optional<Events> Problem::remaining_events(Detector& detector, const Positions& start, const Positions& end,
-                                                Proximity proximity, bool at_any_cost, Execution& execution) const {
-  std::optional<Events> events = at_any_cost ? detector.find(start, end, proximity, execution)
-                                             : detector.find_if_manageable(start, end, proximity, execution);
+                                                Proximity proximity, PairLimit limit, Execution& execution) const {
+  std::optional<Events> events = limit == PairLimit::ignored
+                                     ? detector.find(start, end, proximity, execution)
+                                     : detector.find_within_pair_limit(start, end, proximity, execution);
   if (events) excluded_.remove_from(*events);
   return events;
 }
 
-std::optional<double> Problem::earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
+std::optional<double> Problem::earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                              Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
   const Positions start = centred(from), end = centred(to);
   if (!excluded_.empty()) {
-    const auto events = remaining_events(detector_, start, end, proximity(), at_any_cost, execution);
+    const auto events = remaining_events(detector_, start, end, proximity(), limit, execution);
     return events ? std::optional(first_time(*events)) : std::nullopt;
   }
-  if (at_any_cost) return detector_.earliest_time(start, end, proximity(), execution);
-  return detector_.earliest_time_if_manageable(start, end, proximity(), execution);
+  if (limit == PairLimit::ignored) return detector_.earliest_time(start, end, proximity(), execution);
+  return detector_.earliest_time_within_pair_limit(start, end, proximity(), execution);
 }
 
 bool Problem::is_free(const Positions& from, const Positions& to, Execution& execution) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "detection/candidate_cache.hpp"
 #include "editing/depth_watch.hpp"
 #include "editing/excluded_pairs.hpp"
 #include "stiv/acceptance/intersections.hpp"
@@ -40,7 +41,7 @@ struct RoundProgress {
   Controls p;  ///< next candidate, before it is rounded
   bool accumulate = true;
   int round = 0;
-  bool begun = false;                          ///< the pairs kept are those near this goal's way
+  bool begun = false;                          ///< the cached candidates are pruned to this goal's path
   std::optional<Events> found = std::nullopt;  ///< on the way to the candidate, and not yet responded to
   bool constrained = false;                    ///< their constraints are among those kept
 };
@@ -87,15 +88,15 @@ class Problem {
   Positions surface_at(const Controls& controls, Execution& execution) const;
 
   /// Events on the way from one surface to the other, and the earliest time of any. Nothing if the way is too far to
-  /// be looked at in bounded time and memory; `at_any_cost`: never so.
-  std::optional<Events> find_events(const Positions& from, const Positions& to, bool at_any_cost, Execution& execution);
-  /// Events among the pairs that searches of all brought near each other: perhaps not all that there are, and none if
-  /// no pairs are kept. Brings `to.surface` up to date where these pairs are, and nowhere else.
-  Events find_events_among_kept(const Positions& from, State& to, Execution& execution);
-  /// Drops kept pairs that lie far from the way, where rounds toward another goal begin; or all.
-  void leave_kept_pairs(const Positions& from, const Positions& to, Execution& execution);
-  void forget_kept_pairs() { detector_.forget_kept(); }
-  std::optional<double> earliest_time(const Positions& from, const Positions& to, bool at_any_cost,
+  /// be searched within the pair limit.
+  std::optional<Events> find_events(const Positions& from, const Positions& to, PairLimit limit, Execution& execution);
+  /// Events among the cached candidates: perhaps not all events, and none if nothing is cached. Updates `to.surface` at
+  /// the vertices of these candidates only.
+  Events find_cached_events(const Positions& from, State& to, Execution& execution);
+  /// Prunes cached candidates far from the path. Called when rounds toward another goal begin.
+  void prune_cached_candidates(const Positions& from, const Positions& to, Execution& execution);
+  void clear_cached_candidates() { candidate_cache_.clear(); }
+  std::optional<double> earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                       Execution& execution);
   /// Exact static test; `from` is known to be free. Excluded pairs may intersect, but no more of them than in `from`,
   /// and no deeper than at the start of the session.
@@ -104,13 +105,10 @@ class Problem {
   bool is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution);
 
  private:
-  /// None where rounds look at pairs in a way of their own.
-  const std::vector<Index>& kept_vertices(Execution& execution);
-  Positions surface_rows(const Controls& controls, std::span<const Index> vertices, Execution& execution) const;
   void set_proximity(const MovingExtent& extent, double least);
   /// All but those of excluded pairs.
   std::optional<Events> remaining_events(Detector& detector, const Positions& start, const Positions& end,
-                                         Proximity proximity, bool at_any_cost, Execution& execution) const;
+                                         Proximity proximity, PairLimit limit, Execution& execution) const;
   Positions centred(const PositionsView& q) const;
 
   std::shared_ptr<const Surface> surface_;
@@ -119,6 +117,7 @@ class Problem {
   std::vector<Index> rotation_rows_;
   std::unique_ptr<Metric> metric_;
   Detector detector_;
+  CandidateCache candidate_cache_;
   std::optional<Detector> round_detector_;  ///< of the rounds, where it is another one
   IntersectionTest intersections_;
   ExcludedPairs excluded_;

@@ -16,8 +16,8 @@ namespace {
 /// Where even this part of the way has too many pairs near each other, it is not the motion that makes them.
 constexpr double shortest_part = 0x1p-16;
 
-/// So often a candidate is placed whole to ask whether to give up.
-constexpr int rounds_of_hope = 6;
+/// Rounds between two questions whether to give up, for which a candidate is placed whole.
+constexpr int rounds_before_giving_up = 6;
 
 /// Those that the time budget ended, if they are of the same sub-edit; new ones else.
 RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
@@ -59,21 +59,21 @@ bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& a
   return true;
 }
 
-/// Events on the way to the candidate: of the pairs kept, or, if none of these interferes, of all. Its surface is up to
-/// date where they are; everywhere, if there are none. Nothing if the way is too far.
+/// Events on the path to the candidate: among cached candidates or, if none of these interferes, of all pairs. The
+/// surface is up to date at the events, and everywhere if there is none. Nothing if the path exceeds the pair limit.
 std::optional<Events> find_some(Problem& problem, const State& accepted, RoundOutcome& outcome, RoundProgress& progress,
                                 Execution& execution) {
   State& candidate = outcome.candidate;
   const bool begins = !progress.begun;
   if (begins) {
     candidate.surface = problem.surface_at(candidate.controls, execution);
-    problem.leave_kept_pairs(accepted.surface, candidate.surface, execution);
+    problem.prune_cached_candidates(accepted.surface, candidate.surface, execution);
     progress.begun = true;
   }
-  Events events = problem.find_events_among_kept(accepted.surface, candidate, execution);
+  Events events = problem.find_cached_events(accepted.surface, candidate, execution);
   if (!events.empty()) return events;
   if (!begins) candidate.surface = problem.surface_at(candidate.controls, execution);
-  return problem.find_events(accepted.surface, candidate.surface, outcome.at_any_cost, execution);
+  return problem.find_events(accepted.surface, candidate.surface, outcome.pair_limit, execution);
 }
 
 }  // namespace
@@ -84,12 +84,12 @@ bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& g
 }
 
 RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
-                        bool at_any_cost, const StatePredicate& hopeless, Execution& execution) {
+                        PairLimit pair_limit, const StatePredicate& is_diverging, Execution& execution) {
   const EditOptions& options = problem.options();
   const bool is_lcp = options.solver == ConstraintSolver::lcp;
   const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
   RoundOutcome outcome;
-  outcome.at_any_cost = at_any_cost;
+  outcome.pair_limit = pair_limit;
   outcome.candidate.surface = accepted.surface;
   RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
   auto& [from, to, kind, kept, p, accumulate, round, begun, found, constrained] = progress;
@@ -98,9 +98,9 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
     execution.report("rounds", static_cast<double>(round) / options.max_rounds);
     outcome.candidate.controls = problem.stored(p);
     const bool last = round == options.max_rounds;
-    const bool asks = hopeless && accumulate && round > 0 && round % rounds_of_hope == 0;
+    const bool asks = is_diverging && accumulate && round > 0 && round % rounds_before_giving_up == 0;
     if (last || asks || found) outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-    outcome.given_up = !last && asks && hopeless(outcome.candidate);
+    outcome.given_up = !last && asks && is_diverging(outcome.candidate);
     if (last || outcome.given_up) return outcome;
     if (!found) {
       std::optional<Events> events = find_some(problem, accepted, outcome, progress, execution);
@@ -128,7 +128,7 @@ RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls&
 }
 
 RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
-                                     Projection projection, double& part, const StatePredicate& hopeless,
+                                     Projection projection, double& part, const StatePredicate& is_diverging,
                                      Execution& execution) {
   const auto aim_at = [&](double share) {
     return interpolate(accepted.controls, goal, share, problem.rotation_rows());
@@ -136,12 +136,13 @@ RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, co
   for (part = begun_part(problem, accepted, projection, std::min(1.0, 2 * part), aim_at); part >= shortest_part;
        part /= 2) {
     const Controls aim = aim_at(part);
-    RoundOutcome outcome = run_rounds(problem, accepted, aim, projection, false, hopeless, execution);
+    RoundOutcome outcome =
+        run_rounds(problem, accepted, aim, projection, PairLimit::respected, is_diverging, execution);
     if (!outcome.too_far) return outcome;
     rounds_toward(problem, accepted, aim_at(part / 2), projection);
     execution.note_gain();  // a call that ends here is taken up with the half
   }
-  return run_rounds(problem, accepted, aim_at(part), projection, true, hopeless, execution);
+  return run_rounds(problem, accepted, aim_at(part), projection, PairLimit::ignored, is_diverging, execution);
 }
 
 }  // namespace stiv

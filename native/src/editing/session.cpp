@@ -50,7 +50,7 @@ class EditSession::Implementation {
     if (!problem_.is_empty() && !known) problem_.check_start(state.surface, execution);
     checked_ = controls;
     problem_.unfinished_rounds().reset();
-    problem_.forget_kept_pairs();
+    problem_.clear_cached_candidates();
     goal_ = {goal, problem_.surface_at(goal, execution)};
     followed_ = goal_;
     stride_ = std::numeric_limits<double>::infinity();
@@ -177,7 +177,7 @@ class EditSession::Implementation {
         if (status == EditStatus::cancelled) {
           accepted_ = before;
           followed_ = followed_before;
-          problem_.forget_kept_pairs();
+          problem_.clear_cached_candidates();
           report.path.clear();
         } else {
           goal_ = target;
@@ -189,7 +189,7 @@ class EditSession::Implementation {
         accepted_ = before;
         followed_ = followed_before;
         problem_.unfinished_rounds().reset();
-        problem_.forget_kept_pairs();
+        problem_.clear_cached_candidates();
         throw;
       }
       if (!resumable) problem_.unfinished_rounds().reset();

@@ -27,11 +27,11 @@ void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& accept
 
 /// The goal itself, as if rounds had come to it: of an answer that leads nowhere not even a part may be free, or lower
 /// the energy, while some of the straight way is and does.
-RoundOutcome straight_way(const Problem& problem, const Aim& aim, bool at_any_cost, Execution& execution) {
+RoundOutcome straight_way(const Problem& problem, const Aim& aim, PairLimit pair_limit, Execution& execution) {
   RoundOutcome outcome;
   outcome.candidate.controls = problem.stored(aim.controls);
   outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-  outcome.at_any_cost = at_any_cost;
+  outcome.pair_limit = pair_limit;
   return outcome;
 }
 
@@ -49,8 +49,8 @@ bool moves_pinned_controls(const Problem& problem, const Controls& from, const C
 /// further, so that such rounds are given up early, and taken to their end only if the others stray as well.
 RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& aim, double& part, Execution& execution) {
   const auto energy_of = [&](const RoundOutcome& outcome) { return energy(outcome.candidate.surface, aim.surface); };
-  const auto rounds = [&](Projection projection, const StatePredicate& hopeless = {}) {
-    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, hopeless, execution);
+  const auto rounds = [&](Projection projection, const StatePredicate& is_diverging = {}) {
+    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, is_diverging, execution);
   };
   if (has_begun_rounds(problem, accepted, aim.controls, Projection::from_last_round))
     return rounds(Projection::from_last_round);
@@ -87,7 +87,7 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
     Acceptance acceptance = accept_largest(problem, accepted, outcome, agreeable, execution);
     const bool nothing_to_gain = outcome.clear && aim.must_improve;
     if (acceptance.fraction == 0 && sub_edit == 0 && !nothing_to_gain) {
-      const RoundOutcome straight = straight_way(problem, aim, outcome.at_any_cost, execution);
+      const RoundOutcome straight = straight_way(problem, aim, outcome.pair_limit, execution);
       acceptance = accept_largest(problem, accepted, straight, agreeable, execution);
       acceptance.held = true;
     }

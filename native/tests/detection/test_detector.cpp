@@ -218,14 +218,14 @@ TEST_CASE("detector: a motion that brings too many pairs near each other is told
   for (const int threads : {1, 2}) {
     Execution execution(threads);
     Detector detector(scene.surface);
-    CHECK_FALSE(detector.find_if_manageable(scene.start, scene.start + motion, proximity, execution));
-    CHECK_FALSE(detector.earliest_time_if_manageable(scene.start, scene.start + motion, proximity, execution));
+    CHECK_FALSE(detector.find_within_pair_limit(scene.start, scene.start + motion, proximity, execution));
+    CHECK_FALSE(detector.earliest_time_within_pair_limit(scene.start, scene.start + motion, proximity, execution));
     CHECK(execution.counters.candidate_pairs == 0);
     const Positions end = scene.start + motion / 1024;
-    const auto part = detector.find_if_manageable(scene.start, end, proximity, execution);
+    const auto part = detector.find_within_pair_limit(scene.start, end, proximity, execution);
     REQUIRE(part);
     CHECK(same_bits(*part, Detector(scene.surface).find(scene.start, end, proximity, execution)));
-    CHECK(detector.find_if_manageable(scene.start, end, proximity, execution)->size() > 20);
+    CHECK(detector.find_within_pair_limit(scene.start, end, proximity, execution)->size() > 20);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "detection/candidate_cache.hpp"
 #include "detection/event_bits.hpp"
 #include "detection/scenes.hpp"
 #include "position_rows.hpp"
@@ -20,15 +21,22 @@ Events found_by(Detector& detector, const Positions& start, const Positions& end
   return detector.find(start, end, proximity, execution);
 }
 
-Events found_among_kept(Detector& detector, const Positions& start, const Positions& end, int threads = 1) {
-  Execution execution(threads);
-  const std::vector<Index>& vertices = detector.kept_vertices(execution);
-  return detector.find_among_kept(rows_of(start, vertices), rows_of(end, vertices), proximity, execution);
-}
+/// A detector with a cache.
+struct CachedSearch {
+  Detector detector;
+  CandidateCache cache{detector};
 
-void leave_kept(Detector& detector, const Positions& start, const Positions& end) {
-  detector.leave_kept(start, end, proximity, Execution(1));
-}
+  explicit CachedSearch(const MovingScene& scene, BroadPhase broad_phase = BroadPhase::bvh)
+      : detector(scene.surface, {.broad_phase = broad_phase}) {}
+
+  Events cached(const Positions& start, const Positions& end, int threads = 1) {
+    Execution execution(threads);
+    const auto place = [&](std::span<const Index> vertices) {
+      return CandidateCache::Rows{rows_of(start, vertices), rows_of(end, vertices)};
+    };
+    return cache.find(place, proximity, execution);
+  }
+};
 
 Events expected(const MovingScene& scene, const Positions& start, const Positions& end) {
   Detector detector(scene.surface, {.broad_phase = BroadPhase::brute_force});
@@ -90,60 +98,59 @@ TEST_CASE("rounds: a detector that keeps its pairs finds the same, bit by bit, a
   }
 }
 
-TEST_CASE("rounds: events among the pairs kept are those of a whole search, of these pairs, whatever came before") {
+TEST_CASE("rounds: cached events are those of a whole search among the cached pairs, whatever came before") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   std::mt19937 random(4);
-  Detector detector(scene.surface), grid(scene.surface, {.broad_phase = BroadPhase::hash_grid});
+  CachedSearch trees(scene), grid(scene, BroadPhase::hash_grid);
   std::size_t found = 0, missed = 0;
   for (const Positions& first : ends_of_rounds(scene, random)) {
-    Detector fresh(scene.surface);
-    detector.forget_kept();
-    grid.forget_kept();
-    const Events before = found_by(detector, scene.start, first, 1);
-    found_by(fresh, scene.start, first, 2);
-    found_by(grid, scene.start, first, 1);
+    CachedSearch fresh(scene);
+    trees.cache.clear();
+    grid.cache.clear();
+    const Events before = found_by(trees.detector, scene.start, first, 1);
+    found_by(fresh.detector, scene.start, first, 2);
+    found_by(grid.detector, scene.start, first, 1);
     for (const Positions& end : ends_of_rounds(scene, random)) {
-      const Events kept = found_among_kept(detector, scene.start, end);
-      CHECK(same_bits(kept, found_among_kept(fresh, scene.start, end, 2)));
-      CHECK(same_bits(kept, found_among_kept(grid, scene.start, end)));
+      const Events cached = trees.cached(scene.start, end);
+      CHECK(same_bits(cached, fresh.cached(scene.start, end, 2)));
+      CHECK(same_bits(cached, grid.cached(scene.start, end)));
       const Events all = expected(scene, scene.start, end);
-      for (const Event& event : kept) {
+      for (const Event& event : cached) {
         const Event* const same = event_of_pair(all, event);
         REQUIRE(same != nullptr);
         CHECK(same_bits({event}, {*same}));
       }
       for (const Event& event : all)
-        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(kept, event) != nullptr);
-      found += kept.size();
-      missed += all.size() - kept.size();
+        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(cached, event) != nullptr);
+      found += cached.size();
+      missed += all.size() - cached.size();
     }
   }
   CHECK(found > 100);
   CHECK(missed > 0);
 }
 
-TEST_CASE("rounds: pairs of several searches are kept, each once, until a step leaves them far") {
+TEST_CASE("rounds: the pairs of several searches stay cached, each once, until a step prunes them") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   std::mt19937 random(11);
   const std::vector<Positions> ends = ends_of_rounds(scene, random);
-  Detector detector(scene.surface), grid(scene.surface, {.broad_phase = BroadPhase::hash_grid});
-  const auto kept_of = [&](Detector& some, const Positions& end) { return found_among_kept(some, scene.start, end); };
+  CachedSearch trees(scene), grid(scene, BroadPhase::hash_grid);
   std::vector<Events> of_searches;
   for (const Positions& end : ends) {
-    of_searches.push_back(found_by(detector, scene.start, end, 1));
-    found_by(grid, scene.start, end, 2);
-    for (std::size_t k = 0; k < of_searches.size(); ++k) {  // nothing that was found is forgotten, or comes twice
-      CHECK(same_bits(kept_of(detector, ends[k]), of_searches[k]));
-      CHECK(same_bits(kept_of(grid, ends[k]), of_searches[k]));
+    of_searches.push_back(found_by(trees.detector, scene.start, end, 1));
+    found_by(grid.detector, scene.start, end, 2);
+    for (std::size_t k = 0; k < of_searches.size(); ++k) {  // nothing is lost, and nothing comes twice
+      CHECK(same_bits(trees.cached(scene.start, ends[k]), of_searches[k]));
+      CHECK(same_bits(grid.cached(scene.start, ends[k]), of_searches[k]));
     }
   }
-  const Positions& last = ends.front();  // a part of the way: closer than most others
-  for (Detector* const some : {&detector, &grid}) leave_kept(*some, scene.start, last);
-  CHECK(same_bits(kept_of(detector, last), of_searches.front()));
+  const Positions& last = ends.front();  // a fraction of the path: closer than most others
+  for (CachedSearch* const some : {&trees, &grid}) some->cache.prune(scene.start, last, proximity, Execution(1));
+  CHECK(same_bits(trees.cached(scene.start, last), of_searches.front()));
   std::size_t left = 0, all = 0;
   for (std::size_t k = 0; k < ends.size(); ++k) {
-    const Events events = kept_of(detector, ends[k]);
-    CHECK(same_bits(events, kept_of(grid, ends[k])));
+    const Events events = trees.cached(scene.start, ends[k]);
+    CHECK(same_bits(events, grid.cached(scene.start, ends[k])));
     left += events.size();
     all += of_searches[k].size();
   }
@@ -151,35 +158,36 @@ TEST_CASE("rounds: pairs of several searches are kept, each once, until a step l
   CHECK(left < all);
 }
 
-TEST_CASE("rounds: nothing is kept before the first search, or when all is forgotten") {
+TEST_CASE("rounds: nothing is cached before the first search, or after clearing") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   const Execution execution(1);
-  Detector detector(scene.surface);
-  CHECK(detector.kept_vertices(execution).empty());
-  CHECK(found_among_kept(detector, scene.start, scene.end).empty());
+  CachedSearch search(scene);
+  CHECK(search.cache.vertices(execution).empty());
+  CHECK(search.cached(scene.start, scene.end).empty());
   for (const bool asked : {false, true}) {
-    CHECK(found_by(detector, scene.start, scene.end, 1).size() > 10);
-    if (asked) CHECK(found_among_kept(detector, scene.start, scene.end).size() > 10);
-    detector.forget_kept();
-    CHECK(detector.kept_vertices(execution).empty());
-    CHECK(found_among_kept(detector, scene.start, scene.end).empty());
+    CHECK(found_by(search.detector, scene.start, scene.end, 1).size() > 10);
+    if (asked) CHECK(search.cached(scene.start, scene.end).size() > 10);
+    search.cache.clear();
+    CHECK(search.cache.vertices(execution).empty());
+    CHECK(search.cached(scene.start, scene.end).empty());
   }
 }
 
-TEST_CASE("rounds: rows of kept vertices that are too few or not finite are refused by name") {
+TEST_CASE("rounds: rows of cached vertices that are too few or not finite are refused by name") {
   const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
   Execution execution(1);
-  Detector detector(scene.surface);
-  found_by(detector, scene.start, scene.end, 1);
-  const std::vector<Index> vertices = detector.kept_vertices(execution);
+  CachedSearch search(scene);
+  found_by(search.detector, scene.start, scene.end, 1);
+  const std::vector<Index> vertices = search.cache.vertices(execution);
   REQUIRE(vertices.size() > 3);
-  const Positions start = rows_of(scene.start, vertices);
-  Positions end = rows_of(scene.end, vertices);
-  CHECK_THROWS_AS(detector.find_among_kept(start, end.topRows(2), proximity, execution), InputError);
-  CHECK_THROWS_AS(detector.leave_kept(scene.start, end, proximity, execution), InputError);
-  end(3, 1) = never;
+  CandidateCache::Rows rows{rows_of(scene.start, vertices), rows_of(scene.end, vertices)};
+  const auto find = [&] { search.cache.find([&](std::span<const Index>) { return rows; }, proximity, execution); };
+  rows.end(3, 1) = never;
   const std::string name = scene.surface->describe_vertex(vertices[3]) + ": coordinate is not finite";
-  CHECK_THROWS_WITH_AS(detector.find_among_kept(start, end, proximity, execution), name.c_str(), InputError);
+  CHECK_THROWS_WITH_AS(find(), name.c_str(), InputError);
+  CHECK_THROWS_AS(search.cache.prune(scene.start, rows.end, proximity, execution), InputError);
+  rows.end = Positions(rows.end.topRows(2));
+  CHECK_THROWS_AS(find(), InputError);
 }
 
 TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {

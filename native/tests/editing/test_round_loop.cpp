@@ -44,7 +44,7 @@ struct Run {
   std::int64_t rounds = 0;
 };
 
-Run run(const Scene& scene, const StatePredicate& hopeless) {
+Run run(const Scene& scene, const StatePredicate& is_diverging) {
   EditOptions options;
   options.max_rounds = 40;
   Problem problem(scene.surface, scene.deformation, scene.controls, options);
@@ -52,7 +52,7 @@ Run run(const Scene& scene, const StatePredicate& hopeless) {
   const State accepted{scene.controls, problem.surface_at(scene.controls, execution)};
   problem.check_start(accepted.surface, execution);
   const Controls goal = moved(scene.controls, static_cast<Index>(scene.controls.rows()), Vector3(0.05, 0, -0.45));
-  return {run_rounds(problem, accepted, goal, Projection::from_goal, false, hopeless, execution),
+  return {run_rounds(problem, accepted, goal, Projection::from_goal, PairLimit::respected, is_diverging, execution),
           execution.counters.rounds};
 }
 

@@ -63,7 +63,7 @@ class BvhSource final : public CandidateSource {
 
   const VertexSteps& vertex_steps() const override { return swept_.steps(); }
 
-  bool manageable() const override { return collected_; }
+  bool is_within_pair_limit() const override { return collected_; }
 
   Index chunk_count(EventKind kind) const override {
     return static_cast<Index>(collected_ ? of(kind).fruitful.size() : of(kind).tasks.size());

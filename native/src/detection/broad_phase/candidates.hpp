@@ -40,9 +40,9 @@ class CandidateSource {
   virtual void update(const Step& step, const Execution& execution) = 0;
   /// The step of the last update, for vector code to load.
   virtual const VertexSteps& vertex_steps() const = 0;
-  /// Are the candidates of the step few enough to be looked at in bounded time and memory? Depends on the step alone.
-  /// Visits go through all of them either way.
-  virtual bool manageable() const { return true; }
+  /// Are the candidates of the step few enough for bounded time and memory? Depends on the step alone. Visits go
+  /// through all of them either way.
+  virtual bool is_within_pair_limit() const { return true; }
   virtual Index chunk_count(EventKind kind) const = 0;
   virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;
 };

@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// A finite point, and whose it is: side by side, as halving goes over all of them many times.
+/// A finite point, and whose it is: side by side, because splitting goes over all of them many times.
 struct alignas(16) NumberedPoint {
   std::array<float, 3> position;
   Index number;  ///< at least 0, no two equal

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "detection/broad_phase/candidates.hpp"
-#include "detection/broad_phase/incidence.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
+#include "detection/primitive_pair.hpp"
 
 namespace stiv {
 
@@ -28,7 +28,7 @@ class PrimitiveTree {
     if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
-      tree_->refit_some(incidence_->rows_with(swept.changed()), box_of);
+      tree_->refit_some(incidence_->primitives_with(swept.changed()), box_of);
     }
   }
 
@@ -89,7 +89,7 @@ class PrimitiveTree {
   Index count_;
   std::optional<Bvh> tree_;
   double spread_ = 0;  // when the tree was built
-  std::optional<Incidence> incidence_;
+  std::optional<VertexIncidence> incidence_;
 };
 
 }  // namespace stiv

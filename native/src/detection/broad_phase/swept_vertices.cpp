@@ -7,7 +7,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "detection/joined.hpp"
+#include "detection/primitive_pair.hpp"
 #include "stiv/coordinate_range.hpp"
 
 namespace stiv {
@@ -76,7 +76,7 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
         if (!same(vertex, 1)) parts[at(chunk)].push_back(vertex);
     }
   });
-  return joined<Index>(parts);
+  return concatenate<Index>(parts);
 }
 
 /// @throws InputError if a number is not finite or out of range

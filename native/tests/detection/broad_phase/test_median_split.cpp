@@ -44,7 +44,7 @@ void check_against_sorting(Points points) {
 
 }  // namespace
 
-TEST_CASE("halving: the first half by position and number, whatever the order before") {
+TEST_CASE("median split: the first half by position and number, whatever the order before") {
   std::mt19937 random(4);
   std::normal_distribution<float> spread(0, 3);
   for (const std::size_t count : {2U, 9U, 16U, 17U, 100U, 511U, 513U, 5000U}) {
@@ -59,7 +59,7 @@ TEST_CASE("halving: the first half by position and number, whatever the order be
   }
 }
 
-TEST_CASE("halving: along the longest axis") {
+TEST_CASE("median split: along the longest axis") {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Points points;
     for (Index k = 0; k < 60; ++k) {

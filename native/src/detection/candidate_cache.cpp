@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detection/candidate_cache.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/relevance.hpp"
+#include "detection/close_pairs.hpp"
+#include "detection/primitive_pair.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr EventKind kinds[] = {EventKind::vertex_face, EventKind::edge_edge};
+
+constexpr auto before = [](const Candidate& a, const Candidate& b) {
+  return pair_key(a.first, a.second) < pair_key(b.first, b.second);
+};
+
+/// Union of sorted candidates and others, without duplicates.
+std::vector<Candidate> united(const std::vector<Candidate>& sorted, std::vector<Candidate> others) {
+  std::sort(others.begin(), others.end(), before);
+  std::vector<Candidate> all;
+  all.reserve(sorted.size() + others.size());
+  std::set_union(sorted.begin(), sorted.end(), others.begin(), others.end(), std::back_inserter(all), before);
+  return all;
+}
+
+/// The same for both kinds. The order of two edges depends on the order of a tree: here the lower one comes first.
+ClosePairs united(const ClosePairs& sorted, ClosePairs others, const Execution& execution) {
+  for (Candidate& pair : others[1])
+    if (pair.second < pair.first) std::swap(pair.first, pair.second);
+  ClosePairs all;
+  execution.for_chunks(2, 1, [&](Index, Index, Index number) {
+    const auto kind = static_cast<std::size_t>(number);
+    all[kind] = united(sorted[kind], std::move(others[kind]));
+  });
+  return all;
+}
+
+}  // namespace
+
+Events CandidateCache::find(const PlaceVertices& place, Proximity proximity, Execution& execution) {
+  check_proximity(proximity);
+  add_last_search(execution);
+  if (vertices_.empty()) return {};
+  const FloatingPointScope floating_point;
+  take_rows(place(vertices_));
+  return search_.find_among(pairs_, steps_, proximity, execution);
+}
+
+// Far pairs go first: they are most of what a search gives, and need not be sorted.
+void CandidateCache::prune(const PositionsView& start, const PositionsView& end, Proximity proximity,
+                           const Execution& execution) {
+  search_.check_step({start, end, proximity});
+  const FloatingPointScope floating_point;
+  steps_.update(start, end, execution);
+  const ClosePairs searched = search_.take_close_pairs(execution);
+  const Vector3 motion = common_motion(start, end);
+  ClosePairs kept, added;
+  execution.for_chunks(4, 1, [&](Index, Index, Index number) {
+    const auto kind = static_cast<std::size_t>(number % 2);
+    const bool cached = number < 2;
+    append_close(search_.surface(), kinds[kind], (cached ? pairs_ : searched)[kind], steps_, motion,
+                 proximity.separation, (cached ? kept : added)[kind]);
+  });
+  replace(united(kept, std::move(added), execution));
+}
+
+void CandidateCache::clear() {
+  search_.drop_close_pairs();
+  pairs_ = {};
+  vertices_.clear();
+}
+
+const std::vector<Candidate>& CandidateCache::candidates(EventKind kind, const Execution& execution) {
+  add_last_search(execution);
+  return pairs_[static_cast<std::size_t>(kind)];
+}
+
+const std::vector<Index>& CandidateCache::vertices(const Execution& execution) {
+  add_last_search(execution);
+  return vertices_;
+}
+
+void CandidateCache::add_last_search(const Execution& execution) {
+  if (search_.has_close_pairs()) replace(united(pairs_, search_.take_close_pairs(execution), execution));
+}
+
+/// The only place that changes the content: everything before it may be interrupted.
+void CandidateCache::replace(ClosePairs pairs) {
+  const Surface& surface = search_.surface();
+  std::vector<unsigned char> listed(static_cast<std::size_t>(surface.vertex_count()), 0);
+  for (std::size_t kind = 0; kind < pairs.size(); ++kind)
+    for (const Candidate& pair : pairs[kind])
+      for (const Index vertex : vertices_of(surface, kinds[kind], pair)) listed[static_cast<std::size_t>(vertex)] = 1;
+  pairs_ = std::move(pairs);
+  vertices_.clear();
+  for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
+    if (listed[static_cast<std::size_t>(vertex)] != 0) vertices_.push_back(vertex);
+}
+
+void CandidateCache::take_rows(const Rows& rows) {
+  for (const Positions* positions : {&rows.start, &rows.end}) {
+    if (positions->rows() != static_cast<Index>(vertices_.size()))
+      throw InputError("the cached candidates have " + std::to_string(vertices_.size()) + " vertices, not " +
+                       std::to_string(positions->rows()));
+    for (Index row = 0; row < positions->rows(); ++row)
+      search_.surface().check_position(vertices_[static_cast<std::size_t>(row)], positions->row(row));
+  }
+  steps_.update_rows(rows.start, rows.end, vertices_, search_.surface().vertex_count());
+}
+
+}  // namespace stiv

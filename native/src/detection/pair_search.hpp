@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "detection/broad_phase/candidates.hpp"
+#include "detection/narrow_phase/pair_test.hpp"
+#include "stiv/detection/detector.hpp"
+
+namespace stiv {
+
+/// Candidates of each kind, by EventKind.
+using ClosePairs = std::array<std::vector<Candidate>, 2>;
+
+/// Whether a search may refuse a step that has too many candidates for bounded time and memory.
+enum class PairLimit { respected, ignored };
+
+/// Broad phase, filters and narrow phase over all pairs of a surface. The implementation of Detector.
+class PairSearch {
+ public:
+  PairSearch(std::shared_ptr<const Surface> surface, DetectorOptions options);
+
+  /// Nothing if the step exceeds a pair limit that is respected.
+  /// @throws InputError for a step or a proximity that does not fit, as the others
+  std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);
+  std::optional<double> earliest_time(const Step& step, PairLimit limit, Execution& execution);
+
+  /// The pairs that the step of the last complete search within the limit may bring close (see append_close); none if
+  /// they were taken before.
+  ClosePairs take_close_pairs(const Execution& execution);
+  bool has_close_pairs() const { return last_.has_value(); }
+  void drop_close_pairs() { last_.reset(); }
+
+  /// Events of a step among some pairs; `steps` holds the step of their vertices.
+  Events find_among(const ClosePairs& pairs, const VertexSteps& steps, const Proximity& proximity,
+                    Execution& execution) const;
+
+  void check_step(const Step& step) const;
+  const Surface& surface() const { return *surface_; }
+
+ private:
+  /// What one chunk found.
+  struct ChunkResult {
+    Events events;
+    std::int64_t candidates = 0;
+    std::int64_t tested = 0;
+  };
+  /// What close pairs of a search depend on besides its candidates.
+  struct WholeSearch {
+    Vector3 motion;
+    double separation = 0;
+  };
+
+  template <class Decide>
+  std::optional<std::vector<ChunkResult>> search(const Step& given, PairLimit limit, Execution& execution,
+                                                 const Decide& decide);
+  template <class Decide>
+  static void decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates, const Decide& decide,
+                         ChunkResult& result);
+  static Events collect(const std::vector<ChunkResult>& results, Execution& execution);
+  static void count(const std::vector<ChunkResult>& results, Counters& counters);
+
+  std::shared_ptr<const Surface> surface_;
+  NarrowPhase narrow_phase_;
+  std::unique_ptr<CandidateSource> source_;
+  std::optional<WholeSearch> last_;  ///< set while the close pairs of a complete search can be taken
+};
+
+/// @throws InputError for a separation or a clearance ratio out of range
+void check_proximity(const Proximity& proximity);
+
+}  // namespace stiv
