@@ -10,16 +10,16 @@ bpy = pytest.importorskip("bpy")
 
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
-from stiv.blender.replaying import operators_are_there  # noqa: E402
+from stiv.blender.enabling import is_enabled  # noqa: E402
 from stiv.command_line import program  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
 def unregistered():
     """Leave no add-on registered that was not."""
-    was_there = operators_are_there()
+    was_there = is_enabled()
     yield
-    if operators_are_there() and not was_there:
+    if is_enabled() and not was_there:
         import stiv_addon
 
         stiv_addon.unregister()

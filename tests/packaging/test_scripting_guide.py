@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scripts of the guide for scripts do what it says, and it names what there is."""
+"""The guide for scripts names what there is; test_examples runs its scripts."""
 
 import re
 from pathlib import Path
@@ -13,27 +13,6 @@ import stiv.blender  # noqa: E402
 pytestmark = pytest.mark.usefixtures("registered")
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs/scripting.md").read_text(encoding="utf-8")
-OPERATORS, EDITS = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
-
-
-def printed(script: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    exec(compile(script, "scripting.md", "exec"), {})
-    return [line for line in capsys.readouterr().out.splitlines() if line and not line.startswith(("Info", "Read"))]
-
-
-def test_operators_stop_at_what_is_in_the_way(capsys: pytest.CaptureFixture[str]) -> None:
-    (told,) = printed(OPERATORS, capsys)
-    assert told.startswith(("corrected", "blocked"))
-    assert bpy.ops.stiv.check() == {"FINISHED"}
-    assert bpy.context.window_manager.stiv_check.summary.startswith("No intersections")
-
-
-def test_an_edit_and_what_follows_another_tool_stay_free(capsys: pytest.CaptureFixture[str]) -> None:
-    dragged, followed = printed(EDITS, capsys)
-    assert dragged == "corrected True 0"
-    assert followed.startswith("True") and float(followed.split()[-1]) < 1.01
-    assert not stiv.blender.check_scene(bpy.context).pairs
 
 
 def test_every_operator_and_property_is_there() -> None:

@@ -6,6 +6,7 @@ from stiv.blender.checking import SceneCheck, check_scene, read_surface
 from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit import BlenderEdit
+from stiv.blender.enabling import enable
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
@@ -54,6 +55,7 @@ __all__ = [
     "compare",
     "contacts_of",
     "contract_scene",
+    "enable",
     "expand_scene",
     "follow",
     "read_state",

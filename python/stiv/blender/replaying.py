@@ -46,11 +46,6 @@ def replay(
     return reports
 
 
-def operators_are_there() -> bool:
-    """Is the add-on registered?"""
-    return hasattr(bpy.types.Scene, "stiv")
-
-
 def prepare(step: EditStep, script: EditScript, number: int) -> None:
     """Gives the settings of a step and selects what it names. Raises InputError naming the edit."""
     try:
