@@ -37,7 +37,8 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         if pairs and context.mode == "OBJECT":
             select(context, {name for pair in pairs for name in pair})
         chosen = select_faces(context, faces_of(found.pairs)) if pairs else {}
-        text = summary(pairs, found.triangle_pairs, chosen) + ("" if pairs else read_out(context)) + f"\n{tested(found)}"
+        clearance = "" if pairs else read_out(context)
+        text = f"{summary(pairs, found.triangle_pairs, chosen)}{clearance}\n{tested(found)}"
         context.window_manager.stiv_check.summary = text
         showing.show_pairs(context, found.pairs)
         self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
@@ -62,7 +63,8 @@ def summary(pairs: Counter[tuple[str, str]], triangle_pairs: int, chosen: Mappin
 def tested(found: Any) -> str:
     """What took part in a check and what did not, as a line."""
     hidden = f"; hidden, and not tested: {found.hidden}" if found.hidden else ""
-    return f"Objects: {found.objects}, triangles: {found.triangles:,}{hidden}"
+    seams = f"; pairs of faces on seams: {found.seams:,}" if found.seams else ""
+    return f"Objects: {found.objects}, triangles: {found.triangles:,}{seams}{hidden}"
 
 
 def read_out(context: bpy.types.Context) -> str:

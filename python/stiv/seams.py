@@ -70,7 +70,7 @@ def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: fl
     """
     leaders = _coincident(positions)
     if rounding > 0 and len(triangles):
-        leaders = _rounded(positions, leaders, _open_vertices(triangles, leaders), rounding)
+        leaders = _rounded(positions, leaders, triangles, rounding)
     return Seams.of(leaders)
 
 
@@ -152,26 +152,12 @@ def _mixed(words: Codes) -> Codes:
     return codes
 
 
-def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
-    """The leaders of vertices around which triangles are no closed fan.
-
-    Around a closed fan each neighbour follows one triangle and precedes one, so that sums of their codes cancel.
-    """
-    codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
-    sums = np.zeros(len(leaders))
-    for corner in range(3):
-        after, before = triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]
-        sums += np.bincount(triangles[:, corner], codes[after] - codes[before], len(leaders))
-    is_open = np.zeros(len(leaders), np.bool_)
-    is_open[leaders[np.flatnonzero(sums)]] = True
-    return np.flatnonzero(is_open).astype(np.int32)
-
-
-def _rounded(positions: NDArray[np.floating], leaders: Indices, vertices: Indices, rounding: float) -> Indices:
-    """Leaders, (n,), where some of the vertices, (b,), that are within rounding of each other get one leader."""
+def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indices, rounding: float) -> Indices:
+    """Leaders, (n,), where open vertices that are within rounding of each other get one leader."""
     distance = rounding * float(np.abs(positions).max(initial=0.0))
-    if distance == 0 or len(vertices) < 2:
+    if distance == 0:
         return leaders
+    vertices = _open_vertices(triangles, leaders)
     places = positions[vertices].astype(np.float64)
     found = np.arange(len(vertices))
     for one, other in _near(places, distance):
@@ -187,30 +173,54 @@ def _rounded(positions: NDArray[np.floating], leaders: Indices, vertices: Indice
     return joined
 
 
+def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
+    """The leaders of vertices around which triangles are no closed fan.
+
+    Around a closed fan each neighbour follows one triangle and precedes one, so that sums of their codes cancel.
+    """
+    codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
+    sums = np.zeros(len(leaders))
+    for corner in range(3):
+        after, before = triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]
+        sums += np.bincount(triangles[:, corner], codes[after] - codes[before], len(leaders))
+    is_open = np.zeros(len(leaders), np.bool_)
+    is_open[leaders[np.flatnonzero(sums)]] = True
+    return np.flatnonzero(is_open).astype(np.int32)
+
+
 def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of places, (b, 3), within a distance along each axis: of each tight group at least all with its first."""
-    codes, numbers = _cells(places, distance)
-    order = np.lexsort((numbers, codes))
-    codes, numbers = codes[order], numbers[order]
-    crowded = np.append(False, codes[1:] == codes[:-1])
-    crowded[:-1] |= crowded[1:]
-    codes, numbers = codes[crowded], numbers[crowded]
+    codes, numbers = _crowded(*_cells(places, distance))
     while len(codes):  # the first of each cell against the others in it, and again without it and those near it
         begins = np.append(True, codes[1:] != codes[:-1])
         heads = numbers[begins][np.cumsum(begins) - 1]
         near = (np.abs(places[numbers] - places[heads]) <= distance).all(axis=1)
         joins = near & ~begins
         yield heads[joins], numbers[joins]
-        codes, numbers = codes[~near], numbers[~near]
+        codes, numbers = _crowded(codes[~near], numbers[~near])
+
+
+def _crowded(codes: Codes, numbers: Indices) -> tuple[Codes, Indices]:
+    """Codes and numbers of cells, sorted, without cells that one place has for itself."""
+    ordered = np.sort(codes)
+    if not (ordered[1:] == ordered[:-1]).any():
+        return codes[:0], numbers[:0]
+    order = np.lexsort((numbers, codes))
+    codes, numbers = codes[order], numbers[order]
+    same = codes[1:] == codes[:-1]
+    crowded = np.append(False, same) | np.append(same, False)
+    return codes[crowded], numbers[crowded]
 
 
 def _cells(places: Floats, distance: float) -> tuple[Codes, Indices]:
     """Codes of the cells of a grid that each place touches or is within a distance of, and the number of the place."""
-    low, high = (np.floor((places + sign * distance) / (CELL * distance)).astype(np.int64) for sign in (-1, 1))
+    cells = places / (CELL * distance)
+    low, high = np.floor(cells - 1 / CELL).astype(np.int64), np.floor(cells + 1 / CELL).astype(np.int64)
+    apart = low != high
     codes, numbers = [], []
     for corner in range(8):
         upper = np.array([corner & 1, corner & 2, corner & 4], np.bool_)
-        reaching = np.flatnonzero((low != high)[:, upper].all(axis=1)).astype(np.int32)
+        reaching = np.flatnonzero(apart[:, upper].all(axis=1)).astype(np.int32)
         codes.append(_mixed(np.where(upper, high[reaching], low[reaching]).astype(np.uint64)))
         numbers.append(reaching)
     return np.concatenate(codes), np.concatenate(numbers)

@@ -7,11 +7,23 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, mesh, shift
+from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, select, shift
 from oracles import exact
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene
+from stiv.blender import (
+    BlenderEdit,
+    EditSettings,
+    ExpansionSettings,
+    check_scene,
+    compare,
+    contract_scene,
+    expand_scene,
+    follow,
+    read_state,
+    repair_scene,
+)
+from stiv.blender.settings import WeightGroup
 
 
 def unwelded(name: str, count: int, **properties: Any) -> Any:
@@ -159,3 +171,79 @@ def test_a_cut_below_a_subdivision_surface_stays_closed() -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
     assert coincident(places(ob), same)
     assert check_scene(bpy.context).pairs == ()
+
+
+def test_the_guard_closes_a_seam_that_a_tool_tears_into_a_wall() -> None:
+    ob = unwelded("Import", 6)
+    add_cube("Wall", (0, 0, 2.5))
+    same = np.unique(places(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    accepted = read_state(bpy.context)
+    moved = next(vertex.index for vertex in ob.data.vertices if vertex.co.length < 1e-6)
+    ob.data.vertices[moved].co.z = 3
+    ob.data.update()
+    bpy.context.view_layer.update()
+    changes = compare(accepted, read_state(bpy.context))
+    outcome = follow(bpy.context, EditSettings(), accepted, changes)
+    assert outcome.corrected
+    assert "3 vertices follow" in outcome.message
+    assert 1.2 < ob.data.vertices[moved].co.z < 1.5
+    assert coincident(places(ob), same)
+    assert joined_pairs(ob) == set()
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_a_mesh_with_seams_is_repaired_contracted_and_expanded() -> None:
+    ob = unwelded("Import", 8)
+    same = np.unique(places(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    flat = places(ob)
+    bent = flat.copy()
+    bent[:, 2] = 0.3 * np.exp(-4 * (flat[:, 0] ** 2 + flat[:, 1] ** 2))
+    ob.data.vertices.foreach_set("co", bent.ravel())
+    ob.data.update()
+    add_grid("Plate", 4, 0.6, (0.03, 0.02, 0.2))
+    select(ob)
+    assert check_scene(bpy.context).pairs
+    report = repair_scene(bpy.context)
+    assert (report.status, report.changed) == ("repaired", True)
+    assert check_scene(bpy.context).pairs == ()
+    assert coincident(places(ob), same)
+    contract_scene(bpy.context)
+    assert coincident(places(ob), same)
+    expand_scene(bpy.context, ExpansionSettings(target=""))
+    assert coincident(places(ob), same)
+
+
+def test_a_seam_with_a_pinned_vertex_is_pinned() -> None:
+    ob = unwelded("Import", 2)
+    centre = [vertex.index for vertex in ob.data.vertices if vertex.co.length < 1e-6]
+    group = ob.vertex_groups.new(name="Free")
+    group.add([vertex.index for vertex in ob.data.vertices if vertex.index != centre[0]], 1.0, "REPLACE")
+    start = places(ob)
+    select_vertices(ob, lambda vertex: True)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(weights={ob.name: WeightGroup("Free")}), "move")
+    edit.apply(shift(z=0.5))
+    assert edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert np.array_equal(places(ob)[centre], start[centre])
+    assert places(ob)[:, 2].max() == pytest.approx(0.5)
+
+
+def test_a_lattice_moves_the_copies_of_a_seam_alike_and_others_apart() -> None:
+    ob = unwelded("Import", 4)
+    lattice = add_lattice("Cage", (3, 3, 3), scale=(4, 4, 4))
+    add_modifier(ob, "LATTICE", object=lattice)
+    add_cube("Wall", (0, 0, 2.5))
+    shown = np.unique(evaluated(ob), axis=0, return_inverse=True)[1].reshape(-1)
+    select(lattice)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")
+    assert edit.apply(shift(z=3)).status == "corrected"
+    assert edit.write().passed
+    assert coincident(evaluated(ob), shown)
+    assert check_scene(bpy.context).pairs == ()
+    edit.restore()
+    half = ob.vertex_groups.new(name="Half")
+    half.add([vertex.index for vertex in ob.data.vertices if vertex.index < 32], 0.5, "REPLACE")
+    ob.modifiers[0].vertex_group = "Half"
+    bpy.context.view_layer.update()
+    with pytest.raises(stiv.StartIntersectsError):  # along the border of the group nothing keeps the seam closed
+        BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")

@@ -12,6 +12,7 @@ from stiv.blender.arrays import Floats, Indices, transform_points
 from stiv.blender.changes import Change, Changes, compare
 from stiv.blender.edit import BlenderEdit
 from stiv.blender.evaluated_scene import is_visible
+from stiv.blender.joining import seam_note
 from stiv.blender.motion import Motion
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
@@ -173,7 +174,8 @@ def _edit(
         results.append(edit.settle())
     report = edit.write()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
-    return _Outcome(edit, reached and report.passed and report.result is None, blocking, report.message)
+    message = report.message or "; ".join(part.note for part in edit.parts if part.note)
+    return _Outcome(edit, reached and report.passed and report.result is None, blocking, message)
 
 
 def _movers(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Mover]:
@@ -202,6 +204,7 @@ def _responding(part: Part, changes: dict[str, Change], settings: EditSettings) 
         part,
         weights=np.where(moved, settings.weight(True), settings.weight(False)) * part.given,
         rule=PointGoal(moved, part.controls),
+        note="" if part.tied is None else seam_note(part.names[0], change.points, part.tied),
     )
 
 
