@@ -64,7 +64,8 @@ def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: fl
 
     positions  (n, 3)
     triangles  (f, 3)
-    rounding   vertices on open edges may differ by this share of the largest coordinate
+    rounding   vertices on open edges may differ by this share of the mesh's longest extent along an axis, and by one
+               unit in the last place of the largest coordinate
 
     Returns None where there are none.
     """
@@ -154,9 +155,8 @@ def _mixed(words: Codes) -> Codes:
 
 def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indices, rounding: float) -> Indices:
     """Leaders, (n,), where open vertices that are within rounding of each other get one leader."""
-    distance = rounding * float(np.abs(positions).max(initial=0.0))
-    if distance == 0:
-        return leaders
+    largest = np.abs(positions).max()
+    distance = rounding * float(np.ptp(positions, axis=0).max()) + float(np.spacing(largest))
     vertices = _open_vertices(triangles, leaders)
     places = positions[vertices].astype(np.float64)
     found = np.arange(len(vertices))

@@ -62,10 +62,16 @@ def test_copies_that_differ_by_rounding_are_found_on_open_edges_alone(scale):
     assert find_seams(rounded, triangles) is None or len(find_seams(rounded, triangles).first) > 300
     seams = find_seams(rounded, triangles, 2.0**-19)
     np.testing.assert_array_equal(seams.index[triangles], find_seams(q, triangles).index[triangles])
-    assert np.abs(rounded - rounded[seams.leaders]).max() <= 2.0**-19 * np.abs(rounded).max()
-    closed = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], np.int32)
-    assert find_seams(scale * (1 + 2.0**-21 * np.eye(4, 3)), closed, 2.0**-19) is None
-    assert find_seams(scale * (1 + 2.0**-21 * np.eye(4, 3)), closed[:3], 2.0**-19) is not None
+    assert np.abs(rounded - rounded[seams.leaders]).max() <= 2.0**-18 * np.abs(rounded).max()
+    tiny = np.concatenate([2.0**-21 * np.eye(4, 3), [(1, 0, 0), (0, 1, 0), (1, 1, 0)]]) * scale
+    closed = np.array([(4, 5, 6), (0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], np.int32)
+    assert find_seams(tiny, closed, 2.0**-19) is None
+    assert find_seams(tiny, closed[:4], 2.0**-19).leaders.tolist() == [0, 1, 0, 0, 4, 5, 6]  # 1 is in a closed fan
+
+
+def test_an_open_mesh_far_from_its_origin_keeps_its_vertices():
+    q, triangles = grid(100)
+    assert find_seams((50 * q + 1e6).astype(np.float32), triangles, 2.0**-19) is None
 
 
 def test_pairs_along_seams_are_those_that_share_a_place_and_no_vertex_there():

@@ -11,7 +11,7 @@ from stiv.blender.arrays import Floats, Indices, Singles
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.seams import Seams, find_seams
 
-ROUNDING = 2.0**-19  # of the largest coordinate: Blender computes the copies of a seam one by one, in single precision
+ROUNDING = 2.0**-19  # of an object's extent: Blender computes the copies of a seam one by one, in single precision
 
 
 @dataclass(frozen=True)
