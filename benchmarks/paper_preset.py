@@ -1,29 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near to the goal edits come: the defaults against the method as published.
+"""How near to the goal edits come: our defaults, the published method, a stop at the first contact, converged answers.
 
-E = 1/2 |f(p) - f(goal)|^2 of fourteen edits of seven families, with the defaults and with `EditOptions.paper`: a
-constraint for each patch or one for all, by LCP or by linear equations. A ratio below one says that the defaults come
-nearer. Every answer passes the exact test; of the preset's, `fraction` says how much of its last step passed it.
-`python -m benchmarks.paper_preset [--json FILE]`
+E = 1/2 |f(p) - f(goal)|^2 of fourteen edits of seven families over that of the stop: by the defaults, and settled until
+nothing changes; by `EditOptions.paper`, a constraint for each patch (LCP or linear equations) or one for all; by
+`EditOptions.paper_frozen`. `--converged` adds the best that an interior-point method finds from the start and from our
+answer (interior_point.py; needs ipctk and SciPy). Every answer passes the exact test; of the paper's, `fraction` says
+how much of its last step passed it. `python -m benchmarks.paper_preset [--converged SECONDS] [--json FILE]`
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 import stiv
 from blend_fixtures.scenes.families import Edit, all_edits
+from stiv.bench.running import Preset
 
-VARIANTS = {
-    "per patch, LCP": {},
-    "per patch, linear": {"solver": "linear"},
-    "single": {"constraints": "single"},
+from .settling import Array, geometric_mean, settle, stopped_energy
+
+VARIANTS: dict[str, tuple[Preset, dict[str, str]]] = {
+    "paper, LCP": (stiv.EditOptions.paper, {}),
+    "paper, linear": (stiv.EditOptions.paper, {"solver": "linear"}),
+    "paper, single": (stiv.EditOptions.paper, {"constraints": "single"}),
+    "frozen, LCP": (stiv.EditOptions.paper_frozen, {}),
 }
+CALLS = 30  #: of settle, at most
 
 
 @dataclass(frozen=True)
@@ -39,15 +44,22 @@ class Answer:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One edit, answered by the defaults and by the variants of the preset."""
+    """One edit, answered in all ways; energies in world units squared."""
 
     edit: str
+    stopped: float
     ours: Answer
+    settled: float
+    settling_calls: int  #: CALLS: it was still changing
     paper: dict[str, Answer] = field(default_factory=dict)
+    converged: float | None = None  #: the least of the interior-point method; None: not asked for, or not linear
+    converged_in_time: bool = False
 
-    def ratio(self, variant: str) -> float:
-        """Energy of the defaults over that of the preset."""
-        return self.ours.energy / self.paper[variant].energy
+    def relative(self) -> dict[str, float]:
+        """Energies over that of the stop."""
+        energies = {"ours": self.ours.energy, "settled": self.settled}
+        energies |= {name: answer.energy for name, answer in self.paper.items()}
+        return {name: energy / self.stopped for name, energy in energies.items()}
 
 
 def answer(edit: Edit, options: stiv.EditOptions) -> Answer:
@@ -57,37 +69,76 @@ def answer(edit: Edit, options: stiv.EditOptions) -> Answer:
     return Answer(result.energy, result.rounds, result.fraction, result.status, len(pairs))
 
 
-def compare(edit: Edit) -> Comparison:
-    """Answer one edit in all ways."""
-    paper = {
-        name: answer(edit, stiv.EditOptions.paper(**{**edit.options, **variant})) for name, variant in VARIANTS.items()
-    }
-    return Comparison(edit.name, answer(edit, stiv.EditOptions(**edit.options)), paper)
+def compare(edit: Edit, seconds: float) -> Comparison:
+    """Answer one edit in all ways; `seconds` for each run of the interior-point method, 0: none."""
+    options = stiv.EditOptions(**edit.options)  # type: ignore[arg-type]
+    session = stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
+    first = session.edit(edit.goal)
+    controls = first.controls
+    settled = settle(session, first.energy, CALLS)
+    start, goal = edit.deformation.surface(edit.controls), edit.deformation.surface(edit.goal)
+    paper = {name: answer(edit, preset(**{**edit.options, **more})) for name, (preset, more) in VARIANTS.items()}
+    least, in_time = converged(edit, session.separation, [edit.controls, controls], seconds)
+    pairs = len(stiv.find_intersections(first.surface, edit.surface))
+    return Comparison(
+        edit.name,
+        stopped_energy(edit.surface, start, goal),
+        Answer(first.energy, first.rounds, first.fraction, first.status, pairs),
+        settled.energy,
+        settled.calls,
+        paper,
+        least,
+        in_time,
+    )
+
+
+def converged(
+    edit: Edit, separation: float, starts: list[Array], seconds: float
+) -> tuple[float | None, bool]:
+    """Return the least energy of the interior-point method from several controls, and whether no run ran out of time."""
+    if seconds == 0 or edit.name.startswith("rigid"):
+        return None, False
+    interior_point = importlib.import_module("benchmarks.interior_point")
+    ipctk = importlib.import_module("ipctk")
+    found = [interior_point.InteriorPoint(ipctk, edit, separation, seconds).solve(start) for start in starts]
+    return min(optimum.energy for optimum in found), all(optimum.converged for optimum in found)
+
+
+def line(comparison: Comparison) -> str:
+    """One edit."""
+    columns = [f"{value:7.4f}" for value in comparison.relative().values()]
+    rounds = " ".join(f"{a.rounds:3d} {a.fraction:4.2f}" for a in comparison.paper.values())
+    least = "" if comparison.converged is None else f"{comparison.converged / comparison.stopped:7.4f}"
+    late = "" if comparison.converged_in_time or not least else " (time was over)"
+    return f"{comparison.edit:16} {comparison.ours.rounds:4d} {' '.join(columns)} {least:>7}{late} | {rounds}"
 
 
 def main() -> None:
     """Print the table, and write it as JSON if asked."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--converged", type=float, default=0, metavar="SECONDS", help="for each interior-point run")
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     arguments = parser.parse_args()
     print(stiv.PAPER_DIFFERENCES)
-    print(f"{'edit':18} {'E':>9} {'rounds':>6}" + "".join(f" | {name:>24}" for name in VARIANTS))
-    print(f"{'':18} {'':9} {'':6}" + " |  ratio  rounds  fraction" * len(VARIANTS))
+    print("E over that of the stop: ours, settled, " + ", ".join(VARIANTS) + ", interior point | rounds, fraction")
     comparisons = []
-    for comparison in map(compare, all_edits()):
-        comparisons.append(comparison)
-        columns = "".join(
-            f" | {comparison.ratio(name):6.4f} {paper.rounds:6d} {paper.fraction:9.4f}  "
-            for name, paper in comparison.paper.items()
-        )
-        print(f"{comparison.edit:18} {comparison.ours.energy:9.4g} {comparison.ours.rounds:6d}{columns}", flush=True)
-    ratios = {name: [comparison.ratio(name) for comparison in comparisons] for name in VARIANTS}
-    means = {name: float(np.exp(np.mean(np.log(values)))) for name, values in ratios.items()}
+    for edit in all_edits():
+        comparisons.append(compare(edit, arguments.converged))
+        print(line(comparisons[-1]), flush=True)
+    relative = [comparison.relative() for comparison in comparisons]
+    means = {name: geometric_mean([row[name] for row in relative]) for name in relative[0]}
+    print("geometric means over the stop: " + ", ".join(f"{name} {value:.4f}" for name, value in means.items()))
     for name in VARIANTS:
-        worst = max(comparisons, key=lambda comparison: comparison.ratio(name))
-        print(f"{name}: geometric mean {means[name]:.4f}, worst {worst.ratio(name):.4f} ({worst.edit})")
-    answers = [answer for comparison in comparisons for answer in (comparison.ours, *comparison.paper.values())]
-    print(f"intersections in all answers: {sum(answer.intersections for answer in answers)}")
+        worst = max(range(len(relative)), key=lambda k: relative[k]["ours"] / relative[k][name])
+        ratio = relative[worst]["ours"] / relative[worst][name]
+        print(f"ours over {name}: {means['ours'] / means[name]:.4f}, worst {ratio:.4f} ({comparisons[worst].edit})")
+    near = [c for c in comparisons if c.converged is not None]
+    if near:
+        for what, energies in (("ours", [c.ours.energy for c in near]), ("settled", [c.settled for c in near])):
+            ratios = [energy / (c.converged or energy) for energy, c in zip(energies, near, strict=True)]
+            print(f"{what} over the interior point: {geometric_mean(ratios):.3f}, worst {max(ratios):.3f}")
+    answers = [a for c in comparisons for a in (c.ours, *c.paper.values())]
+    print(f"intersections in all answers: {sum(a.intersections for a in answers)}")
     if arguments.json:
         table = {"edits": [asdict(comparison) for comparison in comparisons], "means": means}
         arguments.json.write_text(json.dumps(table, indent=2) + "\n")

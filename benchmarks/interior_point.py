@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converged answers of another method: an interior-point solver with ipctk's barrier and its continuous detection.
+
+Minimised is, over the controls p that may respond,
+
+    1/2 |f(p) - f(goal)|^2 + kappa sum b(d(f(p)), dhat)
+
+with the normalised clamped log barrier [Li et al. 2020, 2023], by projected Newton steps that end before the first
+contact, over falling dhat down to our separation, and there over halved kappa until the energy stops falling. It keeps
+no distance but that of the barrier, and damps nothing: its answers may be nearer than ours can be. For deformations
+that are linear in their controls. Needs ipctk and SciPy.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+import stiv
+from blend_fixtures.scenes.families import Edit
+
+Array = NDArray[np.float64]
+LEVELS = (1e-2, 3e-3, 1e-3, 3e-4)  #: of dhat, in diagonals, before the separation itself
+LONGEST_STEP = 0.05  #: of a vertex in one Newton step, in diagonals
+TOLERANCE = 1e-5  #: slope along the step over the energy
+DENSE_SHARE = 0.1  #: of entries that are not zero, from which on the Newton matrix is dense
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Where it ended."""
+
+    energy: float
+    controls: Array
+    steps: int
+    seconds: float  #: of the processor
+    converged: bool  #: before its time was over
+
+
+def responding(edit: Edit) -> NDArray[np.int64]:
+    """Controls that have weight and move something."""
+    weights = np.asarray(edit.options.get("weights", np.ones(len(edit.controls))), float)
+    used = np.asarray(abs(jacobian(edit)).sum(axis=0)).ravel() > 0
+    return np.flatnonzero((weights > 0) & used)
+
+
+def jacobian(edit: Edit) -> Any:
+    """M (n, m) of f(p) = M p + c, sparse, by differences; exact for a linear map but for rounding."""
+    rest = edit.deformation.surface(edit.controls)
+    columns = []
+    for control in range(len(edit.controls)):
+        moved = edit.controls.copy()
+        moved[control, 0] += 1
+        column = edit.deformation.surface(moved)[:, 0] - rest[:, 0]
+        columns.append(scipy.sparse.csc_matrix(np.where(abs(column) > 1e-12, column, 0)[:, None]))
+    return scipy.sparse.hstack(columns, format="csr")
+
+
+class InteriorPoint:
+    """One edit."""
+
+    def __init__(self, ipctk: ModuleType, edit: Edit, separation: float, seconds: float) -> None:
+        ipctk.set_num_threads(1)
+        ipctk.set_logger_level(ipctk.off)
+        self._ipctk, self._edit, self._separation = ipctk, edit, separation
+        self._free = responding(edit)
+        matrix = jacobian(edit)[:, self._free]
+        self._expand = scipy.sparse.kron(matrix, scipy.sparse.identity(3), format="csr")  # (3n, 3m)
+        self._own = self._expand.T @ self._expand
+        self._goal = edit.deformation.surface(edit.goal)
+        start = edit.deformation.surface(edit.controls)
+        self._diagonal = float(np.linalg.norm(np.ptp(start, axis=0)))
+        triangles = np.asfortranarray(edit.surface.triangles)
+        self._mesh = ipctk.CollisionMesh(np.asfortranarray(start), ipctk.edges(triangles), triangles)
+        moves = np.asarray(abs(matrix).sum(axis=1)).ravel() > 0
+        patches = np.where(moves, np.arange(len(moves)) + 1, 0).astype(np.int32)
+        self._mesh.can_collide = ipctk.make_vertex_patches_filter(patches)
+        self._broad, self._narrow = ipctk.LBVH(), ipctk.AdditiveCCD()
+        self._until = time.process_time() + seconds
+        self._steps, self._moves = 0, int(moves.sum())
+
+    def solve(self, controls: Array) -> Optimum:
+        """From free controls (m, 3)."""
+        began = time.process_time()
+        p = controls.copy()
+        levels = [level * self._diagonal for level in LEVELS if level * self._diagonal > 1.5 * self._separation]
+        for dhat in levels:
+            p = self._minimise(p, dhat, self._stiffness(p, dhat), 100 * TOLERANCE, 60)
+        stiffness = self._stiffness(p, self._separation)
+        p = self._minimise(p, self._separation, stiffness, TOLERANCE, 400)
+        energy = self._energy(self._surface(p))
+        for _ in range(14):
+            stiffness /= 2
+            q = self._minimise(p, self._separation, stiffness, TOLERANCE, 200)
+            gain = energy - self._energy(self._surface(q))
+            if gain > 0:
+                p, energy = q, energy - gain
+            if gain < 1e-4 * energy or self._late():
+                break
+        return Optimum(energy, p, self._steps, time.process_time() - began, not self._late())
+
+    def _late(self) -> bool:
+        return time.process_time() > self._until
+
+    def _surface(self, p: Array) -> Array:
+        return np.asfortranarray(self._edit.deformation.surface(p))
+
+    def _energy(self, surface: Array) -> float:
+        return 0.5 * float(((surface - self._goal) ** 2).sum())
+
+    def _stiffness(self, p: Array, dhat: float) -> float:
+        force = np.sqrt(2 * self._energy(self._surface(p)) / self._moves)
+        return float(force * dhat * max(self._moves / len(self._free) / 10, 1.0))
+
+    def _contacts(self, surface: Array, dhat: float) -> Any:
+        contacts = self._ipctk.NormalCollisions()
+        contacts.build(self._mesh, surface, dhat, 0.0, self._broad)
+        return contacts
+
+    def _minimise(self, p: Array, dhat: float, stiffness: float, tolerance: float, most: int) -> Array:
+        potential = self._ipctk.BarrierPotential(self._ipctk.NormalizedClampedLogBarrier(), dhat, stiffness)
+        surface = self._surface(p)
+        contacts = self._contacts(surface, dhat)
+        value = self._energy(surface) + potential(contacts, self._mesh, surface)
+        for _ in range(most):
+            if self._late():
+                return p
+            self._steps += 1
+            direction, slope = self._direction(potential, contacts, surface)
+            if slope < tolerance * self._energy(surface) or slope <= 0:
+                return p
+            step = self._longest_step(p, direction, surface)
+            while step > 1e-12:
+                q = self._along(p, direction, step)
+                ahead = self._surface(q)
+                near = self._contacts(ahead, dhat)
+                new = self._energy(ahead) + potential(near, self._mesh, ahead)
+                if new <= value - 1e-4 * step * slope:
+                    break
+                step /= 2
+            else:
+                return p
+            p, surface, contacts, value = q, ahead, near, new
+        return p
+
+    def _direction(self, potential: Any, contacts: Any, surface: Array) -> tuple[Array, float]:
+        """The Newton step (m', 3), and how steeply the objective falls along it."""
+        gradient = potential.gradient(contacts, self._mesh, surface) + (surface - self._goal).reshape(-1)
+        hessian = potential.hessian(contacts, self._mesh, surface, self._ipctk.PSDProjectionMethod.CLAMP)
+        pulled = self._expand.T @ gradient
+        matrix = self._own + self._expand.T @ (hessian @ self._expand)
+        damping = 1e-9 * matrix.diagonal().mean()
+        if self._own.nnz > DENSE_SHARE * len(pulled) ** 2:
+            whole = matrix.toarray() + damping * np.eye(len(pulled))
+            direction = -scipy.linalg.cho_solve(scipy.linalg.cho_factor(whole, check_finite=False), pulled)
+        else:
+            whole = scipy.sparse.csc_matrix(matrix + damping * scipy.sparse.identity(len(pulled)))
+            options = {"SymmetricMode": True}
+            factor = scipy.sparse.linalg.splu(whole, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+            direction = -factor.solve(pulled)
+        return direction.reshape(-1, 3), -float(pulled @ direction)
+
+    def _along(self, p: Array, direction: Array, step: float) -> Array:
+        q = p.copy()
+        q[self._free] += step * direction
+        return q
+
+    def _longest_step(self, p: Array, direction: Array, surface: Array) -> float:
+        """Up to one, to the longest motion, and to the first contact."""
+        whole = self._surface(self._along(p, direction, 1.0))
+        reach = np.linalg.norm(whole - surface, axis=1).max()
+        step = min(1.0, LONGEST_STEP * self._diagonal / max(reach, 1e-300))
+        ahead = self._surface(self._along(p, direction, step))
+        free: float = self._ipctk.compute_collision_free_stepsize(
+            self._mesh, surface, ahead, 0.0, self._broad, self._narrow
+        )
+        return step * free
+
+
+def separation_of(edit: Edit) -> float:
+    """What a session keeps in an edit's scene."""
+    options = stiv.EditOptions(**edit.options)  # type: ignore[arg-type]
+    return stiv.EditSession(edit.surface, edit.deformation, edit.controls, options).separation
