@@ -92,10 +92,8 @@ def compare(edit: Edit, seconds: float) -> Comparison:
     )
 
 
-def converged(
-    edit: Edit, separation: float, starts: list[Array], seconds: float
-) -> tuple[float | None, bool]:
-    """Return the least energy of the interior-point method from several controls, and whether no run ran out of time."""
+def converged(edit: Edit, separation: float, starts: list[Array], seconds: float) -> tuple[float | None, bool]:
+    """Return the least energy of the interior-point method from several controls, and whether all ended in time."""
     if seconds == 0 or edit.name.startswith("rigid"):
         return None, False
     interior_point = importlib.import_module("benchmarks.interior_point")

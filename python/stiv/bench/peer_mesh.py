@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes for ipctk, which its documentation lets a user give less than everything.
 
-    everything  the whole mesh
-    filter      the vertices that move first, and `make_static_obstacle_filter`: pairs at rest are no candidates
-    culled      the same, for the triangles that move and those that the bounding box of their motion meets
+everything  the whole mesh
+filter      the vertices that move first, and `make_static_obstacle_filter`: pairs at rest are no candidates
+culled      the same, for the triangles that move and those that the bounding box of their motion meets
 """
 
 from __future__ import annotations
