@@ -77,7 +77,7 @@ def joined_pairs(ob: Any) -> set[tuple[int, int]]:
 def add_clean_objects() -> None:
     """A text with depth, an Edge Split, a surface of two NURBS patches, a NURBS sphere and an unwelded import."""
     letters = bpy.data.curves.new("Text", "FONT")
-    letters.body, letters.extrude = "Seam", 0.1
+    letters.body, letters.extrude = "Text", 0.1  # the filling of the t has vertices on its edges
     add("Text", letters, (0, 5, 0))
     ball = bmesh.new()
     bmesh.ops.create_icosphere(ball, subdivisions=3, radius=1)

@@ -6,6 +6,7 @@ import pytest
 from oracles import exact
 
 import stiv
+from stiv.edge_contacts import edge_contacts
 from stiv.seams import Seams, common_seams, find_seams, seam_pairs
 
 
@@ -91,3 +92,32 @@ def test_seams_that_two_poses_have():
     other = Seams.of(np.array([0, 1, 1, 3, 1, 1], np.int32))
     assert common_seams(one, other).leaders.tolist() == [0, 1, 1, 3, 4, 4]
     assert common_seams(one, None) is None
+
+
+FLAT = [(0, 0, 0), (4, 0, 0), (0, 4, 0)]
+
+
+@pytest.mark.parametrize(
+    ("other", "expected"),
+    [
+        ([(1, 0, 0), (3, 0, 0), (2, -1, 0)], True),  # a part of an edge, beside it
+        ([(1, 0, 0), (3, 0, 0), (2, 0, 1)], True),  # the same, upright
+        ([(-1, 0, 0), (3, 0, 0), (2, -1, 0)], True),  # edges that overlap in part
+        ([(2, 2, 0), (5, 2, 1), (5, 3, 0)], True),  # a corner on an edge
+        ([(1, 0, 0), (2, 0, 0), (3, 0, 0)], True),  # without area, on an edge
+        ([(1, 0, 0), (3, 0, 0), (2, 1, 0)], False),  # overlap
+        ([(1, 1, 0), (5, 1, 1), (5, 3, 1)], False),  # a corner inside
+        ([(1, -1, -1), (1, 1, 1), (1, -3, 1)], False),  # edges cross in a point inside of both
+        ([(1, -1, 0), (1, 1, 0), (1, 2, 0)], False),  # without area, across an edge
+        ([(1, 0, 0), (1, 1, 0), (1, 2, 0)], False),  # without area, from an edge inward
+        ([(0, 0, 0), (4, 0, 0), (0, 4, 0)], False),  # doubled
+        ([(0.5, 0.5, -1), (0.5, 0.5, 1), (9, 9, 0)], False),  # through
+    ],
+)
+@pytest.mark.parametrize("scale", [2.0**-24, 1.0, 2.0**24])
+def test_contacts_in_edges_alone_are_told_from_intersections(other, expected, scale):
+    q = np.array([*FLAT, *other], float) * scale
+    triangles = np.arange(6).reshape(2, 3)
+    assert stiv.find_intersections(q, triangles).tolist() == [[0, 1]]
+    for turned in ([0, 1, 2, 3, 4, 5], [1, 2, 0, 5, 4, 3], [3, 4, 5, 2, 1, 0]):
+        assert edge_contacts(q[turned], triangles, np.array([[0, 1]])).tolist() == [expected]

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exact test of a whole scene, as Blender evaluates it."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+import stiv
 from stiv.blender.arrays import Indices
 from stiv.blender.assembly import Assembly, assemble_joined
 from stiv.blender.evaluated_scene import read_scene
@@ -14,6 +16,7 @@ from stiv.blender.exclusions import Exclusions
 from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
+from stiv.edge_contacts import edge_contacts
 from stiv.seams import seam_pairs
 
 
@@ -26,7 +29,7 @@ class SceneCheck:
             second.
         objects, triangles: how many were tested.
         hidden: objects with a surface that are hidden or excluded, and were not.
-        seams: pairs of faces of one object that touch in coincident vertices alone: they are one surface there.
+        seams: pairs of faces of one object that touch in coincident vertices or edges alone: one surface there.
     """
 
     pairs: tuple[FacePair, ...]
@@ -62,10 +65,10 @@ def check_scene(
     settings = settings or EditSettings()
     scene = read_scene(context, _counted(context, settings, objects))
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
-    pairs = find_pairs(assembly, settings.threads)
+    pairs, seams = find_pairs_and_seams(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
-    seams = sum(len(faces) for _, faces in seam_faces(assembly, pairs))
-    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, seams)
+    count = sum(len(faces) for _, faces in seams)
+    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, count)
 
 
 def exclusions_now(
@@ -93,19 +96,51 @@ def _counted(
 
 
 def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
-    """All pairs that meet where bodies of the assembly meet, at the positions it was read in."""
-    return named_pairs(assembly, assembly.positions, threads)
+    """All pairs that meet where bodies of the assembly meet, at the positions it was read in; no seams."""
+    return find_pairs_and_seams(assembly, threads)[0]
 
 
-def seam_faces(assembly: Assembly, pairs: Collection[FacePair]) -> Iterator[tuple[str, Indices]]:
-    """For each mesh its object's name and the pairs of its faces, (k, 2), that touch along seams.
-
-    Those among `pairs`, which intersect, are left out.
-    """
-    meeting = {(pair.first.object, *sorted((pair.first.number, pair.second.number))) for pair in pairs}
-    for mesh, seams in zip(assembly.meshes, assembly.seams, strict=True):
-        faces = seam_pairs(seams, mesh.triangles, mesh.faces)
-        if meeting:
-            apart = [(mesh.owner.name, a, b) not in meeting for a, b in faces.tolist()]
+def find_pairs_and_seams(
+    assembly: Assembly, threads: int = 0
+) -> tuple[tuple[FacePair, ...], list[tuple[str, Indices]]]:
+    """The pairs that meet, and for each mesh its object's name and the pairs of its faces, (k, 2), on seams alone."""
+    meeting = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
+    contacts = _edge_contacts(assembly, meeting)
+    pairs = named_pairs(assembly, assembly.positions, threads, meeting[~contacts])
+    intersecting = {(pair.first.object, *sorted((pair.first.number, pair.second.number))) for pair in pairs}
+    seams = []
+    for number, (mesh, joins) in enumerate(zip(assembly.meshes, assembly.seams, strict=True)):
+        touching = mesh.faces[_own_triangles(assembly, number, meeting[contacts])]
+        touching = np.sort(touching[touching[:, 0] != touching[:, 1]], axis=1)
+        faces = np.concatenate([seam_pairs(joins, mesh.triangles, mesh.faces), touching])
+        if len(touching):
+            faces = np.unique(faces, axis=0)
+        if intersecting:
+            apart = [(mesh.owner.name, a, b) not in intersecting for a, b in faces.tolist()]
             faces = faces[np.array(apart, np.bool_)]
-        yield mesh.owner.name, faces
+        seams.append((mesh.owner.name, faces))
+    return pairs, seams
+
+
+def _edge_contacts(assembly: Assembly, meeting: Indices) -> NDArray[np.bool_]:
+    """Which pairs of triangles, (k,), are of one mesh and touch in edges alone, in the mesh's own coordinates."""
+    contacts = np.zeros(len(meeting), np.bool_)
+    for number, mesh in enumerate(assembly.meshes):
+        inside = _is_inside(assembly, number, meeting)
+        if inside.any():
+            own = _own_triangles(assembly, number, meeting[inside])
+            contacts[inside] = edge_contacts(mesh.local, mesh.triangles, own)
+    return contacts
+
+
+def _is_inside(assembly: Assembly, mesh: int, pairs: Indices) -> NDArray[np.bool_]:
+    first = sum(len(each.triangles) for each in assembly.meshes[:mesh])
+    end = first + len(assembly.meshes[mesh].triangles)
+    return np.asarray(((pairs >= first) & (pairs < end)).all(axis=1), np.bool_)
+
+
+def _own_triangles(assembly: Assembly, mesh: int, pairs: Indices) -> Indices:
+    """Those among pairs of triangles of the assembly whose both are of a mesh, by their numbers in it."""
+    first = sum(len(each.triangles) for each in assembly.meshes[:mesh])
+    own: Indices = pairs[_is_inside(assembly, mesh, pairs)] - np.int32(first)
+    return own

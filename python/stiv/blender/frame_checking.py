@@ -18,7 +18,7 @@ from stiv import InputError
 from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly, assemble, mesh_seams, unjoined_triangles
 from stiv.blender.assembly import Element as FoundElement
-from stiv.blender.checking import find_pairs, read_surface, seam_faces
+from stiv.blender.checking import find_pairs_and_seams, read_surface
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.event_elements import EventElements
 from stiv.checks.findings import CROSSING, Element, Finding, Look, SeamPairs, Shapes
@@ -83,9 +83,9 @@ def _read(context: bpy.types.Context, objects: Collection[str]) -> Assembly:
 
 
 def _at_rest(assembly: Assembly, frame: float | None, threads: int) -> Look:
-    pairs = find_pairs(assembly, threads)
+    pairs, touching = find_pairs_and_seams(assembly, threads)
     found = (Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs)
-    seams = tuple(SeamPairs(name, "face", faces) for name, faces in seam_faces(assembly, pairs) if len(faces))
+    seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces))
     return Look(shapes_of(assembly, assembly.positions), frame, None, tuple(found), seams=seams)
 
 

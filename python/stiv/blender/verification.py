@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.arrays import Floats
+from stiv.blender.arrays import Floats, Indices
 from stiv.blender.assembly import Assembly, Element
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.evaluated_scene import Placed, read_placed
@@ -131,9 +131,14 @@ def _joined(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
     return np.concatenate([np.empty((0, 3)), *joined])
 
 
-def named_pairs(assembly: Assembly, q: Floats, threads: int = 0) -> tuple[FacePair, ...]:
-    """All pairs that meet at positions `q`, (N, 3), each once; loose edges and vertices included."""
-    faces = stiv.find_intersections(q, assembly.surface, threads=threads)
+def named_pairs(
+    assembly: Assembly, q: Floats, threads: int = 0, meeting: Indices | None = None
+) -> tuple[FacePair, ...]:
+    """All pairs that meet at positions `q`, (N, 3), each once; loose edges and vertices included.
+
+    meeting: pairs of triangles that meet, (k, 2); None: all that do.
+    """
+    faces = stiv.find_intersections(q, assembly.surface, threads=threads) if meeting is None else meeting
     edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
     counts = Counter(
         [

@@ -11,6 +11,7 @@ import stiv
 from stiv import InputError
 from stiv.arrays import Indices
 from stiv.checks.findings import Element, Finding, Look, SeamPairs, Shapes
+from stiv.edge_contacts import edge_contacts
 from stiv.mesh_files import Mesh
 from stiv.mesh_files.mesh import checked_mesh
 from stiv.seams import Seams, object_seams, seam_pairs
@@ -25,13 +26,18 @@ def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
 
     seams = object_seams(shapes.positions, shapes.triangles, shapes.owner)
     pairs = _pairs(shapes, seams)
-    findings = tuple(Finding(element(a), element(b)) for a, b in pairs.tolist())
-    return Look(shapes, findings=findings, seams=_seam_pairs(shapes, seams, set(map(tuple, pairs.tolist()))))
+    touching = np.asarray(shapes.owner[pairs[:, 0]] == shapes.owner[pairs[:, 1]])
+    touching[touching] = edge_contacts(shapes.positions, shapes.triangles, pairs[touching])
+    findings = tuple(Finding(element(a), element(b)) for a, b in pairs[~touching].tolist())
+    return Look(shapes, findings=findings, seams=_seam_pairs(shapes, seams, pairs[~touching], pairs[touching]))
 
 
-def _seam_pairs(shapes: Shapes, seams: Seams | None, meeting: set[tuple[int, ...]]) -> tuple[SeamPairs, ...]:
-    """The pairs of triangles on seams of each object, without those that meet."""
+def _seam_pairs(shapes: Shapes, seams: Seams | None, intersecting: Indices, touching: Indices) -> tuple[SeamPairs, ...]:
+    """The pairs of triangles on seams of each object, with those that touch in edges, without those that intersect."""
     pairs = seam_pairs(seams, shapes.triangles, np.arange(len(shapes.triangles), dtype=np.int32))
+    if len(touching):
+        pairs = np.unique(np.concatenate([pairs, touching]), axis=0)
+    meeting = set(map(tuple, intersecting.tolist()))
     if meeting:
         pairs = pairs[np.array([(a, b) not in meeting for a, b in pairs.tolist()], bool)]
     owner = shapes.owner[pairs[:, 0]]

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seams with T-junctions: triangles that touch in edges alone, where a vertex of one lies on an edge of the other.
+
+In rational arithmetic, since what is asked for are exact coincidences: fillings of text have such edges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiv.arrays import Floats, Indices
+
+Point = tuple[Fraction, Fraction, Fraction]
+NEAR = 1e-5  # of the size of a pair: farther apart, no vertex is on an edge
+
+
+def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
+    """Which pairs of triangles, (k, 2), that meet have nothing in common but parts of an edge of each, (k,).
+
+    positions  (n, 3) of one mesh
+    triangles  (f, 3)
+
+    Edges that cross in a point inside of both are no seam. A triangle without area is an edge.
+    """
+    corners = positions[triangles[pairs]].astype(np.float64)  # (k, 2, 3, 3)
+    found = _vertex_near_edge(corners)
+    for row in np.flatnonzero(found):
+        first, second = ([_rational(point) for point in triangle] for triangle in corners[row])
+        found[row] = _touch_in_edges(first, second)
+    return found
+
+
+def _vertex_near_edge(corners: Floats) -> NDArray[np.bool_]:
+    """Which pairs, (k,), have a vertex of one near an edge of the other, to within rounding."""
+    near = np.zeros(len(corners), np.bool_)
+    size = np.ptp(corners.reshape(len(corners), 6, 3), axis=1).max(axis=1, initial=0.0)
+    for one, other in ((0, 1), (1, 0)):
+        for corner in range(3):
+            for edge in range(3):
+                start, end = corners[:, other, edge], corners[:, other, (edge + 1) % 3]
+                along, arm = end - start, corners[:, one, corner] - start
+                length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+                share = np.clip((arm * along).sum(axis=1) / length, 0, 1)
+                near |= np.linalg.norm(arm - share[:, None] * along, axis=1) <= NEAR * size
+    return near
+
+
+def _touch_in_edges(first: Sequence[Point], second: Sequence[Point]) -> bool:
+    if not _has_area(second):
+        first, second = second, first
+    if not _has_area(second):
+        return _touch_as_segments(first, second)
+    common = _common(first, second)
+    if not common or not (_on_edge(common, second) and (_on_edge(common, first) or not _has_area(first))):
+        return False
+    return any(point != common[0] for point in common) or common[0] in first or common[0] in second
+
+
+def _touch_as_segments(first: Sequence[Point], second: Sequence[Point]) -> bool:
+    """Do triangles without area, which meet, overlap in a line, or in an end of one?"""
+    return any(
+        _on_edge([point], other) for one, other in ((first, second), (second, first)) for point in one
+    )  # on its line is enough: lines that are not the same meet in one point
+
+
+def _common(first: Sequence[Point], second: Sequence[Point]) -> list[Point]:
+    """Points whose hull two triangles have in common, the second of which has an area."""
+    a, b, c = second
+    x, y, z = normal = _cross(_minus(b, a), _minus(c, a))
+    polygon = _clipped(_clipped(list(first), normal, a), (-x, -y, -z), a)
+    for start, end in ((a, b), (b, c), (c, a)):
+        polygon = _clipped(polygon, _cross(normal, _minus(end, start)), start)
+    return polygon
+
+
+def _clipped(polygon: Sequence[Point], normal: Point, origin: Point) -> list[Point]:
+    """What of a convex polygon lies on the side of a plane that its normal points to (Sutherland and Hodgman 1974)."""
+    heights = [_dot(normal, _minus(point, origin)) for point in polygon]
+    left: list[Point] = []
+    for k, (point, height) in enumerate(zip(polygon, heights, strict=True)):
+        before, other = heights[k - 1], polygon[k - 1]
+        if height * before < 0:
+            share = before / (before - height)
+            x, y, z = (u + share * (v - u) for u, v in zip(other, point, strict=True))
+            left.append((x, y, z))
+        if height >= 0:
+            left.append(point)
+    return left
+
+
+def _has_area(triangle: Sequence[Point]) -> bool:
+    a, b, c = triangle
+    return any(_cross(_minus(b, a), _minus(c, a)))
+
+
+def _on_edge(points: Sequence[Point], triangle: Sequence[Point]) -> bool:
+    """Are all points on the line of one edge of a triangle?"""
+    a, b, c = triangle
+    return any(
+        start != end and not any(x for point in points for x in _cross(_minus(end, start), _minus(point, start)))
+        for start, end in ((a, b), (b, c), (c, a))
+    )
+
+
+def _rational(point: Floats) -> Point:
+    x, y, z = (Fraction(float(value)) for value in point)
+    return x, y, z
+
+
+def _minus(a: Point, b: Point) -> Point:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _cross(a: Point, b: Point) -> Point:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _dot(a: Point, b: Point) -> Fraction:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
