@@ -16,6 +16,8 @@ from stiv.arrays import Floats, Indices
 
 Point = tuple[Fraction, Fraction, Fraction]
 NEAR = 1e-5  # of the size of a pair: farther apart, no vertex is on an edge
+DEEP = 1e-3  # barycentric coordinate of a point that is inside of a triangle whatever rounding does
+INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
 
 
 def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
@@ -28,6 +30,7 @@ def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: In
     """
     corners = positions[triangles[pairs]].astype(np.float64)  # (k, 2, 3, 3)
     found = _vertex_near_edge(corners)
+    found[found] = ~_overlap_clearly(corners[found])
     for row in np.flatnonzero(found):
         first, second = ([_rational(point) for point in triangle] for triangle in corners[row])
         found[row] = _touch_in_edges(first, second)
@@ -47,6 +50,22 @@ def _vertex_near_edge(corners: Floats) -> NDArray[np.bool_]:
                 share = np.clip((arm * along).sum(axis=1) / length, 0, 1)
                 near |= np.linalg.norm(arm - share[:, None] * along, axis=1) <= NEAR * size
     return near
+
+
+def _overlap_clearly(corners: Floats) -> NDArray[np.bool_]:
+    """Which pairs, (k,), lie on each other, with a point of one deep inside of the other: most that are doubled."""
+    overlap = np.zeros(len(corners), np.bool_)
+    for one, other in ((0, 1), (1, 0)):
+        a, u, v = (corners[:, other, 0], *(corners[:, other, k] - corners[:, other, 0] for k in (1, 2)))
+        normal = np.cross(u, v)
+        area = np.maximum((normal**2).sum(axis=1), np.finfo(float).tiny)
+        for inside in INSIDE:
+            arm = inside @ corners[:, one] - a
+            second = (np.cross(arm, v) * normal).sum(axis=1) / area
+            third = (np.cross(u, arm) * normal).sum(axis=1) / area
+            height = np.abs((arm * normal).sum(axis=1)) / area**0.75
+            overlap |= (np.minimum(second, third) > DEEP) & (second + third < 1 - DEEP) & (height < NEAR)
+    return overlap
 
 
 def _touch_in_edges(first: Sequence[Point], second: Sequence[Point]) -> bool:
