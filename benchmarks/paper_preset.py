@@ -82,7 +82,7 @@ def compare(edit: Edit, seconds: float) -> Comparison:
     pairs = len(stiv.find_intersections(first.surface, edit.surface))
     return Comparison(
         edit.name,
-        stopped_energy(edit.surface, start, goal),
+        stopped_energy(edit.surface, start, goal, session.separation),
         Answer(first.energy, first.rounds, first.fraction, first.status, pairs),
         settled.energy,
         settled.calls,

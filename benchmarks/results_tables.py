@@ -191,7 +191,9 @@ def race() -> str:
     return markdown(head, lines)
 
 
-TABLES: dict[str, Callable[[], str]] = {make.__name__: make for make in (table1, settled, whole_drags, detection)}
+TABLES: dict[str, Callable[[], str]] = {
+    make.__name__: make for make in (table1, settled, whole_drags, fourteen, detection, race)
+}
 
 
 def filled(text: str) -> str:

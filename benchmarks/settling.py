@@ -39,9 +39,9 @@ def settle_from(session: stiv.EditSession, controls: Array, goal: Array, most: i
     return settle(session, session.drag(goal).energy, most)
 
 
-def stopped_energy(surface: stiv.Surface, start: Array, goal: Array) -> float:
-    """E where the straight step between two surfaces, (N, 3) each, stops at its first contact."""
-    time = min(stiv.Detector(surface).earliest_time(start, goal), 1.0)
+def stopped_energy(surface: stiv.Surface, start: Array, goal: Array, separation: float) -> float:
+    """E where the straight step between two surfaces, (N, 3) each, stops before it comes within the separation."""
+    time = min(stiv.Detector(surface).earliest_time(start, goal, separation), 1.0)
     return 0.5 * float(((1 - time) * (goal - start) ** 2 * (1 - time)).sum())
 
 

@@ -62,7 +62,7 @@ def measure(name: str, stage: Stage, calls: int) -> tuple[Drag | None, Array]:
     for end in ends:
         last = dragged.drag(end)
     controls = dragged.controls
-    stopped = stopped_energy(stage.surface, start, goal)
+    stopped = stopped_energy(stage.surface, start, goal, dragged.separation)
     if stopped == 0:
         return None, controls
     answers = {way: one_edit(stage, ends[-1], preset) for way, preset in PRESETS.items()}

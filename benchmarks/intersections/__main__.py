@@ -8,6 +8,7 @@ Milliseconds of processor time, the least of the repeats, all measured in turn.
     kept       IntersectionTest, which has its trees: all pairs
     ipctk      has_intersections: whether there is one, not exact
     libigl     find_self_intersections: all pairs
+    igl first  the same, which ends at the first
     CGAL       self_intersections: all pairs
 
 `python -m benchmarks.intersections [--models FOLDER] [--json FILE]`; ipctk and libigl come with
@@ -32,7 +33,7 @@ from stiv.mesh_files import read_mesh
 
 from . import peers
 
-COLUMNS = ("new", "surface", "kept", "ipctk", "libigl", "CGAL")
+COLUMNS = ("new", "surface", "kept", "ipctk", "libigl", "igl first", "CGAL")
 SCENES = ("pressed", "vase", "soup", "knot", "shell", "panel")
 
 
@@ -67,6 +68,7 @@ def measure(mesh: Mesh, repeats: int, cgal: Path) -> dict[str, object]:
         "kept": lambda: kept.find(mesh.vertices),
         "ipctk": peers.ipc_toolkit(mesh.vertices, mesh.faces),
         "libigl": peers.libigl(mesh.vertices, mesh.faces),
+        "igl first": peers.libigl(mesh.vertices, mesh.faces, first_only=True),
     }
     program = peers.Cgal(cgal, mesh.vertices, mesh.faces)
     pairs: dict[str, float] = {"stiv": len(kept.find(mesh.vertices))}
@@ -84,8 +86,9 @@ def measure(mesh: Mesh, repeats: int, cgal: Path) -> dict[str, object]:
 def print_row(mesh: Mesh, least: dict[str, float], pairs: dict[str, float]) -> None:
     """One line; the ratio is that of the quickest exact peer for all pairs to our test with kept trees."""
     times = " ".join(f"{least[name]:9.1f}" if name in least else f"{'-':>9}" for name in COLUMNS)
-    ratios = [least[name] / least["surface"] for name in ("ipctk", "libigl", "CGAL") if name in least]
-    kept = [least[name] / least["kept"] for name in ("ipctk", "libigl", "CGAL") if name in least]
+    others = [name for name in ("ipctk", "libigl", "igl first", "CGAL") if name in least]
+    ratios = [least[name] / least["surface"] for name in others]
+    kept = [least[name] / least["kept"] for name in others]
     ratio = f"{min(ratios):7.1f} {min(kept):7.1f}" if ratios else f"{'-':>7} {'-':>7}"
     print(f"{mesh.name:18} {len(mesh.faces):9,} {pairs['stiv']:8,} | {times} | {ratio}", flush=True)
 

@@ -38,15 +38,15 @@ def ipc_toolkit(vertices: Array, faces: Faces) -> Callable[[], object] | None:
     return lambda: ipctk.has_intersections(mesh, columns, ipctk.LBVH())
 
 
-def libigl(vertices: Array, faces: Faces) -> Callable[[], object] | None:
-    """`find_self_intersections`: all pairs, exact predicates."""
+def libigl(vertices: Array, faces: Faces, *, first_only: bool = False) -> Callable[[], object] | None:
+    """`find_self_intersections`: all pairs, or whether there is one; exact predicates."""
     try:
         import igl.predicates
     except ImportError:
         missing("libigl", "pip install -r tools/requirements/bench.txt")
         return None
     wide = faces.astype(np.int64)
-    return lambda: igl.predicates.find_self_intersections(vertices, wide)
+    return lambda: igl.predicates.find_self_intersections(vertices, wide, first_only)
 
 
 class Cgal:
