@@ -62,12 +62,15 @@ def correct(context: Any, accepted: Any) -> Outcome:
         followed = follow(context, _settings(context), accepted, changes)
     except (ValueError, SceneChangedError) as error:
         return _tested_instead(context, str(error))
+    found = Outcome()
+    if followed.deformers:
+        found = _tested_instead(context, say("{} cannot be followed").format(listed(followed.deformers, say)))
     if not followed.corrected:
-        return Outcome()
+        return found
     told = say("corrected {}").format(listed(followed.names, say))
     if followed.blocking:
         told = say("corrected {}, in the way: {}").format(listed(followed.names, say), listed(followed.blocking, say))
-    return Outcome(wrote=True, text=told)
+    return Outcome(found.problem, wrote=True, text=told)
 
 
 def revert(context: Any, accepted: Any, frame: int) -> tuple[str, ...]:

@@ -42,6 +42,7 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
         left = correcting.test(context).problem
         if left is not None:
             self.report({"WARNING"}, say("{}; use Undo for what else changed").format(left.headline(say)))
-        else:
-            self.report({"INFO"}, say("Restored {}").format(listed(names, say)))
+            return {"FINISHED"} if names else {"CANCELLED"}
+        restored = say("Restored {}").format(listed(names, say)) if names else say("Restored frame {}").format(frame)
+        self.report({"INFO"}, restored)
         return {"FINISHED"}

@@ -106,6 +106,24 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change:
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def test_a_rig_that_is_moved_is_no_reason_to_take_the_scene_for_clear() -> None:
+    """The object Rig has no surface: what it does to the box was not looked at."""
+
+    def scale_by_rig() -> None:
+        rig_box(in_edit_mode=False)
+        rig = bpy.data.objects["Rig"]
+        rig.location.z, rig.pose.bones["Bone"].scale = 0.0, (2.0, 2.0, 2.0)
+
+    watched_again(scale_by_rig)
+    bpy.data.objects["Rig"].location.x = -1.5
+    bpy.ops.ed.undo_push(message="rig")
+    look()
+    assert watching.problem().names == ["Box", "Wall"] and "Rig cannot be followed" in watching.problem().reason
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert watching.problem() is None and bpy.data.objects["Rig"].location.x == 0.0
+
+
 def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
     watched_again(lambda: rig_box(in_edit_mode=False))
     bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0

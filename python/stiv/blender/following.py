@@ -25,6 +25,7 @@ from stiv.blender.settings import EditSettings
 
 STEP = 0.02  # longest step of the way to a goal, in diagonals of what moves
 MOST_STEPS = 100
+WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
 TIME_LIMIT = 5.0  # seconds for one tool; what was accepted by then is shown
 
 
@@ -37,12 +38,15 @@ class Followed:
         names: objects that the tool changed.
         blocking: objects that were in the way.
         message: why not all is shown that could be, empty if it is.
+        deformers: objects without a surface that the tool changed too, and that may deform others. They are not
+            followed: the scene has to be tested.
     """
 
     corrected: bool
     names: tuple[str, ...]
     blocking: tuple[str, ...] = ()
     message: str = ""
+    deformers: tuple[str, ...] = ()
 
 
 def follow(context: bpy.types.Context, settings: EditSettings, accepted: SceneState, changes: Changes) -> Followed:
@@ -53,20 +57,21 @@ def follow(context: bpy.types.Context, settings: EditSettings, accepted: SceneSt
     """
     followed = [change for change in changes.changes if _takes_part(change, settings)]
     names = tuple(name for change in followed if settings.cage_of(name := change.reference.name) == name)
+    deformers = tuple(change.reference.name for change in changes.changes if _may_deform_others(change))
     if not followed:
-        return Followed(False, names)
+        return Followed(False, names, deformers=deformers)
     wanted = read_state(context)
     try:
         _restore(context, accepted, followed)
         outcomes = list(_passes(context, settings, wanted, names, time.monotonic() + TIME_LIMIT))
         if all(outcome.reached for outcome in outcomes) and _is_free_as_it_was(context, wanted, followed, outcomes):
-            return Followed(False, names)
+            return Followed(False, names, deformers=deformers)
     except Exception:
         _restore(context, wanted, followed)
         raise
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
     message = next((outcome.message for outcome in outcomes if outcome.message), "")
-    return Followed(True, names, tuple(blocking), message)
+    return Followed(True, names, tuple(blocking), message, deformers)
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,12 @@ def _takes_part(change: Change, settings: EditSettings) -> bool:
     """Can the change bring surfaces together? Cameras and lights are no concern."""
     name = change.reference.name
     return settings.takes_part(settings.shown_by(name)) and has_surface(change.reference.find())
+
+
+def _may_deform_others(change: Change) -> bool:
+    """Armatures, hooks, empties that modifiers look at, and the like."""
+    ob = change.reference.find()
+    return ob.type not in WITHOUT_EFFECT and not has_surface(ob)
 
 
 def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Change]) -> None:
