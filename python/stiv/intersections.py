@@ -21,7 +21,8 @@ def find_intersections(
 
     Two triangles intersect if they meet in a point off the vertex or edge that they share by index. Touching, coplanar
     overlap, duplicates, coincident vertices of different index (unless `join_seams` makes them one), and neighbours
-    folded flat onto each other count; triangles without area are segments or points. Exact for every input that is accepted.
+    folded flat onto each other count; triangles without area are segments or points. Exact for every input that is
+    accepted.
     Raises InputError naming the row: a coordinate that is not finite, or that is neither 0 nor of magnitude 1e-70 to
     1e70, an index out of range, a wrong shape or dtype.
     """
