@@ -49,6 +49,12 @@ RESPONDERS = (
     ("unselected", "Unselected", "What is selected goes where it is put, everything else that can gives way"),
     ("all", "All", "Both sides give way"),
 )
+GUARDS = (
+    ("auto", "Automatic", "Both where the render differs and the surface stays under 500K triangles"),
+    ("viewport", "Viewport", "What the viewport shows in Object Mode and Edit Mode"),
+    ("render", "Render", "What is rendered"),
+    ("both", "Both", "What the viewport shows and what is rendered"),
+)
 OBJECT_RESPONSES = (
     ("rigid", "Rigid", "In Object Mode a selected object keeps its shape"),
     ("deform", "Deform", "In Object Mode a selected object gives way by its cage vertices or lattice points"),
@@ -110,6 +116,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     object_response: EnumProperty(
         name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
     )
+    guard: EnumProperty(name="Guard", description="What is kept free of intersections", items=GUARDS, default="auto")
     smoothness: FloatProperty(
         name="Smoothness",
         description="0.1 gives way smoothly, 0.01 tightly: nearer to the shape, less even",

@@ -23,6 +23,7 @@ def edit_settings(scene: Any, request: Request | None = None, time_budget: float
         separation=chosen.separation,
         responders=chosen.responders if request is None else request.responders,
         object_response=chosen.object_response,
+        guard=chosen.guard,
         smoothness=round(chosen.smoothness, 6),  # of single precision: 0.1 shall be the core's 0.1
         constraints=chosen.constraints,
         interference=chosen.interference if request is None else request.interference,

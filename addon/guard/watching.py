@@ -195,6 +195,8 @@ def _noted() -> None:
 
 @persistent
 def _on_update(scene: Any, graph: Any) -> None:
+    if scene != bpy.context.scene:
+        return  # copies that STIV evaluates, or a scene that is not guarded here
     if is_on(bpy.context) and any(_may_move_surfaces(each) for each in graph.updates):
         _noted()
 

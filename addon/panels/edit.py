@@ -7,9 +7,11 @@ import bpy
 
 from .. import availability
 from ..operators import TRANSFORMS
-from .drawing import SidebarPanel, draw_problem
+from ..settings import edit_settings
+from ..wording import say
+from .drawing import SidebarPanel, draw_lines, draw_problem
 
-SETTINGS = ("interference", "separation", "responders", "object_response", "smoothness", "constraints")
+SETTINGS = ("interference", "separation", "responders", "object_response", "guard", "smoothness", "constraints")
 
 
 class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
@@ -30,3 +32,19 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
         settings = self.layout.column()
         for name in SETTINGS:
             settings.prop(context.scene.stiv, name)
+        draw_lines(settings, chosen_guard(context))
+
+
+def chosen_guard(context: bpy.types.Context) -> str:
+    """What the automatic guard chooses for the scene as it is, "" where the user chose."""
+    from stiv.blender import choose_guard  # the add-on registers without the native module
+
+    if context.scene.stiv.guard != "auto":
+        return ""
+    try:
+        guard = choose_guard(context, edit_settings(context.scene))
+    except ValueError:  # settings that cannot be read are told by the operators
+        return ""
+    if guard.reason:
+        return say("Guard: Viewport, as the render has over 500K triangles")
+    return say("Guard: {}").format(say(guard.choice.title()))

@@ -37,7 +37,7 @@ def test_faces_and_loose_parts_are_numbered_as_in_the_evaluated_mesh() -> None:
     grid = add_grid("Grid", 3, 1.5)
     add("Wire", mesh("Wire", [(0, 0, 9), (0.2, 0.1, -1), (0.2, 0.1, 1)], [], [(0, 2), (1, 2)]))
     assert check_scene(bpy.context).pairs == (FacePair(Element("Wire", "edge", 1), Element("Grid", "face", 4)),)
-    add_modifier(grid, "SUBSURF", levels=1, subdivision_type="SIMPLE")
+    add_modifier(grid, "SUBSURF", levels=1, render_levels=1, subdivision_type="SIMPLE")
     (pair,) = check_scene(bpy.context).pairs
     shown = grid.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     corners = np.array([shown.vertices[index].co for index in shown.polygons[pair.second.number].vertices])

@@ -57,7 +57,7 @@ def test_what_intersects_is_refused_until_it_is_excluded() -> None:
 @pytest.mark.parametrize("way", [(0, 0, 2.0), (0, 0, -2.0), (1.0, 0.3, 0), (0, 0, 0.1)])
 def test_no_other_pairs_than_those_excluded_ever_meet(way) -> None:
     grid, _, _ = stuck_cube()
-    add_modifier(grid, "SUBSURF", levels=1)
+    add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
     edit_mode(grid)
     edited = grid.data
     bpy.ops.mesh.select_all(action="SELECT")
@@ -96,7 +96,7 @@ def test_exclusions_of_a_mesh_that_changed_are_dropped_with_a_message() -> None:
     grid.data.vertices[0].co.x -= 0.1
     grid.data.update()
     assert kept.current(read_meshes())[1] == ""
-    add_modifier(grid, "SUBSURF", levels=1)
+    add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
     bpy.context.view_layer.update()
     current, message = kept.current(read_meshes())
     assert current.pairs == frozenset() and list(current.shapes) == ["Stuck"]
@@ -109,7 +109,7 @@ def test_exclusions_of_a_mesh_that_changed_are_dropped_with_a_message() -> None:
 def read_meshes():
     from stiv.blender.evaluated_scene import read_scene
 
-    return read_scene(bpy.context).meshes
+    return read_scene(bpy.context, evaluations=("shown", "viewport")).meshes
 
 
 def test_what_is_loose_cannot_be_excluded() -> None:

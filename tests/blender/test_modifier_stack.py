@@ -24,7 +24,7 @@ from building import (
 import stiv
 from stiv.blender import BlenderEdit, EditSettings
 
-DEFORM = EditSettings(object_response="deform")
+DEFORM = EditSettings(object_response="deform", guard="viewport")
 
 TENT = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 1), (0, -2, 0.3), (3, 0, 0)]
 TENT_FACES = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (0, 5, 1)]
@@ -91,7 +91,7 @@ def test_what_the_viewport_does_not_show_is_left_out() -> None:
     ob = add_cube("Cube")
     add_modifier(ob, "BEVEL", show_viewport=False)
     add_modifier(ob, "SUBSURF", levels=1)
-    add_modifier(ob, "SOLIDIFY", show_in_editmode=False)
+    add_modifier(ob, "SOLIDIFY", show_viewport=False)
     edit_mode(ob)
     bpy.ops.mesh.select_all(action="SELECT")
     follows(begin(), ob)

@@ -72,7 +72,7 @@ def local(ob: Any) -> np.ndarray:
 def test_handles_reach_their_goal_and_the_rest_follows(kind: str, subdivided: bool) -> None:
     ob = tube(location=(0.3, 0, 0.1), rotation_euler=(0.2, 0, 0.4), scale=(1.2, 1.2, 1.2))
     if subdivided:
-        add_modifier(ob, "SUBSURF", levels=1)
+        add_modifier(ob, "SUBSURF", levels=1, render_levels=1)
     select(ob)
     start, before = snapshot(), local(ob)
     edit = begin(settings_of(kind))
@@ -107,7 +107,7 @@ def test_what_is_accepted_is_what_blender_stores(kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_handle_pressed_into_a_block_stops_at_it(kind: str, pull: float) -> None:
     ob = tube()
-    add_modifier(ob, "SUBSURF", levels=1)
+    add_modifier(ob, "SUBSURF", levels=1, render_levels=1)
     add_cube("Block", (1.6, 0, 2.0), 0.8)
     select(ob)
     before = local(ob)

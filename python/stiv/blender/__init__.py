@@ -11,6 +11,7 @@ from stiv.blender.errors import SceneChangedError
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.following import Followed, follow
+from stiv.blender.guarding import Guard, choose_guard
 from stiv.blender.loop_objects import add_refined, remove_refined
 from stiv.blender.loop_surfaces import refresh
 from stiv.blender.motion import Influence, Motion
@@ -37,6 +38,7 @@ __all__ = [
     "ExpansionSettings",
     "FacePair",
     "Followed",
+    "Guard",
     "Handles",
     "Influence",
     "LoopSurface",
@@ -52,6 +54,7 @@ __all__ = [
     "add_refined",
     "begin_nearby",
     "check_scene",
+    "choose_guard",
     "compare",
     "contacts_of",
     "contract_scene",

@@ -9,18 +9,25 @@ import numpy as np
 import stiv
 from stiv.blender.arrays import Floats, Indices, Singles
 from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.evaluations import SHOWN
 from stiv.seams import Seams, find_seams
 
 ROUNDING = 2.0**-19  # of an object's extent: Blender computes the copies of a seam one by one, in single precision
 
+_Body = tuple[str, str, frozenset[str]]  # its object, its mobility, and the evaluations that show it
+
 
 @dataclass(frozen=True)
 class Element:
-    """A face, loose edge or vertex of an object's evaluated mesh, by its number there. `kind` says which."""
+    """A face, loose edge or vertex of an object's evaluated mesh, by its number there. `kind` says which.
+
+    evaluation: which one, where it is not the one shown now: "viewport" (Object Mode) or "render".
+    """
 
     object: str
     kind: str
     number: int
+    evaluation: str = SHOWN
 
 
 @dataclass(frozen=True)
@@ -30,7 +37,7 @@ class Assembly:
     Attributes:
         meshes: in order.
         starts: first vertex of each mesh in the surface, and the number of vertices, (k + 1,).
-        surface: connectivity and bodies; one body for each owner and mobility.
+        surface: connectivity and bodies; one body for each owner, mobility and set of evaluations.
         positions: world positions at the time of reading, (N, 3).
         seams: of each mesh, the vertices that are one in the surface; None: each is its own.
     """
@@ -60,19 +67,19 @@ class Assembly:
     def face(self, triangle: int) -> Element:
         """The face a triangle of the surface belongs to."""
         mesh, number = self._locate(triangle, [len(each.triangles) for each in self.meshes])
-        return Element(mesh.owner.name, "face", int(mesh.faces[number]))
+        return Element(mesh.owner.name, "face", int(mesh.faces[number]), mesh.read_in)
 
     def loose_edge(self, edge: int) -> Element:
         """The edge that a loose edge of the surface is."""
         mesh, number = self._locate(edge, [len(each.loose_edges) for each in self.meshes])
-        return Element(mesh.owner.name, "edge", int(mesh.loose_numbers[number]))
+        return Element(mesh.owner.name, "edge", int(mesh.loose_numbers[number]), mesh.read_in)
 
     def vertex(self, vertex: int) -> Element:
         """The vertex that a vertex of the surface is."""
         place = int(np.searchsorted(self.starts, vertex, side="right")) - 1
         mesh, seams, number = self.meshes[place], self.seams[place], int(vertex - self.starts[place])
         first = number if seams is None else int(seams.first[number])
-        return Element(mesh.owner.name, "vertex", mesh.vertex_number(first))
+        return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_in)
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)
@@ -108,19 +115,22 @@ def assemble(
 
     mobility: "fixed", "rigid" or "deformable", one for each mesh. together: names of objects that move as one, and are
     not tested against each other where rigid. ignored: pairs of names that are not tested. seams: vertices of each mesh
-    that become one; empty: none do.
+    that become one; empty: none do. Meshes that no evaluation shows together are not tested against each other.
     """
     joins = tuple(seams) or (None,) * len(meshes)
     counts = [len(mesh.local) if each is None else len(each.first) for mesh, each in zip(meshes, joins, strict=True)]
     starts = np.cumsum([0, *counts]).astype(np.int32)
-    bodies: dict[tuple[str, str], int] = {}
-    body = [bodies.setdefault((mesh.owner.name, m), len(bodies)) for mesh, m in zip(meshes, mobility, strict=True)]
+    bodies: dict[_Body, int] = {}
+    body = [
+        bodies.setdefault((mesh.owner.name, m, mesh.exists_in), len(bodies))
+        for mesh, m in zip(meshes, mobility, strict=True)
+    ]
     surface = stiv.Surface(
         _shifted([mesh.triangles for mesh in meshes], starts, joins, 3),
         int(starts[-1]),
         _shifted([mesh.loose_edges for mesh in meshes], starts, joins, 2),
         np.repeat(np.array(body, np.int32), np.diff(starts)),
-        [stiv.Body(name, kind) for name, kind in bodies] or None,
+        [stiv.Body(name, kind) for name, kind, _ in bodies] or None,
         _ignored(bodies, together, ignored),
     )
     world = [_joined(each, mesh.world()) for mesh, each in zip(meshes, joins, strict=True)]
@@ -145,14 +155,14 @@ def _joined(seams: Seams | None, points: Floats) -> Floats:
 
 
 def _ignored(
-    bodies: Mapping[tuple[str, str], int], together: Sequence[frozenset[str]], ignored: Sequence[tuple[str, str]]
+    bodies: Mapping[_Body, int], together: Sequence[frozenset[str]], ignored: Sequence[tuple[str, str]]
 ) -> list[tuple[int, int]]:
     pairs = set()
-    for (first, kind), a in bodies.items():
-        for (second, other), b in bodies.items():
+    for (first, kind, here), a in bodies.items():
+        for (second, other, there), b in bodies.items():
             if b < a:
                 continue
             rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
-            if rigid or (first, second) in ignored or (second, first) in ignored:
+            if rigid or not here & there or (first, second) in ignored or (second, first) in ignored:
                 pairs.add((a, b))
     return sorted(pairs)

@@ -11,7 +11,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, as_matrix
 from stiv.blender.assembly import Assembly, assemble
-from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.guarding import Guard, read_guarded_scene
 from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
@@ -28,6 +28,7 @@ class Beginning:
         assembly: all surfaces.
         parts: what moves or gives way, in the order of the controls.
         settings: with the exclusions that still count.
+        guard: the evaluations that are kept free of intersections.
         hidden: how many objects do not take part because they are hidden.
         dropped: which exclusions of intersections no longer count, empty if all do.
         digest: equal for edits that begin with the same controls, surfaces that move and placements.
@@ -36,6 +37,7 @@ class Beginning:
     assembly: Assembly
     parts: tuple[Part, ...]
     settings: EditSettings
+    guard: Guard
     hidden: int
     dropped: str
     digest: str
@@ -54,8 +56,9 @@ def read_beginning(
     adapt: may change who responds in a part. reach: what does not touch it does not take part; None: all does.
     """
     left_out = frozenset() if reach is None else reach.left_out
-    scene = read_scene(
+    scene, guard = read_guarded_scene(
         context,
+        settings,
         lambda name: settings.takes_part(name) and name not in left_out,
         lambda name: None if reach is None else reach.box_of(name),
     )
@@ -72,7 +75,7 @@ def read_beginning(
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
     moving = assembly.positions[moving_vertices(assembly, parts)]
     digest = _digest(stacked([part.controls for part in parts]), moving, *placements)
-    return Beginning(assembly, parts, replace(settings, excluded=excluded), scene.hidden, dropped, digest)
+    return Beginning(assembly, parts, replace(settings, excluded=excluded), guard, scene.hidden, dropped, digest)
 
 
 def moving_vertices(assembly: Assembly, parts: Sequence[Part]) -> Indices:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the points of one lattice do to the evaluated mesh of one object."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import bpy
@@ -10,6 +9,7 @@ import numpy as np
 import stiv
 from stiv.blender.arrays import Floats, Singles, as_matrix, transform_points
 from stiv.blender.cage import read_cage
+from stiv.blender.evaluations import SHOWN
 from stiv.blender.lattice_points import is_undeformed, read_points, read_rest_points
 from stiv.blender.mesh_reading import evaluated_mesh, read_group_weights
 from stiv.blender.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
@@ -19,14 +19,16 @@ from stiv.blender.subdividing import subdivide
 from stiv.blender.vertex_groups import group_weights
 
 
-def bent_mesh(ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types.Context) -> stiv.Deformation:
-    """From world positions of the lattice's points to those of the object's evaluated mesh.
+def bent_mesh(
+    ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types.Context, evaluation: str = SHOWN
+) -> stiv.Deformation:
+    """From world positions of the lattice's points to those of the object's mesh in an evaluation.
 
     Stages before the lattice are followed at their present values. Raises InputError naming object and modifier.
     """
     if ob.mode == "EDIT":
         ob.update_from_editmode()
-    stages = read_stack(ob, context.scene)
+    stages = read_stack(ob, context.scene, evaluation)
     place = [getattr(stage, "lattice", None) for stage in stages].index(lattice)
     rest = transform_points(as_matrix(ob.matrix_world), read_cage(ob))
     for stage in stages[:place]:
@@ -40,28 +42,6 @@ def bent_mesh(ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types
         else:
             _check_undeformed(ob, stage)
     return result
-
-
-def stacked(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
-    """Linear deformations with the same controls, their surfaces one after the other."""
-    if len(deformations) == 1:
-        return deformations[0]
-    parts = [stiv.linear_weights(deformation) for deformation in deformations]
-    weights = [part[0] for part in parts]
-    ends = np.cumsum([0, *(len(each.data) for each in weights)])
-    starts = [np.asarray(each.indptr[:-1]) + end for each, end in zip(weights, ends, strict=False)]
-    shape = (sum(each.shape[0] for each in weights), weights[0].shape[1])
-    offsets = [
-        np.zeros((each.shape[0], 3)) if offset is None else offset
-        for each, (_, offset) in zip(weights, parts, strict=True)
-    ]
-    whole = stiv.Weights(
-        np.append(np.concatenate(starts), ends[-1]),
-        np.concatenate([each.indices for each in weights]),
-        np.concatenate([each.data for each in weights]),
-        shape,
-    )
-    return stiv.linear(whole, np.concatenate(offsets))
 
 
 def _check_undeformed(ob: bpy.types.Object, stage: Bending) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The vertices of a mesh as controls: the cage below its modifiers."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bmesh
@@ -11,6 +12,7 @@ import stiv
 from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.control_weights import control_weights
 from stiv.blender.errors import SceneChangedError
+from stiv.blender.evaluations import SHOWN
 from stiv.blender.lattice_points import is_undeformed
 from stiv.blender.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.mesh_reading import read_edges
@@ -21,15 +23,20 @@ from stiv.blender.parts import Part
 from stiv.blender.points import PointGoal, point_weights, stored
 from stiv.blender.references import ObjectReference
 from stiv.blender.settings import EditSettings
-from stiv.blender.subdividing import subdivide
+from stiv.blender.subdividing import stacked, subdivide, unchanged
 
 
-def cage_part(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, settings: EditSettings) -> Part:
-    """The cage of a mesh object as a part. Raises InputError where it cannot be changed or followed."""
+def cage_part(
+    mover: Mover, surfaces: tuple[int, ...], evaluations: Sequence[str], scene: bpy.types.Scene, settings: EditSettings
+) -> Part:
+    """The cage of a mesh object as a part; its surfaces were read in these evaluations.
+
+    Raises InputError where it cannot be changed or followed.
+    """
     ob = mover.reference.find()
     frame, local = open_cage(ob)
     writer = cage_writer(mover.reference, ob, frame, local, settings)
-    deformation = subdivision_of(ob, scene, writer) or stiv.identity(len(local))
+    deformation = subdivision_in(ob, scene, writer, evaluations) or stiv.identity(len(local))
     given = control_weights(ob, settings)
     selected = selected_vertices(ob, mover.selected) & (given > 0)
     others = settings.weight(False) if mover.selected else 1.0
@@ -58,7 +65,22 @@ def read_cage(ob: bpy.types.Object) -> Singles:
     return read_collection(points, "co", 3, np.float32)
 
 
-def subdivision_of(ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter") -> stiv.Deformation | None:
+def subdivision_in(
+    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", evaluations: Sequence[str]
+) -> stiv.Deformation | None:
+    """What becomes of the cage in each evaluation, side by side; None where there is one, and it stays as it is.
+
+    Raises InputError for modifiers that cannot be followed.
+    """
+    found = [_subdivision_of(ob, scene, writer, each) for each in evaluations or (SHOWN,)]
+    if len(found) == 1:
+        return found[0]
+    return stacked([unchanged(_vertex_count(ob)) if each is None else each for each in found])
+
+
+def _subdivision_of(
+    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", evaluation: str
+) -> stiv.Deformation | None:
     """What becomes of the cage: Loop's subdivision beside it, that of its modifiers, or None where it stays as it is.
 
     Raises InputError for modifiers that cannot be followed.
@@ -66,7 +88,7 @@ def subdivision_of(ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWr
     if writer.refined is not None:
         return writer.refined.refinement.deformation
     result = None
-    for stage in read_stack(ob, scene):
+    for stage in read_stack(ob, scene, evaluation):
         if isinstance(stage, Bending) and not is_undeformed(stage.lattice.find().data):
             raise refuse(
                 ob, stage.modifier,

@@ -13,6 +13,7 @@ from stiv.blender.arrays import Indices
 from stiv.blender.assembly import Assembly, assemble_joined
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
+from stiv.blender.guarding import read_guarded_scene
 from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
@@ -28,6 +29,8 @@ class SceneCheck:
         pairs: faces that meet, each pair once; a loose edge or vertex that meets a face comes with that face as the
             second.
         objects, triangles: how many were tested.
+        guard: what was tested: the "viewport", the "render" or "both".
+        reason: why the render was left out although it differs; empty otherwise.
         hidden: objects with a surface that are hidden or excluded, and were not.
         seams: pairs of faces of one object that touch in coincident vertices or edges alone: one surface there.
     """
@@ -37,6 +40,8 @@ class SceneCheck:
     triangles: int
     hidden: int
     seams: int = 0
+    guard: str = "viewport"
+    reason: str = ""
 
     @property
     def triangle_pairs(self) -> int:
@@ -63,12 +68,13 @@ def check_scene(
     another object shows counts only if it is named.
     """
     settings = settings or EditSettings()
-    scene = read_scene(context, _counted(context, settings, objects))
+    scene, guard = read_guarded_scene(context, settings, _counted(context, settings, objects))
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs, seams = find_pairs_and_seams(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
     count = sum(len(faces) for _, faces in seams)
-    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, count)
+    triangles = len(assembly.surface.triangles)
+    return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason)
 
 
 def exclusions_now(
@@ -76,7 +82,7 @@ def exclusions_now(
 ) -> tuple[Exclusions, tuple[FacePair, ...]]:
     """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
     chosen = settings or EditSettings()
-    scene = read_scene(context, _counted(context, chosen))
+    scene, _ = read_guarded_scene(context, chosen, _counted(context, chosen))
     assembly = assemble_joined(scene.meshes, chosen.ignored_pairs)
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)

@@ -12,6 +12,7 @@ import stiv
 from stiv.blender.arrays import Floats
 from stiv.blender.edit import BlenderEdit
 from stiv.blender.evaluated_scene import read_scene
+from stiv.blender.evaluations import SHOWN
 from stiv.blender.verification import FacePair
 
 MOST_CONTACTS = 2000  # that are drawn; of more, as many evenly chosen ones
@@ -59,7 +60,7 @@ def triangles_of(context: bpy.types.Context, pairs: Sequence[FacePair]) -> Float
     """The triangles, (t, 3, 3), of all faces in pairs, as Blender shows them now."""
     faces: dict[str, set[int]] = {}
     for element in (each for pair in pairs for each in (pair.first, pair.second)):
-        if element.kind == "face":
+        if element.kind == "face" and element.evaluation == SHOWN:
             faces.setdefault(element.object, set()).add(element.number)
     found = [np.empty((0, 3, 3))]
     for mesh in read_scene(context, lambda name: name in faces).meshes:

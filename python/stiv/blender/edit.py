@@ -37,6 +37,7 @@ class BlenderEdit:
 
     Attributes:
         dropped: which exclusions of intersections no longer count, empty if all do.
+        guard: the evaluations that are kept free of intersections.
         start_digest: equal for edits that begin with the same controls, surfaces that move and placements.
     """
 
@@ -44,6 +45,7 @@ class BlenderEdit:
         """Use `begin`."""
         settings = beginning.settings
         self.dropped, self.start_digest = beginning.dropped, beginning.digest
+        self.guard = beginning.guard
         self._hidden, self._parts = beginning.hidden, beginning.parts
         self._selected_weight = settings.weight(True)
         self._influence: Influence | None = None
@@ -82,7 +84,7 @@ class BlenderEdit:
     @property
     def summary(self) -> Summary:
         """Who takes part; looks at every triangle, which is why a drag does not ask for it."""
-        summary = summarise(self.assembly, self._parts, self._hidden)
+        summary = summarise(self.assembly, self._parts, self._hidden, self.guard)
         return replace(summary, warnings=(self.dropped, *summary.warnings)) if self.dropped else summary
 
     @property

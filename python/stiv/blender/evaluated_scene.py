@@ -104,11 +104,13 @@ class Placed:
 class Opened:
     """Evaluations of a scene that can be read, for as long as `open_evaluations` lasts."""
 
-    def __init__(self, context: bpy.types.Context, wanted: Collection[str], differences: Differences) -> None:
-        """Use `open_evaluations`."""
+    def __init__(
+        self, context: bpy.types.Context, wanted: Collection[str] = (SHOWN,), differences: Differences | None = None
+    ) -> None:
+        """Use `open_evaluations`, but for what is shown now alone."""
         self._context = context
         self._wanted = frozenset(wanted)
-        self._differences = differences
+        self._differences = differences or Differences()
         self.twins: dict[str, Twins] = {}
 
     @property
@@ -200,13 +202,10 @@ def read_scene(
     return EvaluatedScene(tuple(meshes), _left_out_count(context, evaluations))
 
 
-def read_placed(
-    context: bpy.types.Context, owners: frozenset[int], opened: Opened | None = None, read_in: str = SHOWN
-) -> list[Placed]:
+def read_placed(owners: frozenset[int], opened: Opened, read_in: str = SHOWN) -> list[Placed]:
     """Positions of what these owners (session numbers) show, in the order of `read_scene`; much cheaper than all."""
-    source = opened or Opened(context, (SHOWN,), Differences())
     placed = []
-    for instance, owner, _ in source.instances(read_in, lambda ob: ob.session_uid in owners):
+    for instance, owner, _ in opened.instances(read_in, lambda ob: ob.session_uid in owners):
         with evaluated_mesh(instance.object) as mesh:
             matrix = as_matrix(instance.matrix_world)
             placed.append(Placed(ObjectReference.of(owner), read_positions(mesh), matrix))

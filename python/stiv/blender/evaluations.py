@@ -14,7 +14,12 @@ EVALUATIONS = (SHOWN, VIEWPORT, RENDER)
 """What Blender shows now, in Edit Mode too; what Object Mode shows; what is rendered."""
 
 # Evaluated alike in both modes where Edit Mode shows them. Others may be left out there by Blender itself.
-EDIT_MODE_TYPES = frozenset({"SUBSURF", "LATTICE", "TRIANGULATE", "MIRROR", "ARRAY", "SOLIDIFY", "BEVEL"})
+EDIT_MODE_TYPES = frozenset(
+    {
+        *("SUBSURF", "LATTICE", "TRIANGULATE", "MIRROR", "ARRAY", "SOLIDIFY", "BEVEL", "ARMATURE", "CAST", "CURVE"),
+        *("DISPLACE", "HOOK", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "WARP", "WELD"),
+    }
+)
 # Leave all positions and triangles as they are.
 WITHOUT_EFFECT = frozenset({"WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
 

@@ -15,6 +15,7 @@ import stiv
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices
 from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.evaluations import RENDER, SHOWN
 
 if TYPE_CHECKING:
     from stiv.blender.assembly import Assembly, Element
@@ -67,7 +68,7 @@ class Exclusions:
 
         Pairs of objects that are not visible stay, and do nothing.
         """
-        shown = {mesh.owner.name for mesh in meshes}
+        shown = {name for mesh in meshes for name in _names(mesh)}
         stale = {name for name, shape in self.shapes.items() if name in shown and _digest(meshes, name) != shape}
         if not stale:
             return self, ""
@@ -100,15 +101,27 @@ class Exclusions:
 
 def _ordered(first: Element, second: Element) -> tuple[End, End]:
     """Loose elements get numbers that no face has."""
-    a, b = ((each.object, each.number if each.kind == "face" else -1) for each in (first, second))
+    a, b = (
+        (_name(each.object, each.evaluation), each.number if each.kind == "face" else -1) for each in (first, second)
+    )
     return (a, b) if a <= b else (b, a)
+
+
+def _name(name: str, evaluation: str) -> str:
+    """An object's own name, with that of the evaluation for what is only rendered."""
+    return f"{name}\n{RENDER}" if evaluation == RENDER else name
+
+
+def _names(mesh: VisibleMesh) -> set[str]:
+    """What the mesh is called: as in the viewport, as in the render; as in Edit Mode alone it has no name."""
+    return {_name(mesh.owner.name, mesh.read_in)} if mesh.exists_in != {SHOWN} else set()
 
 
 def _digest(meshes: Sequence[VisibleMesh], name: str) -> str:
     """Of which vertices belong to which face in all that an object shows, however Blender cuts faces."""
     value, counts = 0, []
     for mesh in meshes:
-        if mesh.owner.name == name:
+        if name in _names(mesh):
             belongs = np.unique(mesh.triangles.astype(np.int64) + (mesh.faces.astype(np.int64)[:, None] << 32))
             value = zlib.crc32(belongs.tobytes(), value)
             counts.append(len(mesh.local))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.arrays import Indices
+from stiv.blender.evaluations import SHOWN
 from stiv.blender.mesh_reading import evaluated_mesh, read_faces
 from stiv.blender.modifier_stack import Subdivision, read_stack
 from stiv.blender.verification import FacePair
@@ -23,7 +24,7 @@ def faces_of(pairs: Sequence[FacePair]) -> dict[str, set[int]]:
     for pair in pairs:
         for each in (pair.first, pair.second):
             numbers = found.setdefault(each.object, set())
-            if each.kind == "face":
+            if each.kind == "face" and each.evaluation == SHOWN:
                 numbers.add(each.number)
     return found
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 
 from stiv import InputError
-from stiv.blender.evaluations import is_active
+from stiv.blender.evaluations import SHOWN, VIEWPORT, is_active, subdivision_levels
 from stiv.blender.references import ObjectReference
 
 # Leave every position as it is, and the vertices' number and order.
@@ -17,7 +17,7 @@ WAYS_OUT = "apply it, disable it in the viewport, let the object respond rigidly
 
 @dataclass(frozen=True)
 class Subdivision:
-    """A Subdivision Surface modifier, as the viewport evaluates it."""
+    """A Subdivision Surface modifier, as one evaluation has it."""
 
     modifier: str
     levels: int
@@ -42,19 +42,19 @@ class Bending:
 Stage = Subdivision | Bending
 
 
-def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene) -> list[Stage]:
-    """The stages that the viewport evaluates, in order; what does nothing is left out.
+def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
+    """The stages of an evaluation, in order; what does nothing is left out.
 
     Raises InputError naming object, modifier and ways out for everything that is not understood.
     """
     stages: list[Stage] = []
     triangulated = ""
     for modifier in ob.modifiers:
-        if not is_active(modifier, ob):
+        if not is_active(modifier, ob, evaluation):
             continue
         if modifier.type == "TRIANGULATE":
             triangulated = modifier.name
-        stage = _stage(ob, modifier, scene)
+        stage = _stage(ob, modifier, scene, evaluation)
         if isinstance(stage, Subdivision):
             _check_subdivision(ob, stage, stages, triangulated)
         if stage is not None:
@@ -67,21 +67,28 @@ def refuse(ob: bpy.types.Object, modifier: str, reason: str) -> InputError:
     return InputError(f'object "{ob.name}", modifier "{modifier}": {reason}; {WAYS_OUT}')
 
 
-def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene) -> Stage | None:
+def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:
     if isinstance(modifier, bpy.types.SubsurfModifier):
-        return _subdivision(modifier, scene)
+        return _subdivision(modifier, scene, evaluation)
     if isinstance(modifier, bpy.types.LatticeModifier):
         return _bending(ob, modifier)
     if modifier.type in POSITION_KEEPING:
         return None
+    if not is_active(modifier, ob):
+        raise _refuse_unseen(ob, modifier, evaluation)
     kind = modifier.bl_rna.name.removesuffix("Modifier").strip()
     raise refuse(ob, modifier.name, f"STIV cannot follow {kind}")
 
 
-def _subdivision(modifier: bpy.types.SubsurfModifier, scene: bpy.types.Scene) -> Subdivision | None:
-    levels = modifier.levels
-    if scene.render.use_simplify:
-        levels = min(levels, scene.render.simplify_subdivision)
+def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
+    """The error for a modifier that the user does not see now, short enough for the status bar."""
+    if evaluation == VIEWPORT:
+        return InputError(f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode')
+    return InputError(f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport')
+
+
+def _subdivision(modifier: bpy.types.SubsurfModifier, scene: bpy.types.Scene, evaluation: str) -> Subdivision | None:
+    levels = subdivision_levels(modifier, scene, evaluation)
     if levels == 0:
         return None
     return Subdivision(

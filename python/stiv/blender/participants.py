@@ -8,10 +8,10 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.arrays import Floats
-from stiv.blender.bending import bent_mesh, stacked
+from stiv.blender.bending import bent_mesh
 from stiv.blender.cage import cage_part
 from stiv.blender.evaluated_scene import VisibleMesh
-from stiv.blender.evaluations import is_active
+from stiv.blender.evaluations import VIEWPORT, is_active
 from stiv.blender.joining import join_part
 from stiv.blender.lattice_points import check_lattice, lattice_part
 from stiv.blender.movers import Mover
@@ -21,6 +21,7 @@ from stiv.blender.rigid_groups import RigidGroup, check_instances, check_onlooke
 from stiv.blender.rigid_placement import rigid_part
 from stiv.blender.settings import EditSettings
 from stiv.blender.soft_handles import soft_parts
+from stiv.blender.subdividing import stacked
 from stiv.blender.transform_locks import without_held
 
 TOLERANCE = 1e-5  # of the size of an object: what float32 and the mathematics of the modifiers leave
@@ -35,7 +36,7 @@ def make_parts(
 ) -> tuple[list[Part], list[RigidGroup]]:
     """All parts, and the groups that move as one. Raises InputError for what cannot be moved, nothing changed."""
     movers = without_held(movers, kind)
-    groups = rigid_groups(movers)
+    groups = rigid_groups(movers, evaluations_of(meshes))
     bent = {mover.reference: _bent_by(mover.reference, meshes) for mover in movers if mover.role == "lattice"}
     _check_independent(movers, groups, bent, meshes)
     groups = with_passengers(groups, {mesh.owner.name for mesh in meshes})
@@ -43,10 +44,10 @@ def make_parts(
     for mover in movers:
         if mover.role == "cage":
             surfaces = _shown_as(mover.reference.name, meshes, settings)
-            parts.append(cage_part(mover, surfaces, context.scene, settings))
+            parts.append(cage_part(mover, surfaces, _read_in(surfaces, meshes), context.scene, settings))
         elif mover.role == "soft":
             surfaces = _shown_as(mover.reference.name, meshes, settings)
-            parts += soft_parts(mover, surfaces, context.scene, settings)
+            parts += soft_parts(mover, surfaces, _read_in(surfaces, meshes), context.scene, settings)
         elif mover.role == "lattice":
             parts.append(_lattice(context, mover, bent[mover.reference], meshes, settings))
     for part in parts:
@@ -70,12 +71,18 @@ def _lattice(
     check_lattice(mover.reference.find())
     if not surfaces:
         raise InputError(f'object "{mover.reference.name}": this lattice deforms no visible mesh')
-    bent = [bent_mesh(meshes[index].owner.find(), mover.reference, context) for index in surfaces]
+    bent = [
+        bent_mesh(meshes[index].owner.find(), mover.reference, context, meshes[index].read_in) for index in surfaces
+    ]
     return lattice_part(mover, surfaces, stacked(bent), settings)
 
 
 def _shown_by(names: frozenset[str] | set[str], meshes: Sequence[VisibleMesh]) -> tuple[int, ...]:
     return tuple(index for index, mesh in enumerate(meshes) if mesh.owner.name in names)
+
+
+def _read_in(surfaces: tuple[int, ...], meshes: Sequence[VisibleMesh]) -> list[str]:
+    return [meshes[index].read_in for index in surfaces]
 
 
 def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) -> tuple[int, ...]:
@@ -96,7 +103,7 @@ def _bent_by(lattice: ObjectReference, meshes: Sequence[VisibleMesh]) -> tuple[i
             modifier for modifier in ob.modifiers
             if isinstance(modifier, bpy.types.LatticeModifier)
             and modifier.object is not None and modifier.object.session_uid == lattice.session_uid
-            and is_active(modifier, ob) and modifier.strength != 0
+            and is_active(modifier, ob, mesh.read_in) and modifier.strength != 0
         ]  # fmt: skip
         if not uses:
             continue
@@ -123,7 +130,7 @@ def _check_independent(
     in_groups = {name for group in groups for name in group.members}
     in_lattices: set[str] = set()
     for lattice, indices in bent.items():
-        for name in (meshes[index].owner.name for index in indices):
+        for name in sorted({meshes[index].owner.name for index in indices}):
             if name in in_lattices:
                 raise InputError(f'object "{name}": is deformed by two lattices that move; keep one of them still')
             if name in in_groups or any(m.reference.name == name and m.role in ("cage", "soft") for m in movers):
@@ -134,7 +141,9 @@ def _check_independent(
     deformed = {mover.reference.name for mover in movers if mover.role != "rigid"}
     for name in sorted(deformed & in_groups):
         raise InputError(f'object "{name}": is deformed and hangs on an object that moves; deselect one of the two')
-    check_onlookers(deformed | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices))
+    check_onlookers(
+        deformed | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices), evaluations_of(meshes)
+    )
     check_instances(deformed | in_groups | in_lattices, meshes)
     _check_children(deformed, in_groups, meshes)
 
@@ -160,6 +169,11 @@ def _check_equal(part: Part, meshes: Sequence[VisibleMesh]) -> None:
         difference = float(np.abs(mine - theirs).max(initial=0.0))
         if difference > tolerance(theirs):
             _disagree(part, meshes[index], f"differs by {difference:.3g}")
+
+
+def evaluations_of(meshes: Sequence[VisibleMesh]) -> frozenset[str]:
+    """All evaluations that show any of the meshes; Object Mode is always among them."""
+    return frozenset({VIEWPORT}).union(*(mesh.exists_in for mesh in meshes))
 
 
 def tolerance(points: Floats) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from stiv.blender.arrays import Floats, as_matrix, transform_points
 from stiv.blender.dependencies import dependencies
 from stiv.blender.evaluated_scene import SURFACE_TYPES, is_visible
+from stiv.blender.evaluations import RENDER, VIEWPORT, signature
 from stiv.blender.movers import Mover
 from stiv.blender.settings import EditSettings
 
@@ -56,7 +57,7 @@ def find_reach(
     modifiers, constraints or instances, or named in the settings, is always taken in.
     """
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
-    candidates = [ob for ob in objects if _stands_alone(ob)]
+    candidates = [ob for ob in objects if _stands_alone(ob) and _is_alike(ob, context.scene)]
     if sum(len(ob.data.polygons) for ob in candidates) < LEAST_FACES:
         return None
     named = {*settings.named_objects(), *settings.excluded.shapes}
@@ -81,6 +82,11 @@ def find_reach(
 def _stands_alone(ob: bpy.types.Object) -> bool:
     alone = ob.type == "MESH" and ob.mode == "OBJECT" and ob.instance_type == "NONE"
     return bool(alone and ob.parent is None and not ob.children and not any(dependencies(ob)))
+
+
+def _is_alike(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """Is the object rendered as it is shown, so that its bounds hold for both?"""
+    return signature(ob, scene, VIEWPORT) == signature(ob, scene, RENDER)
 
 
 def _tied(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:

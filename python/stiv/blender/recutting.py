@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.arrays import Indices
-from stiv.blender.assembly import Assembly
-from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.assembly import Assembly, Element
+from stiv.blender.evaluated_scene import Opened, VisibleMesh
 from stiv.blender.mesh_reading import evaluated_mesh, read_triangles
 
 BENT = 0.7  # cosine of the angle between the halves of a quad from which both cuts are kept free
@@ -49,17 +49,19 @@ class PresentCut:
     fresh: Cut
 
 
-def fresh_cuts(context: bpy.types.Context, assembly: Assembly) -> tuple[PresentCut, ...]:
+def fresh_cuts(context: bpy.types.Context, assembly: Assembly, opened: Opened | None = None) -> tuple[PresentCut, ...]:
     """Blender's present triangles of the meshes that show some which the assembly does not hold.
+
+    opened: the evaluations that its meshes were read from; None: what is shown now.
 
     Only deformable bodies change their shape, and so their cuts.
     """
-    graph = context.evaluated_depsgraph_get()
+    source = opened or Opened(context)
     cuts = []
     for number, mesh in enumerate(assembly.meshes):
         if not _is_deformable(assembly, number):
             continue
-        with evaluated_mesh(mesh.owner.find().evaluated_get(graph)) as evaluated:
+        with evaluated_mesh(source.evaluated(mesh.read_in, mesh.owner)) as evaluated:
             triangles, faces = read_triangles(evaluated)
         cut = Cut(number, triangles, faces)
         fresh = _fresh_rows(triangles, mesh.triangles)
@@ -94,7 +96,7 @@ def with_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
         pairs = stiv.find_intersections(assembly.positions, extended.surface, threads=threads)
         if len(pairs) == 0:
             return extended
-        meeting = {(each.object, each.number) for pair in pairs for each in map(extended.face, pair.tolist())}
+        meeting = {each for pair in pairs for each in map(extended.face, pair.tolist())}
         left = [cut for each in cuts if len((cut := _without(each, meeting, assembly)).faces)]
         if sum(len(cut.faces) for cut in left) == sum(len(cut.faces) for cut in cuts):
             return extended  # others meet, which is for the session to refuse
@@ -129,9 +131,11 @@ def _other_cut(one: Indices, two: Indices) -> Indices:
     return np.array([[a, b, far], [a, far, c]], np.int32)
 
 
-def _without(cut: Cut, meeting: Collection[tuple[str, int]], assembly: Assembly) -> Cut:
-    name = assembly.meshes[cut.mesh].owner.name
-    return cut.limited_to(np.array([(name, int(face)) not in meeting for face in cut.faces]))
+def _without(cut: Cut, meeting: Collection[Element], assembly: Assembly) -> Cut:
+    mesh = assembly.meshes[cut.mesh]
+    return cut.limited_to(
+        np.array([Element(mesh.owner.name, "face", int(face), mesh.read_in) not in meeting for face in cut.faces])
+    )
 
 
 def _recut(assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Sequence[Sequence[int]]) -> Assembly:

@@ -19,7 +19,8 @@ from stiv import InputError
 from stiv.blender.arrays import Floats, Singles, transform_points
 from stiv.blender.assembly import Assembly, assemble
 from stiv.blender.cage import CageWriter
-from stiv.blender.evaluated_scene import is_visible, read_scene
+from stiv.blender.evaluated_scene import is_visible
+from stiv.blender.guarding import read_guarded_scene
 from stiv.blender.joining import TiedWriter, joined_rows
 from stiv.blender.mesh_reading import read_edges, read_loose_numbers, read_triangles
 from stiv.blender.movers import Mover
@@ -166,7 +167,7 @@ def read_reshaped(
     left_out: names of objects that nothing is tested against. Raises InputError naming object and ways out.
     """
     movers = _movers(context, settings)
-    scene = read_scene(context, lambda name: settings.takes_part(name) and name not in left_out)
+    scene, _ = read_guarded_scene(context, settings, lambda name: settings.takes_part(name) and name not in left_out)
     parts, _ = make_parts(context, movers, scene.meshes, settings, "move")
     if not parts:
         raise InputError("nothing that is selected has a surface; select meshes that are visible")

@@ -21,17 +21,17 @@ class RigidGroup:
     members: frozenset[str]
 
 
-def rigid_groups(movers: list[Mover]) -> list[RigidGroup]:
-    """The groups of all rigid movers, in the order of their first roots.
+def rigid_groups(movers: list[Mover], evaluations: Collection[str]) -> list[RigidGroup]:
+    """The groups of all rigid movers, in the order of their first roots, as tied together in these evaluations.
 
     Raises InputError for objects that cannot be placed, or whose shape depends on what does not move along.
     """
     groups = [_family(mover) for mover in _topmost([mover for mover in movers if mover.role == "rigid"])]
     for group in list(groups):
-        for dependency in _looking_out(group):
+        for dependency in _looking_out(group, evaluations):
             groups = _joined(groups, dependency)
     for group in groups:
-        for dependency in _looking_out(group):
+        for dependency in _looking_out(group, evaluations):
             raise InputError(
                 f'object "{dependency.user}", {dependency.through}: looks at object "{dependency.used}", which does '
                 "not move along; select that as well, apply the modifier, or deform the object instead"
@@ -56,13 +56,16 @@ def with_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[Ri
     return [whole if group is first else group for group in solid]
 
 
-def check_onlookers(moved: Iterable[str], names: Iterable[str]) -> None:
-    """Refuse to change objects that others, by name, look at through modifiers and constraints. Raises InputError."""
+def check_onlookers(moved: Iterable[str], names: Iterable[str], evaluations: Collection[str]) -> None:
+    """Refuse to change objects that others, by name, look at through modifiers and constraints in these evaluations.
+
+    Raises InputError.
+    """
     changing = set(moved)
     for name in names:
         if name in changing:
             continue
-        for dependency in dependencies(bpy.data.objects[name]):
+        for dependency in dependencies(bpy.data.objects[name], evaluations):
             if dependency.used in changing:
                 raise InputError(
                     f'object "{name}", {dependency.through}: would change with object "{dependency.used}"; select '
@@ -112,8 +115,8 @@ def _family(mover: Mover) -> RigidGroup:
     return RigidGroup((mover,), frozenset({root.name, *(child.name for child in root.children_recursive)}))
 
 
-def _looking_out(group: RigidGroup) -> list[Dependency]:
-    found = [each for name in sorted(group.members) for each in dependencies(bpy.data.objects[name])]
+def _looking_out(group: RigidGroup, evaluations: Collection[str]) -> list[Dependency]:
+    found = [each for name in sorted(group.members) for each in dependencies(bpy.data.objects[name], evaluations)]
     return [each for each in found if each.used not in group.members]
 
 

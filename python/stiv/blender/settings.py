@@ -16,6 +16,7 @@ OBJECT_RESPONSES = ("rigid", "deform")
 ROLES = ("auto", "controls", "rigid", "obstacle", "ignored")
 DEFORMATIONS = ("auto", "vertices", "laplacian", "arap", "lattice", "rigid")
 RESTS = ("follows", "stays")
+GUARDS = ("auto", "viewport", "render", "both")
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,8 @@ class EditSettings:
         ignored_pairs: pairs of object names that may go through each other; twice the same name for an object
             with itself.
         excluded: pairs of faces that intersect already and may go on to; all others are guarded.
+        guard: what is kept free of intersections: what the "viewport" shows (in Edit Mode what Object Mode shows too),
+            what is rendered ("render"), or "both"; "auto": both where they differ and the surface stays small enough.
         smoothness: damping of the response; 0.1 smooth, 0.01 tight.
         constraints: "per_patch" or "single".
         threads: 0 for all.
@@ -120,6 +123,7 @@ class EditSettings:
     roles: Mapping[str, str] = field(default_factory=dict)
     ignored_pairs: tuple[tuple[str, str], ...] = ()
     excluded: Exclusions = field(default_factory=Exclusions)
+    guard: str = "auto"
     smoothness: float = 0.1
     constraints: str = "per_patch"
     threads: int = 0
@@ -128,6 +132,7 @@ class EditSettings:
     def __post_init__(self) -> None:
         """Refuse unknown choices."""
         _require("responders", self.responders, RESPONDERS)
+        _require("guard", self.guard, GUARDS)
         _require("object_response", self.object_response, OBJECT_RESPONSES)
         for first, second, distance in self.pair_separations:
             if not 0 < distance < float("inf"):

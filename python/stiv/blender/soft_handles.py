@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Vertices of a mesh as handles, which the others follow: Laplacian and as-rigid-as-possible editing of a cage."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +13,7 @@ import stiv
 from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.assembly import mesh_seams
-from stiv.blender.cage import cage_writer, open_cage, selected_vertices, subdivision_of
+from stiv.blender.cage import cage_writer, open_cage, selected_vertices, subdivision_in
 from stiv.blender.control_weights import control_weights
 from stiv.blender.joining import TiedWriter, copied, joined_rows, seam_note
 from stiv.blender.mesh_reading import read_triangles
@@ -24,8 +25,12 @@ from stiv.blender.vertex_groups import group_weights
 from stiv.seams import Seams
 
 
-def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, settings: EditSettings) -> list[Part]:
+def soft_parts(
+    mover: Mover, surfaces: tuple[int, ...], evaluations: Sequence[str], scene: bpy.types.Scene, settings: EditSettings
+) -> list[Part]:
     """A mesh object moved by handles, as a part; none where nothing in Edit Mode holds it.
+
+    Its surfaces were read in these evaluations.
 
     The shape that it has now is the one it keeps as far as the handles let it. Raises InputError where it cannot be
     changed or followed, or has no handle.
@@ -46,7 +51,7 @@ def soft_parts(mover: Mover, surfaces: tuple[int, ...], scene: bpy.types.Scene, 
     mesh = make(rest, joined_rows(triangles, tied), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
     writer = cage_writer(mover.reference, ob, frame, local, settings)
-    subdivision = subdivision_of(ob, scene, writer)
+    subdivision = subdivision_in(ob, scene, writer, evaluations)
     shown = cage if tied is None else copied(cage, tied)
     others = settings.weight(False) if mover.selected else 1.0
     given, controls = found.given, rest[found.vertices]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiv.blender.assembly import Assembly
+from stiv.blender.guarding import Guard
 from stiv.blender.parts import Part
 
 
@@ -24,16 +25,20 @@ class Participant:
 
 @dataclass(frozen=True)
 class Summary:
-    """Who takes part, how many objects with a surface are hidden and do not, and what the user ought to know."""
+    """Who takes part, how many objects with a surface are hidden and do not, and what the user ought to know.
+
+    guard: what is kept free of intersections: "viewport", "render" or "both".
+    """
 
     participants: tuple[Participant, ...]
     hidden: int
     controls: int
     triangles: int
+    guard: str
     warnings: tuple[str, ...]
 
 
-def summarise(assembly: Assembly, parts: Sequence[Part], hidden: int) -> Summary:
+def summarise(assembly: Assembly, parts: Sequence[Part], hidden: int, guard: Guard) -> Summary:
     """Sum up an edit."""
     roles = {index: part.role for part in parts for index in part.surfaces}
     counts: dict[tuple[str, str], int] = {}
@@ -45,7 +50,8 @@ def summarise(assembly: Assembly, parts: Sequence[Part], hidden: int) -> Summary
         hidden,
         sum(len(part.controls) for part in parts),
         len(assembly.surface.triangles),
-        (*(part.note for part in parts if part.note), *_warnings(assembly)),
+        guard.choice,
+        (*((guard.reason,) if guard.reason else ()), *(part.note for part in parts if part.note), *_warnings(assembly)),
     )
 
 

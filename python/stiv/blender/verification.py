@@ -2,7 +2,8 @@
 """Blender's own evaluation after writing, read back and tested."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import bpy
@@ -12,7 +13,8 @@ import stiv
 from stiv.blender.arrays import Floats, Indices
 from stiv.blender.assembly import Assembly, Element
 from stiv.blender.errors import SceneChangedError
-from stiv.blender.evaluated_scene import Placed, read_placed
+from stiv.blender.evaluated_scene import Opened, Placed, open_evaluations, read_placed
+from stiv.blender.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.participants import tolerance
 from stiv.blender.recutting import Cut, PresentCut, as_shown, fresh_cuts
@@ -66,7 +68,11 @@ class Verifier:
         be free of intersections, in the triangles of the assembly and in Blender's present ones, which follow the
         shape. Raises SceneChangedError when other meshes are visible than at the start.
         """
-        meshes = _read_meshes(context, self.assembly)
+        with _opened(context, self.assembly) as opened:
+            return self._verify(context, accepted, opened)
+
+    def _verify(self, context: bpy.types.Context, accepted: Floats, opened: Opened) -> Verification:
+        meshes = _read_meshes(self.assembly, opened)
         shown = _joined(self.assembly, meshes)
         message = _elsewhere(self.assembly, accepted, meshes)
         if message:
@@ -77,7 +83,7 @@ class Verifier:
                 return found
         elif not self._is_step_free(accepted, shown):
             return self._failure(named_pairs(self.assembly, shown, self._threads))
-        cuts = fresh_cuts(context, self.assembly)
+        cuts = fresh_cuts(context, self.assembly, opened)
         return self._verify_cuts(cuts, shown) if cuts else Verification(True)
 
     def _beside_excluded(self, shown: Floats) -> Verification | None:
@@ -95,12 +101,14 @@ class Verifier:
         pairs = self._excluded.others(named_pairs(as_shown(self.assembly, cuts), shown, self._threads))
         if not pairs:
             return Verification(True)
-        meeting = {(each.object, each.number) for pair in pairs for each in (pair.first, pair.second)}
+        meeting = {each for pair in pairs for each in (pair.first, pair.second)}
         return self._failure(pairs, tuple(self._that_meet(cut.fresh, meeting) for cut in cuts))
 
-    def _that_meet(self, cut: Cut, meeting: set[tuple[str, int]]) -> Cut:
-        name = self.assembly.meshes[cut.mesh].owner.name
-        return cut.limited_to(np.array([(name, int(face)) in meeting for face in cut.faces]))
+    def _that_meet(self, cut: Cut, meeting: set[Element]) -> Cut:
+        mesh = self.assembly.meshes[cut.mesh]
+        return cut.limited_to(
+            np.array([Element(mesh.owner.name, "face", int(face), mesh.read_in) in meeting for face in cut.faces])
+        )
 
     def _failure(self, pairs: tuple[FacePair, ...], cuts: tuple[Cut, ...] = ()) -> Verification:
         if not pairs:
@@ -110,13 +118,17 @@ class Verifier:
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
     """World positions of the assembly's meshes as Blender evaluates them now, (N, 3)."""
-    return _joined(assembly, _read_meshes(context, assembly))
+    with _opened(context, assembly) as opened:
+        return _joined(assembly, _read_meshes(assembly, opened))
 
 
-def _read_meshes(context: bpy.types.Context, assembly: Assembly) -> list[Floats]:
+def _read_meshes(assembly: Assembly, opened: Opened) -> list[Floats]:
     """World positions of each mesh as Blender evaluates it now, vertices of seams each by itself."""
-    owners = frozenset(mesh.owner.session_uid for mesh in assembly.meshes)
-    placed = read_placed(context, owners)
+    placed: list[Placed] = []
+    for read_in in dict.fromkeys(mesh.read_in for mesh in assembly.meshes):
+        owners = frozenset(mesh.owner.session_uid for mesh in assembly.meshes if mesh.read_in == read_in)
+        if read_in in opened.read_in:
+            placed += read_placed(owners, opened, read_in)
     if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in assembly.meshes]:
         raise SceneChangedError("objects were shown, hidden or changed in size during the edit")
     parts = [
@@ -129,6 +141,16 @@ def _read_meshes(context: bpy.types.Context, assembly: Assembly) -> list[Floats]
 def _joined(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
     joined = (assembly.joined(number, points) for number, points in enumerate(meshes))
     return np.concatenate([np.empty((0, 3)), *joined])
+
+
+@contextmanager
+def _opened(context: bpy.types.Context, assembly: Assembly) -> Iterator[Opened]:
+    """The evaluations that the meshes of an assembly were read from."""
+    if all(mesh.read_in == SHOWN for mesh in assembly.meshes):
+        yield Opened(context)
+        return
+    with open_evaluations(context, frozenset().union(*(mesh.exists_in for mesh in assembly.meshes))) as opened:
+        yield opened
 
 
 def named_pairs(
@@ -169,8 +191,9 @@ def _elsewhere(assembly: Assembly, accepted: Floats, meshes: Sequence[Floats]) -
 
 def _told(pairs: tuple[FacePair, ...]) -> str:
     first, second = pairs[0].first, pairs[0].second
+    shown_in = {VIEWPORT: "what Object Mode shows", RENDER: "the render"}.get(second.evaluation, "what Blender shows")
     return (
-        f"{len(pairs)} pairs meet in what Blender shows, the first are "
+        f"{len(pairs)} pairs meet in {shown_in}, the first are "
         f'object "{first.object}", {first.kind} {first.number} and '
         f'object "{second.object}", {second.kind} {second.number}'
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
 from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.guard_option import add_guard_option
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json
 from stiv.command_line.repair_blend import repair_blend
@@ -62,6 +63,7 @@ def add_to(subcommands: Subparsers) -> None:
         "--time-limit", type=float, default=0.0, metavar="S",
         help="seconds after which the best repair so far is taken, if there is one (default: no limit)",
     )  # fmt: skip
+    add_guard_option(parser)
     parser.add_argument("--json", "--report", type=Path, metavar="F", help="write what was done to F, as JSON")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
@@ -69,8 +71,9 @@ def add_to(subcommands: Subparsers) -> None:
 
 def _run(arguments: argparse.Namespace) -> ExitCode:
     choices = RepairChoices(
-        tuple(arguments.move), arguments.weld, arguments.separation, arguments.max_deviation, arguments.time_limit
-    )
+        tuple(arguments.move), arguments.weld, arguments.separation, arguments.max_deviation, arguments.time_limit,
+        arguments.guard,
+    )  # fmt: skip
     for path in (arguments.output, arguments.json):
         require_folder(path)
     report = repair_file(arguments.file, arguments.output, choices)

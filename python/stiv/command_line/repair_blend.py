@@ -59,7 +59,8 @@ def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
     else:
         with addon_registered(source):
             settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
-    return replace(settings, separation=choices.separation or settings.separation, time_budget=choices.time_limit)
+    separation, guard = choices.separation or settings.separation, choices.guard or settings.guard
+    return replace(settings, separation=separation, guard=guard, time_budget=choices.time_limit)
 
 
 def _that_may_change(context: Any, names: set[str], settings: Any) -> set[str]:

@@ -17,7 +17,7 @@ Element = tuple[str, str, int]  # object, kind of element, number within the obj
 @dataclass(frozen=True)
 class RepairChoices:
     """What the user chose: names of objects that may change (none: all that intersect), seconds that it may take (0: no
-    limit), and as stiv.RepairOptions.
+    limit), as stiv.RepairOptions, and what stays free: "viewport", "render" or "both"; "" as the scene says.
     """
 
     move: tuple[str, ...] = ()
@@ -25,6 +25,7 @@ class RepairChoices:
     separation: float = 0.0
     max_deviation: float = 0.05
     time_limit: float = 0.0
+    guard: str = ""
 
 
 @dataclass(frozen=True)

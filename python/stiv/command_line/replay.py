@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
 from stiv.command_line.blender_module import addon_registered, require_blender
 from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.guard_option import add_guard_option
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.progress import progress_bar
@@ -59,6 +61,7 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
     parser.add_argument("--check", action="store_true", help="make the exact test anew after each edit of a .blend")
     parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
+    add_guard_option(parser)
     add_blender_option(parser)
     parser.set_defaults(run=_run)
 
@@ -69,6 +72,8 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     if not arguments.scene.is_file():
         raise InputError(f"{arguments.scene}: there is no such file")
     script = read_edit_script(arguments.edits)
+    if arguments.guard and arguments.scene.suffix.lower() == ".blend":
+        script = replace(script, settings={**script.settings, "guard": arguments.guard})
     is_blend = arguments.scene.suffix.lower() == ".blend"
     edits = _replay_scene(arguments, script) if is_blend else _replay_mesh(arguments, script)
     if arguments.report is not None:
