@@ -15,10 +15,10 @@ namespace stiv {
 namespace {
 
 constexpr int most_steps = 300;
-constexpr double least_motion = 1e-11;      // of the mesh's size: a step that moves less is the last
-constexpr double least_residual = 1e-10;    // of the first one, in solving for J
-constexpr double slack = 1e-12;             // by which rounding may raise an energy
-constexpr std::size_t worth_a_factor = 16;  // so many solves by conjugate gradients cost as much as a factor of H
+constexpr double least_motion = 1e-11;     // of the mesh's size: a step that moves less is the last
+constexpr double least_residual = 1e-10;   // of the first one, in solving for J
+constexpr double slack = 1e-12;            // by which rounding may raise an energy
+constexpr std::size_t worth_a_factor = 4;  // so many solves by conjugate gradients cost as much as a factor of H
 
 /// The minimum for some controls, and the rotations there.
 struct Minimum {
@@ -143,14 +143,14 @@ class Arap final : public HandleDeformation {
       if (now > before * (1 + slack)) {  // led astray: the global step itself never raises it
         acceleration.restart();
         at.u = plain;
-        at.fits = cells_.fit(at.u);
+        at.fits = cells_.fit(at.u, at.fits);
         now = energy(at.u, at.fits, d);
       }
       before = now;
       plain = start + map_.answer(cells_.load(at.fits));
       const double motion = (plain - at.u).cwiseAbs().maxCoeff();
       at.u = motion <= least_motion * size_ ? plain : acceleration.next(at.u, plain);
-      at.fits = cells_.fit(at.u);
+      at.fits = cells_.fit(at.u, at.fits);
       if (motion <= least_motion * size_) break;
     }
     return at;

@@ -28,15 +28,27 @@ void add_block(Triplets& entries, Index row, Index column, const Eigen::Matrix3d
 RigidCells::RigidCells(SymmetricMatrix weights, Positions rest)
     : weights_(std::move(weights)), rest_(std::move(rest)) {}
 
+Eigen::Matrix3d RigidCells::spread(const Positions& u, Index vertex) const {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (Edge edge(weights_, vertex); edge; ++edge) {
+    const Vector3 at_rest = across(rest_, vertex, edge);
+    sum += edge.value() * (at_rest + across(u, vertex, edge)) * at_rest.transpose();
+  }
+  return sum;
+}
+
 std::vector<RotationFit> RigidCells::fit(const Positions& u) const {
   std::vector<RotationFit> fits(static_cast<std::size_t>(weights_.cols()));
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex)
+    fits[static_cast<std::size_t>(vertex)] = fit_rotation(spread(u, vertex));
+  return fits;
+}
+
+std::vector<RotationFit> RigidCells::fit(const Positions& u, const std::vector<RotationFit>& nearby) const {
+  std::vector<RotationFit> fits(nearby.size());
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (Edge edge(weights_, vertex); edge; ++edge) {
-      const Vector3 at_rest = across(rest_, vertex, edge);
-      spread += edge.value() * (at_rest + across(u, vertex, edge)) * at_rest.transpose();
-    }
-    fits[static_cast<std::size_t>(vertex)] = fit_rotation(spread);
+    const auto cell = static_cast<std::size_t>(vertex);
+    fits[cell] = fit_rotation(spread(u, vertex), nearby[cell].rotation);
   }
   return fits;
 }
@@ -54,13 +66,16 @@ double RigidCells::energy(const Positions& u, const std::vector<RotationFit>& fi
 }
 
 Positions RigidCells::load_of(const std::vector<Eigen::Matrix3d>& change) const {
-  Positions load = Positions::Zero(weights_.cols(), 3);
-  for (Index vertex = 0; vertex < weights_.cols(); ++vertex)
+  Positions load(weights_.cols(), 3);
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
+    Vector3 sum = Vector3::Zero(), edges = Vector3::Zero();
     for (Edge edge(weights_, vertex); edge; ++edge) {
-      const Eigen::Matrix3d both =
-          change[static_cast<std::size_t>(vertex)] + change[static_cast<std::size_t>(edge.row())];
-      load.row(vertex) += edge.value() / 2 * (both * across(rest_, vertex, edge)).transpose();
+      const Vector3 weighted = edge.value() * across(rest_, vertex, edge);
+      edges += weighted;
+      sum += change[static_cast<std::size_t>(edge.row())] * weighted;
     }
+    load.row(vertex) = (sum + change[static_cast<std::size_t>(vertex)] * edges).transpose() / 2;
+  }
   return load;
 }
 

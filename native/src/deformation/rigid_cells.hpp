@@ -16,6 +16,8 @@ class RigidCells {
 
   /// The local step: the rotation of each cell from rest to positions rest + u.
   std::vector<RotationFit> fit(const Positions& u) const;
+  /// The same to rounding, from the rotations at positions nearby.
+  std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby) const;
 
   /// 1/4 sum_i sum_j w_ij |(u_i - u_j) - (R_i - 1)(rest_i - rest_j)|^2.
   double energy(const Positions& u, const std::vector<RotationFit>& fits) const;
@@ -31,6 +33,8 @@ class RigidCells {
   SymmetricMatrix load_matrix(const std::vector<RotationFit>& fits) const;
 
  private:
+  /// sum_j w_ij (q_i - q_j) (rest_i - rest_j)', q = rest + u.
+  Eigen::Matrix3d spread(const Positions& u, Index vertex) const;
   Positions load_of(const std::vector<Eigen::Matrix3d>& change) const;
 
   SymmetricMatrix weights_;

@@ -34,6 +34,20 @@ TEST_CASE("rotation fit: always a rotation, and none is nearer") {
   }
 }
 
+TEST_CASE("rotation fit: Newton's method finds what singular values find, from any rotation, mirrored and flat too") {
+  for (unsigned seed = 1; seed < 60; ++seed) {
+    Eigen::Matrix3d matrix = random_matrix(seed);
+    if (seed % 3 == 0) matrix.col(2) = matrix.col(0) - 0.4 * matrix.col(1);
+    const RotationFit expected = fit_rotation(matrix);
+    for (const double angle : {0.0, 1e-9, 0.01, 0.4, 3.0}) {
+      const Vector3 turn = angle * random_matrix(seed + 70).row(0).transpose().normalized();
+      const RotationFit found = fit_rotation(matrix, expected.rotation * rotation_matrix(turn));
+      CHECK((found.rotation - expected.rotation).norm() < 1e-11 * (1 + expected.response.norm()));
+      CHECK((found.response - expected.response).norm() < 1e-6 * expected.response.norm());
+    }
+  }
+}
+
 TEST_CASE("rotation fit: the response against differences, mirrored and flat matrices too") {
   constexpr double step = 1e-6;
   for (unsigned seed = 1; seed < 20; ++seed) {

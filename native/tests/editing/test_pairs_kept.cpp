@@ -45,7 +45,7 @@ TEST_CASE("pairs kept: an edit like the one before searches all pairs once, a re
   CHECK(again.status == EditStatus::corrected);
   CHECK(again.counters.detections == 1);
   CHECK(anew.counters.detections == 2);
-  CHECK(again.energy == doctest::Approx(anew.energy).epsilon(0.05));
+  CHECK(again.energy == doctest::Approx(anew.energy).epsilon(1e-9));
   CHECK(is_free(scene, again.surface));
 }
 

@@ -189,7 +189,7 @@ TEST_CASE("expansion goes toward any target, and never through anything") {
   CHECK(result.status == EditStatus::corrected);
   CHECK(pairs_at(scene, result.surface).empty());
   CHECK(result.path.back() == result.controls);
-  CHECK(result.energy < 0.5 * (scene.controls - target).squaredNorm());
+  CHECK(result.energy < 0.03 * 0.5 * (scene.controls - target).squaredNorm());  // of staying; measured: 0.0202
   CHECK_THROWS_AS(expand(spike_through_sheet().surface, spike_through_sheet().controls, target, {}, execution),
                   InputError);
 }

@@ -46,7 +46,7 @@ TEST_CASE("session: a way too far to be looked at in one piece is gone in parts,
   CHECK(back.status == EditStatus::reached);
   const EditResult down = edit(session, moved(scene.controls, upper, Vector3(0.1, 0.2, -1)));
   CHECK(is_free(scene, down.surface));
-  CHECK(down.energy < 0.5 * upper * (0.01 + 0.04 + 1));
+  CHECK(down.energy < 0.2 * 0.5 * upper * (0.01 + 0.04 + 1));  // of staying; measured: 0.175
   CHECK(down.counters.candidate_pairs < (1 << 18) * (down.counters.detections + 1));
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("session: a sheet pushed fully through another in one edit ends on its
   CHECK(result.status == EditStatus::corrected);
   CHECK(is_free(scene, result.surface));
   CHECK(result.patches >= 1);
-  CHECK(result.energy < 0.5 * upper_sheet * 0.25);  // less than staying at the contact
+  CHECK(result.energy < 0.2 * 0.5 * upper_sheet * 0.25);  // of staying at the contact; measured: 0.174
   CHECK(result.surface.topRows(upper_sheet).col(2).mean() < 0.3);
   CHECK(result.surface.bottomRows(result.surface.rows() - upper_sheet).col(2).minCoeff() < -0.1);
 }
@@ -73,7 +73,7 @@ TEST_CASE("session: an edit goes on from its first answer while that is cheap, a
   CHECK(refined.counters.sub_edits > 1);
   CHECK(refined.status == EditStatus::corrected);
   CHECK(refined.path.front() == first.controls);
-  CHECK(refined.energy < 0.99 * first.energy);
+  CHECK(refined.energy < 0.75 * first.energy);  // measured: 0.647
   CHECK(is_free(scene, refined.surface));
 }
 
