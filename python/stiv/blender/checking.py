@@ -55,7 +55,7 @@ def read_surface(context: bpy.types.Context, objects: Collection[str] | None = N
     A cage that another object shows counts only if it is named. Raises InputError naming object and vertex when a
     coordinate is not finite.
     """
-    scene = read_scene(context, _counted(context, EditSettings(), objects))
+    scene = read_scene(context, counted_names(context, EditSettings(), objects))
     return assemble_joined(scene.meshes)
 
 
@@ -68,7 +68,7 @@ def check_scene(
     another object shows counts only if it is named.
     """
     settings = settings or EditSettings()
-    scene, guard = read_guarded_scene(context, settings, _counted(context, settings, objects))
+    scene, guard = read_guarded_scene(context, settings, counted_names(context, settings, objects))
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs, seams = find_pairs_and_seams(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
@@ -82,14 +82,14 @@ def exclusions_now(
 ) -> tuple[Exclusions, tuple[FacePair, ...]]:
     """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
     chosen = settings or EditSettings()
-    scene, _ = read_guarded_scene(context, chosen, _counted(context, chosen))
+    scene, _ = read_guarded_scene(context, chosen, counted_names(context, chosen))
     assembly = assemble_joined(scene.meshes, chosen.ignored_pairs)
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)
     return excluded, excluded.others(pairs)
 
 
-def _counted(
+def counted_names(
     context: bpy.types.Context, settings: EditSettings, objects: Collection[str] | None = None
 ) -> Callable[[str], bool]:
     """Tells by its name whether an object is tested."""

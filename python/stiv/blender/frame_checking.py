@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -16,36 +16,45 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Floats
-from stiv.blender.assembly import Assembly, assemble, mesh_seams, unjoined_triangles
+from stiv.blender.assembly import Assembly, assemble, assemble_joined, mesh_seams, unjoined_triangles
 from stiv.blender.assembly import Element as FoundElement
-from stiv.blender.checking import find_pairs_and_seams, read_surface
-from stiv.blender.evaluated_scene import VisibleMesh
+from stiv.blender.checking import counted_names, find_pairs_and_seams
+from stiv.blender.evaluated_scene import VisibleMesh, read_scene
+from stiv.blender.evaluations import RENDER, VIEWPORT
 from stiv.blender.event_elements import EventElements
+from stiv.blender.left_out import find_left_out
+from stiv.blender.settings import EditSettings
 from stiv.checks.findings import CROSSING, Element, Finding, Look, SeamPairs, Shapes
 from stiv.seams import Seams, common_seams
 
 
 def check_frames(
-    context: bpy.types.Context, frames: Sequence[float] = (), objects: Collection[str] = (), threads: int = 0
+    context: bpy.types.Context,
+    frames: Sequence[float] = (),
+    objects: Collection[str] = (),
+    threads: int = 0,
+    evaluations: Sequence[str] = (VIEWPORT, RENDER),
 ) -> Iterator[Look]:
     """Looks at the present pose, or with `frames` at each of them and at the way from each to the next.
 
-    objects: names to be limited to. Whole and fractional frames may be mixed; they must ascend. The scene is left at
-    the last frame. Raises InputError for unknown names and coordinates that are not finite.
+    objects: names to be limited to. Whole and fractional frames may be mixed; they must ascend. evaluations: each is
+    tested for itself; what is rendered as the viewport shows it is told once. The scene is left at the last frame.
+    Raises InputError for unknown names and coordinates that are not finite.
     """
     _check_names(context, objects)
-    if not frames:
-        yield _at_rest(_read(context, objects), None, threads)
-        return
-    before, found = None, None
-    for frame in frames:
-        go_to(context.scene, frame)
-        present = _read(context, objects)
-        look = _at_rest(present, frame, threads)
-        if before is not None and found is not None and found.frame is not None:
-            yield _between(before, present, found, look, threads)
-        yield look
-        before, found = present, look
+    before: dict[str, Pose] = {}
+    for number, frame in enumerate(frames or (None,)):
+        if frame is not None:
+            go_to(context.scene, frame)
+        present = _read(context, objects, evaluations, frame, threads)
+        for evaluation in evaluations if before else ():
+            if evaluation in before or evaluation in present:
+                start, end = (poses.get(evaluation, poses[evaluations[0]]) for poses in (before, present))
+                yield _between(start, end, evaluation, threads)
+        for pose in present.values():
+            left_out = find_left_out(context, pose.look.shapes.names, objects) if number == 0 else ()
+            yield replace(pose.look, left_out=left_out)
+        before = present
 
 
 def go_to(scene: bpy.types.Scene, frame: float) -> None:
@@ -78,36 +87,71 @@ def _check_names(context: bpy.types.Context, objects: Collection[str]) -> None:
         raise InputError(f'there is no object "{unknown[0]}" in the scene')
 
 
-def _read(context: bpy.types.Context, objects: Collection[str]) -> Assembly:
-    return read_surface(context, objects or None)
+@dataclass(frozen=True)
+class Pose:
+    """What an evaluation shows at a frame, and what was found in it."""
+
+    assembly: Assembly
+    look: Look
 
 
-def _at_rest(assembly: Assembly, frame: float | None, threads: int) -> Look:
+def _read(
+    context: bpy.types.Context,
+    objects: Collection[str],
+    evaluations: Sequence[str],
+    frame: float | None,
+    threads: int,
+) -> dict[str, Pose]:
+    """The poses by evaluation; only those that show something otherwise than the first one."""
+    scene = read_scene(context, counted_names(context, EditSettings(), objects or None), evaluations=evaluations)
+    poses = {}
+    for number, evaluation in enumerate(evaluations):
+        if number and all(mesh.exists_in >= set(evaluations) for mesh in scene.meshes):
+            continue
+        meshes = [mesh for mesh in scene.meshes if evaluation in mesh.exists_in]
+        assembly = assemble_joined(meshes)
+        poses[evaluation] = Pose(assembly, _at_rest(assembly, evaluation, frame, threads))
+    return poses
+
+
+def _at_rest(assembly: Assembly, evaluation: str, frame: float | None, threads: int) -> Look:
     pairs, touching = find_pairs_and_seams(assembly, threads)
-    found = (Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs)
-    seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces))
-    return Look(shapes_of(assembly, assembly.positions), frame, None, tuple(found), seams=seams)
+    found = [Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs]
+    seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces) and evaluation != RENDER)
+    told = _told_once(found, assembly, evaluation)
+    return Look(shapes_of(assembly, assembly.positions), frame, None, told, seams=seams)
 
 
-def _between(before: Assembly, after: Assembly, start: Look, end: Look, threads: int) -> Look:
+def _told_once(found: Sequence[Finding], assembly: Assembly, evaluation: str) -> tuple[Finding, ...]:
+    """Of what is found in the render, only what involves an object that the viewport does not show so."""
+    if evaluation != RENDER:
+        return tuple(found)
+    apart = {mesh.owner.name for mesh in assembly.meshes if VIEWPORT not in mesh.exists_in}
+    return tuple(replace(each, rendered=True) for each in found if apart & {each.first.object, each.second.object})
+
+
+def _between(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
     """The way from one frame to the next, of the meshes that both have.
 
     Pairs of objects that meet at one of the two frames were found there, and are left out.
     """
-    pairs, notes = _matched(before, after, f"between frames {start.frame:g} and {end.frame:g}")
+    assert start.look.frame is not None and end.look.frame is not None
+    when = f"between frames {start.look.frame:g} and {end.look.frame:g}"
+    pairs, notes = _matched(start.assembly, end.assembly, when)
     seams = [_seams_of_both(one, other) for one, other in pairs]
     moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs], seams=seams)
     world = (moving.joined(place, other.world()) for place, (_, other) in enumerate(pairs))
     goal = np.concatenate([np.empty((0, 3)), *world])
-    known = {finding.objects for look in (start, end) for finding in look.findings}
+    known = {finding.objects for look in (start.look, end.look) for finding in look.findings}
     found = [
-        replace(each, frame=start.frame, to_frame=end.frame)
+        replace(each, frame=start.look.frame, to_frame=end.look.frame)
         for each in crossings(moving, goal, threads)
         if each.objects not in known
     ]
     first = min((finding.time for finding in found if finding.time is not None), default=0.0)
     shapes = shapes_of(moving, moving.positions + first * (goal - moving.positions))
-    return Look(shapes, start.frame, end.frame, tuple(found), tuple(notes))
+    told = _told_once(found, moving, evaluation)
+    return Look(shapes, start.look.frame, end.look.frame, told, tuple(notes) if evaluation != RENDER else ())
 
 
 def crossings(assembly: Assembly, goal: Floats, threads: int = 0) -> list[Finding]:

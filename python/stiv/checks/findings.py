@@ -41,6 +41,8 @@ class Finding:
     to_frame: float | None = None
     time: float | None = None
     triangle_pairs: int = 1  #: how many pairs of their triangles meet
+    scene: str = ""  #: of a file with several scenes
+    rendered: bool = False  #: found in what is rendered, and not in what the viewport shows
 
     @property
     def objects(self) -> tuple[str, str]:
@@ -50,7 +52,17 @@ class Finding:
 
     def __str__(self) -> str:
         """As messages tell it."""
-        return f"{when(self)}{self.first} - {self.second}"
+        how = "as rendered: " if self.rendered else ""
+        return f"{when(self)}{how}{self.first} - {self.second}"
+
+
+@dataclass(frozen=True, order=True)
+class LeftOut:
+    """An object that is not tested; `why` is a noun phrase or an adjective: "hidden", "point clouds"."""
+
+    object: str
+    why: str
+    scene: str = ""  #: of a file with several scenes
 
 
 @dataclass(frozen=True)
@@ -99,6 +111,8 @@ class Look:
     findings: tuple[Finding, ...] = ()
     notes: tuple[str, ...] = ()  #: what could not be tested
     seams: tuple[SeamPairs, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    scene: str = ""  #: of a .blend
 
 
 @dataclass(frozen=True)
@@ -117,6 +131,8 @@ class FileCheck:
     seconds: float = 0.0
     pictures: tuple[str, ...] = field(default=())
     seams: tuple[SeamPairs, ...] = ()
+    scenes: tuple[str, ...] = ()  #: of a .blend, that were tested
+    left_out: tuple[LeftOut, ...] = ()
 
     @property
     def triangle_pairs(self) -> int:
@@ -135,12 +151,24 @@ class FileCheck:
 
 
 def when(finding: Finding) -> str:
-    """The frame or frames of a finding as the start of a line; empty for what has none."""
-    if finding.frame is None:
-        return ""
-    if finding.to_frame is None:
-        return f"frame {finding.frame:g}: "
-    return f"between frames {finding.frame:g} and {finding.to_frame:g}: "
+    """The scene and the frame or frames of a finding as the start of a line; empty for what has none."""
+    frames = "" if finding.frame is None else f"frame {finding.frame:g}"
+    if finding.frame is not None and finding.to_frame is not None:
+        frames = f"between frames {finding.frame:g} and {finding.to_frame:g}"
+    told = ", ".join(text for text in (finding.scene and f'scene "{finding.scene}"', frames) if text)
+    return f"{told}: " if told else ""
+
+
+def left_out_text(left_out: Sequence[LeftOut], most: int = 3) -> str:
+    """How many objects are not tested and why, with the first names: `2 hidden ("Proxy", "Ref"), ...`."""
+    names: dict[str, dict[str, None]] = {}
+    for each in left_out:
+        names.setdefault(each.why, {})[each.object] = None
+    told = []
+    for why, objects in sorted(names.items()):
+        listed = ", ".join(f'"{name}"' for name in list(objects)[:most]) + (", ..." if len(objects) > most else "")
+        told.append(f"{len(objects):,} {why} ({listed})")
+    return ", ".join(told)
 
 
 def counted(pairs: int, triangle_pairs: int) -> str:

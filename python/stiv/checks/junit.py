@@ -7,7 +7,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable, Sequence
 
-from stiv.checks.findings import FileCheck, Finding, counted, when
+from stiv.checks.findings import FileCheck, Finding, counted, left_out_text, when
 
 LISTED = 50  # pairs in a failure
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -35,17 +35,19 @@ def _add_suite(root: ElementTree.Element, check: FileCheck) -> None:
             _add(case, "error", message=check.error)
         elif findings:
             _add(case, "failure", message=_headline(findings)).text = _clean(_listed(findings))
-    if check.accepted:
-        _add(suite, "system-out").text = _clean(f"accepted by the baseline:\n{_listed(check.accepted)}")
+    told = [f"not tested: {left_out_text(check.left_out)}"] if check.left_out else []
+    told += [f"accepted by the baseline:\n{_listed(check.accepted)}"] if check.accepted else []
+    if told:
+        _add(suite, "system-out").text = _clean("\n".join(told))
 
 
 def _cases(check: FileCheck) -> list[tuple[str, list[Finding]]]:
-    if not check.frames:
-        return [("free of intersections", list(check.findings))]
-    names = [f"frame {frame:g}" for frame in check.frames]
+    names = [f"frame {frame:g}" for frame in check.frames] or ["free of intersections"]
+    if len(check.scenes) > 1:
+        names = [f'scene "{scene}"' + (f", {name}" if check.frames else "") for scene in check.scenes for name in names]
     found: dict[str, list[Finding]] = {name: [] for name in names}
     for finding in check.findings:
-        found.setdefault(when(finding).removesuffix(": "), []).append(finding)
+        found.setdefault(when(finding).removesuffix(": ") or names[0], []).append(finding)
     return list(found.items())
 
 

@@ -30,14 +30,16 @@ if TYPE_CHECKING:
 _DESCRIPTION = f"""\
 Tests exactly whether any two triangles meet other than in the vertices and edges they share. Touching, coplanar
 overlap and duplicates count. Faces of an object that touch in coincident vertices alone are a seam: seams are
-counted, and are no intersections. Of a .blend, every visible mesh is taken as Blender evaluates it; scripts in
-it are not run. Mesh files: {", ".join(SUFFIXES)}. docs/checks.md says more."""
+counted, and are no intersections. Of a .blend, every mesh of every scene is tested that is shown in the viewport or
+rendered, as Blender evaluates it for both; what is left out is counted. Scripts in it are not run. Mesh files:
+{", ".join(SUFFIXES)}. docs/checks.md says more."""
 _EXAMPLES = """\
 examples:
   stiv check plant.blend
   stiv check --json report.json "two sheets.obj"
   stiv check assets/*.blend --junit checks.xml --pictures pictures
   stiv check walk.blend --frames 1:120        every frame, and the ways between them
+  stiv check film.blend --scene "Shot 10" --hidden
   stiv check assets/*.blend --baseline known.json --write-baseline
   stiv check assets/*.blend --baseline known.json
   stiv check plant.blend --blender /opt/blender/blender
@@ -56,6 +58,9 @@ def add_to(subcommands: Subparsers) -> None:
     )
     parser.add_argument("files", nargs="+", metavar="SCENE.blend|MESH", help="what to check")
     parser.add_argument("--object", action="append", default=[], metavar="NAME", help="test only objects of this name")
+    parser.add_argument("--scene", default="all", metavar="NAME|all", help="test this scene of a .blend (all)")
+    parser.add_argument("--render", action="store_true", help="test render levels however large they are")
+    parser.add_argument("--hidden", action="store_true", help="test what is hidden or excluded too")
     parser.add_argument(
         "--frames",
         type=frame_range,
@@ -121,7 +126,10 @@ def _expanded(names: Iterable[str]) -> Iterator[Path]:
 def _checked(
     path: Path, arguments: argparse.Namespace, baseline: Baseline, on_look: Callable[[str], None]
 ) -> FileCheck:
-    choices = Choices(tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures)
+    choices = Choices(
+        tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures, arguments.scene,
+        arguments.render, arguments.hidden,
+    )  # fmt: skip
     try:
         check = check_path(path, choices, on_look)
     except InputError as error:

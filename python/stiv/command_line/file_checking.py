@@ -6,12 +6,12 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from stiv import InputError
-from stiv.checks.findings import FileCheck, Finding, Look, SeamPairs, merged_seams
+from stiv.checks.findings import FileCheck, Finding, LeftOut, Look, SeamPairs, merged_seams
 from stiv.checks.mesh_check import check_mesh
 from stiv.checks.pictures import write_picture
 from stiv.command_line.blender_module import require_blender
@@ -31,6 +31,9 @@ class Choices:
     frames: FrameChoice | None = None  #: None: the pose that the file was saved in
     subframes: int = 1  #: poses for each step of frames; more follow turning objects more closely
     pictures: Path | None = None  #: folder for them
+    scene: str = "all"  #: name of the scene of a .blend
+    render: bool = False  #: test what is rendered, however large
+    hidden: bool = False  #: test what is hidden too
 
 
 def check_path(
@@ -57,15 +60,36 @@ def _looks_at_mesh(path: Path, choices: Choices) -> Iterable[Look]:
 
 
 def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
-    """Of every visible mesh as Blender evaluates it; loose edges and vertices are tested too."""
+    """Of every mesh that a scene shows or renders, as Blender evaluates it; loose edges and vertices are tested too."""
     files = require_blender("stiv.blender.blend_files", path)
     with quiet_blender():
-        context = files.open_blend(path)
-    checking = require_blender("stiv.blender.frame_checking", path)
+        files.open_blend(path)
+    whole = require_blender("stiv.blender.whole_files", path)
     try:
-        yield from checking.check_frames(context, _frames(path, choices, checking, context), choices.objects)
+        whole.check_names(choices.scene, choices.objects)
+        names = whole.scene_names(choices.scene)
+        for name in names:
+            for look in _looks_at_scene(path, whole.show_scene(name), choices):
+                yield replace(look, scene=name)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+
+
+def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look]:
+    checking, evaluations, whole = (
+        require_blender(f"stiv.blender.{name}", path)
+        for name in ("frame_checking", "checked_evaluations", "whole_files")
+    )
+    if choices.hidden:
+        whole.unhide_all(context)
+    chosen = evaluations.checked_evaluations(context, choices.render)
+    frames = _frames(path, choices, checking, context)
+    objects = [name for name in choices.objects if name in context.scene.objects]
+    if choices.objects and not objects:
+        return
+    note = evaluations.note_on(context, chosen)
+    for number, look in enumerate(checking.check_frames(context, frames, objects, 0, chosen)):
+        yield replace(look, notes=(note, *look.notes)) if note and number == 0 else look
 
 
 def _frames(path: Path, choices: Choices, checking: Any, context: Any) -> list[float]:
@@ -87,27 +111,42 @@ def _summed(
     found: list[Finding] = []
     seams: list[SeamPairs] = []
     notes: list[str] = []
-    frames: list[float] = []
+    frames: set[float] = set()
     pictures: list[str] = []
     names: dict[str, None] = {}
-    vertices = triangles = 0
+    left_out: dict[LeftOut, None] = {}
+    sizes: dict[str, tuple[int, int]] = {}
     shown: set[tuple[str, str]] = set()
     for look in looks:
         if look.to_frame is None:
             names.update(dict.fromkeys(look.shapes.names))
-            vertices = max(vertices, len(look.shapes.positions))
-            triangles = max(triangles, len(look.shapes.triangles))
-            frames += [] if look.frame is None else [look.frame]
+            size = len(look.shapes.positions), len(look.shapes.triangles)
+            sizes[look.scene] = max(size, sizes.get(look.scene, (0, 0)))
+            frames |= set() if look.frame is None else {look.frame}
             on_look("" if look.frame is None else f"frame {look.frame:g}")
-        found += look.findings
-        notes += look.notes
+        found += [replace(finding, scene=look.scene) for finding in look.findings]
+        notes += [note if note not in notes else "" for note in look.notes]
         seams += look.seams
+        left_out.update(dict.fromkeys(replace(each, scene=look.scene) for each in look.left_out))
         if choices.pictures is not None:
             pictures += _pictures(path, look, choices.pictures, shown)
-    return FileCheck(
-        path.as_posix(), tuple(names), vertices, triangles, tuple(frames), tuple(found), (), tuple(notes), "",
-        time.perf_counter() - begin, tuple(pictures), merged_seams(seams),
+    vertices, triangles = (sum(size[k] for size in sizes.values()) for k in range(2))
+    scenes = tuple(scene for scene in sizes if scene)
+    check = FileCheck(
+        path.as_posix(), tuple(names), vertices, triangles, tuple(sorted(frames)), tuple(found), (),
+        tuple(note for note in notes if note), "", time.perf_counter() - begin, tuple(pictures), merged_seams(seams), scenes,
+        tuple(left_out),
     )  # fmt: skip
+    return check if len(scenes) > 1 else _without_scene(check)
+
+
+def _without_scene(check: FileCheck) -> FileCheck:
+    """Where there is one scene, nobody asks in which."""
+    return replace(
+        check,
+        findings=tuple(replace(each, scene="") for each in check.findings),
+        left_out=tuple(replace(each, scene="") for each in check.left_out),
+    )
 
 
 def _pictures(path: Path, look: Look, folder: Path, shown: set[tuple[str, str]]) -> list[str]:

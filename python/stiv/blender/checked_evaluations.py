@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which evaluations of a scene a check reads: the viewport's, and the render's unless it is very large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import bpy
+
+from stiv.blender.evaluations import RENDER, VIEWPORT, find_differences, subdivision_levels
+
+MOST_TRIANGLES = 500_000  # of what is rendered, from which the render is tested only where asked for
+
+
+def checked_evaluations(context: bpy.types.Context, render: bool = False) -> tuple[str, ...]:
+    """The viewport and the render; the viewport alone where the render is too large, unless `render` asks for it."""
+    if render or rendered_triangles(context) < MOST_TRIANGLES:
+        return VIEWPORT, RENDER
+    return (VIEWPORT,)
+
+
+def note_on(context: bpy.types.Context, evaluations: Sequence[str]) -> str:
+    """What to tell of an evaluation that is not read; "" where all are."""
+    if RENDER in evaluations:
+        return ""
+    return (
+        f'scene "{context.scene.name}": the render levels, of about {rendered_triangles(context):,} triangles, were '
+        "not tested; --render tests them"
+    )
+
+
+def rendered_triangles(context: bpy.types.Context) -> int:
+    """An estimate, without evaluating the render, of the triangles of what is rendered otherwise than shown."""
+    different = find_differences(context, (VIEWPORT, RENDER)).render
+    graph = context.evaluated_depsgraph_get()
+    return sum(
+        _faces(ob.evaluated_get(graph)) * 2 * 4 ** max(0, _extra_levels(ob, context.scene))
+        for ob in context.view_layer.objects
+        if ob.session_uid in different
+    )
+
+
+def _faces(evaluated: bpy.types.Object) -> int:
+    return len(evaluated.data.polygons) if isinstance(evaluated.data, bpy.types.Mesh) else 0
+
+
+def _extra_levels(ob: bpy.types.Object, scene: bpy.types.Scene) -> int:
+    """By how many levels the render is subdivided beyond the viewport."""
+    levels = 0
+    for modifier in ob.modifiers:
+        if modifier.type in ("SUBSURF", "MULTIRES"):
+            if modifier.show_render:
+                levels += subdivision_levels(modifier, scene, RENDER)
+            if modifier.show_viewport:
+                levels -= subdivision_levels(modifier, scene, VIEWPORT)
+    return levels

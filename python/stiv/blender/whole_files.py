@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes every scene and object of an open file visible to a test. The file is not to be saved afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import bpy
+
+from stiv import InputError
+
+ALL = "all"
+
+
+def scene_names(name: str) -> list[str]:
+    """Names of the scenes that `name`, or "all", stands for, the open one first. Raises InputError."""
+    names = [bpy.context.scene.name, *(scene.name for scene in bpy.data.scenes if scene != bpy.context.scene)]
+    if name in names:
+        return [name]
+    if name != ALL:
+        raise InputError(f'there is no scene "{name}" in it; there are {", ".join(names)}')
+    return names
+
+
+def check_names(scene: str, objects: Collection[str]) -> None:
+    """Refuses names of objects that no scene has that `scene`, a name or "all", stands for. Raises InputError."""
+    known = {ob.name for name in scene_names(scene) for ob in bpy.data.scenes[name].objects}
+    unknown = sorted(set(objects) - known)
+    if unknown:
+        where = "any scene" if scene == ALL else f'scene "{scene}"'
+        raise InputError(f'there is no object "{unknown[0]}" in {where}')
+
+
+def show_scene(name: str) -> bpy.types.Context:
+    """Makes a scene the open one; Blender's context then."""
+    bpy.context.window.scene = bpy.data.scenes[name]
+    return bpy.context
+
+
+def unhide_all(context: bpy.types.Context) -> None:
+    """Shows every object and collection of the open scene, in the viewport and for the render."""
+    for collection in (context.scene.collection, *context.scene.collection.children_recursive):
+        collection.hide_viewport = collection.hide_render = False
+    waiting = [context.view_layer.layer_collection]
+    while waiting:
+        layer = waiting.pop()
+        layer.exclude = layer.hide_viewport = False
+        waiting += layer.children
+    for ob in context.view_layer.objects:
+        ob.hide_viewport = ob.hide_render = False
+        ob.hide_set(False)
+    context.view_layer.update()
