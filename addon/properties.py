@@ -188,6 +188,7 @@ class StivCheckResult(bpy.types.PropertyGroup):
     """What the last check found; not saved."""
 
     summary: StringProperty(name="Result of the last check", options={"SKIP_SAVE"})
+    left_out: StringProperty(name="Left out of the last edit", options={"SKIP_SAVE"})
 
 
 CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)

@@ -56,6 +56,8 @@ class TransformOperator(NeedsNativeModule, Choices):
             edit = begin_edit(context, self.request(context.scene))
             for text in edit.summary.warnings:
                 self.report({"WARNING"}, text)
+            if context.window_manager.stiv_check.left_out:
+                self.report({"INFO"}, context.window_manager.stiv_check.left_out)
             known = outcome if outcome is not None and outcome.values == self._values() else None
             result, report = self._repeated(edit, known) or self._applied(edit, transform, frame)
             context.window_manager.stiv_last_edit = describe(result, report)
@@ -107,6 +109,9 @@ def begin_drag(context: bpy.types.Context, request: Any) -> Any:
 
 
 def _told(context: bpy.types.Context, edit: Any) -> Any:
+    from stiv.blender.left_out import text_without_surface  # the add-on registers without the native module
+
+    context.window_manager.stiv_check.left_out = text_without_surface(context)
     if edit.dropped:  # the summary's other warnings look at every triangle, for which a drag has no time
         context.window_manager.stiv_check.summary = edit.dropped
     return edit

@@ -33,6 +33,7 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
         for name in SETTINGS:
             settings.prop(context.scene.stiv, name)
         draw_lines(settings, chosen_guard(context))
+        draw_lines(self.layout, context.window_manager.stiv_check.left_out)
 
 
 def chosen_guard(context: bpy.types.Context) -> str:

@@ -108,6 +108,7 @@ MESSAGES = {
     "Last edit, as JSON": "Letzte Bearbeitung, als JSON",
     "Lattice": "Gitter",
     "Least distance {}": "Kleinster Abstand {}",
+    "Left out of the last edit": "Beim letzten Bearbeiten ausgelassen",
     "Let surfaces give way; otherwise they may go through each other, and nothing is tested": "Flächen ausweichen lassen; sonst dürfen sie durcheinander gehen, und nichts wird geprüft",
     "Let the pair keep the scene's distance again.": "Lässt das Paar wieder den Abstand der Szene halten.",
     "Let the two selected objects keep a distance of their own; one alone keeps it from itself.": "Lässt die beiden gewählten Objekte einen eigenen Abstand halten; eines allein hält ihn von sich selbst.",

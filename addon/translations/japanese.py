@@ -108,6 +108,7 @@ MESSAGES = {
     "Last edit, as JSON": "最後の編集（JSON）",
     "Lattice": "ラティス",
     "Least distance {}": "最小距離 {}",
+    "Left out of the last edit": "前回の編集で対象外",
     "Let surfaces give way; otherwise they may go through each other, and nothing is tested": "サーフェスに避けさせます。オフでは貫通でき、何も検査されません",
     "Let the pair keep the scene's distance again.": "この組に再びシーンの間隔を保たせます。",
     "Let the two selected objects keep a distance of their own; one alone keeps it from itself.": "選択した二つのオブジェクトに独自の間隔を保たせます。一つだけなら自分自身との間隔です。",

@@ -36,10 +36,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture(scope="session")
 def assert_free_of_intersections(pytestconfig: pytest.Config) -> AssertFree:
-    """A function `(path, *, frames=None, objects=(), baseline=None)` that fails the test if anything meets.
+    """A function of a path that fails the test if anything meets.
 
     path: a .blend or a mesh file. frames: "A:B", "A:B:STEP" or "scene", to test these and the ways between them.
-    objects: names to be limited to. baseline: file of accepted findings. The message names objects and faces.
+    objects: names to be limited to. baseline: file of accepted findings. scene: name of the one to test, or "all".
+    render: test render levels however large. hidden: test what is hidden too. The message names objects and faces.
     """
     blender = pytestconfig.getini("stiv_blender")
 
@@ -49,10 +50,14 @@ def assert_free_of_intersections(pytestconfig: pytest.Config) -> AssertFree:
         frames: str | None = None,
         objects: Sequence[str] = (),
         baseline: str | PathLike[str] | None = None,
+        scene: str = "all",
+        render: bool = False,
+        hidden: bool = False,
     ) -> None:
         __tracebackhide__ = True
         options = [f"--object={name}" for name in objects]
         options += [f"--{name}={value}" for name, value in (("frames", frames), ("baseline", baseline)) if value]
+        options += [f"--scene={scene}"] + ["--render"] * render + ["--hidden"] * hidden
         options += ["--blender", blender] if blender else []
         message = _check(Path(path), options)
         if message:

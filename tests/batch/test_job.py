@@ -17,6 +17,7 @@ from stiv.batch.job import Job, parse_job, read_job
 
 CHECK = {"name": "a", "do": "check", "scene": "a.blend"}
 REPLAY = {"name": "b ü", "do": "replay", "scene": "a.blend", "edits": "e.json", "output": "b.blend", "report": "b.json"}
+CHECK_ALL = {"name": "e", "do": "check", "scene": "a.blend", "scene_name": "B", "render": False, "hidden": True}
 RESOLVE = {"name": "c", "do": "resolve", "scene": "a.blend", "frames": "1:9", "output": "c.blend", "hold": ["-x"]}
 REPAIR = {"name": "d", "do": "repair", "scene": "a.blend", "output": "d.blend"}
 
@@ -27,7 +28,7 @@ def job(*entries, **more):
 
 def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
     path = tmp_path / "job.json"
-    path.write_text(json.dumps(job(CHECK, REPLAY, RESOLVE, REPAIR, time_limit=60)), encoding="utf-8")
+    path.write_text(json.dumps(job(CHECK, REPLAY, RESOLVE, REPAIR, CHECK_ALL, time_limit=60)), encoding="utf-8")
     read = read_job(path)
     scene = str(tmp_path / "a.blend")
     assert [entry.arguments for entry in read.entries] == [
@@ -35,6 +36,7 @@ def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
         ("replay", scene, str(tmp_path / "e.json"), f"--output={tmp_path}/b.blend", f"--report={tmp_path}/b.json"),
         ("resolve", scene, f"--output={tmp_path}/c.blend", "--frames=1:9", "--hold=-x"),
         ("repair", scene, f"--output={tmp_path}/d.blend"),
+        ("check", scene, "--scene=B", "--hidden"),
     ]
     assert read.entries[1].inputs == (tmp_path / "a.blend", tmp_path / "e.json")
     assert read.entries[1].outputs == (tmp_path / "b.blend", tmp_path / "b.json")
@@ -56,6 +58,8 @@ WRONG = [
     (job(CHECK | {"scene": 3}), 'entry 0 ("a"): "scene" is not a text'),
     (job(CHECK | {"scene": ""}), 'entry 0 ("a"): "scene" is not the path of a file'),
     (job(CHECK | {"frames": "9:1"}), "entry 0 (\"a\"): frames '9:1' must ascend"),
+    (job(CHECK | {"hidden": 1}), 'entry 0 ("a"): "hidden" is neither true nor false'),
+    (job(CHECK | {"scene_name": 1}), 'entry 0 ("a"): "scene_name" is not a text'),
     (job(CHECK | {"objects": "x"}), 'entry 0 ("a"): "objects" is not a list of names'),
     (job(CHECK, CHECK), 'entry 1: the name "a" is that of entry 0 too'),
     (job(REPLAY, REPAIR | {"output": "b.blend"}), 'entry 1 ("d"): '),

@@ -19,7 +19,7 @@ MAX_NAME = 100
 _FILES_IN = ("scene", "edits", "baseline")
 _FILES_OUT = ("output", "report")
 _FIELDS: Mapping[str, tuple[set[str], set[str]]] = {  # by what is done: fields that must be there, and that may be
-    "check": ({"scene"}, {"report", "frames", "objects", "baseline"}),
+    "check": ({"scene"}, {"report", "frames", "objects", "baseline", "scene_name", "render", "hidden"}),
     "replay": ({"scene", "edits", "output"}, {"report"}),
     "repair": ({"scene", "output"}, {"report"}),
     "resolve": ({"scene", "frames", "output"}, {"report", "hold"}),
@@ -107,6 +107,9 @@ def _arguments(task: str, data: Mapping[str, Any], files: Mapping[str, Path], wh
         arguments.append(f"--baseline={files['baseline']}")
     if "frames" in data:
         arguments.append(f"--frames={_frames(data['frames'], where)}")
+    if "scene_name" in data:
+        arguments.append(f"--scene={_text(data['scene_name'], 'scene_name', where)}")
+    arguments += [f"--{field}" for field in ("render", "hidden") if _flag(data.get(field, False), field, where)]
     arguments += [f"--object={name}" for name in _names(data.get("objects", []), "objects", where)]
     return arguments + [f"--hold={name}" for name in _names(data.get("hold", []), "hold", where)]
 
@@ -146,6 +149,12 @@ def _path(value: object, field: str, where: str) -> Path:
 def _text(value: object, field: str, where: str) -> str:
     if not isinstance(value, str):
         raise InputError(f'{where}: "{field}" is not a text')
+    return value
+
+
+def _flag(value: object, field: str, where: str) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f'{where}: "{field}" is neither true nor false')
     return value
 
 

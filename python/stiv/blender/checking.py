@@ -14,9 +14,11 @@ from stiv.blender.assembly import Assembly, assemble_joined
 from stiv.blender.evaluated_scene import read_scene
 from stiv.blender.exclusions import Exclusions
 from stiv.blender.guarding import read_guarded_scene
+from stiv.blender.left_out import find_left_out
 from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, named_pairs
+from stiv.checks.findings import LeftOut
 from stiv.edge_contacts import edge_contacts
 from stiv.seams import seam_pairs
 
@@ -32,6 +34,7 @@ class SceneCheck:
         guard: what was tested: the "viewport", the "render" or "both".
         reason: why the render was left out although it differs; empty otherwise.
         hidden: objects with a surface that are hidden or excluded, and were not.
+        left_out: objects that were not tested, with the reason.
         seams: pairs of faces of one object that touch in coincident vertices or edges alone: one surface there.
     """
 
@@ -42,6 +45,7 @@ class SceneCheck:
     seams: int = 0
     guard: str = "viewport"
     reason: str = ""
+    left_out: tuple[LeftOut, ...] = ()
 
     @property
     def triangle_pairs(self) -> int:
@@ -75,6 +79,8 @@ def check_scene(
     count = sum(len(faces) for _, faces in seams)
     triangles = len(assembly.surface.triangles)
     return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason)
+    left_out = find_left_out(context, names, objects or ())
+    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, count, left_out)
 
 
 def exclusions_now(

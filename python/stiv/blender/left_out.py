@@ -9,7 +9,7 @@ import bpy
 
 from stiv.blender.evaluated_scene import SURFACE_TYPES
 from stiv.blender.loop_objects import cages_shown_by_others
-from stiv.checks.findings import LeftOut
+from stiv.checks.findings import LeftOut, left_out_text
 
 WITHOUT_SURFACE = {
     "CURVES": "hair curves",
@@ -33,6 +33,12 @@ def find_left_out(
         *(each for each in _without_surface(context) if not named or each[0] in named),
     ]
     return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
+
+
+def text_without_surface(context: bpy.types.Context) -> str:
+    """What of the visible scene edits pass through, since it has no surface; "" for nothing."""
+    found = [LeftOut(name, why) for name, why in dict.fromkeys(_without_surface(context))]
+    return f"Not guarded: {left_out_text(found)}" if found else ""
 
 
 def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:

@@ -134,8 +134,8 @@ def _summed(
     scenes = tuple(scene for scene in sizes if scene)
     check = FileCheck(
         path.as_posix(), tuple(names), vertices, triangles, tuple(sorted(frames)), tuple(found), (),
-        tuple(note for note in notes if note), "", time.perf_counter() - begin, tuple(pictures), merged_seams(seams), scenes,
-        tuple(left_out),
+        tuple(note for note in notes if note), "", time.perf_counter() - begin, tuple(pictures), merged_seams(seams),
+        scenes, tuple(left_out),
     )  # fmt: skip
     return check if len(scenes) > 1 else _without_scene(check)
 

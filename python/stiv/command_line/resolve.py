@@ -156,5 +156,5 @@ def _alike(tracks: Sequence[Any], parts: Sequence[Any]) -> dict[str, int]:
 
 def _keeps(finding: Finding, alike: dict[str, int]) -> bool:
     """Is this between what never moves against each other, and was there before?"""
-    one, other = (alike[name] for name in finding.objects)
+    one, other = (alike.get(name, -1) for name in finding.objects)  # what is only rendered has no track
     return one == other and one >= -1
