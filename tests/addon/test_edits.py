@@ -191,7 +191,7 @@ def test_the_check_says_what_took_part(wall: Any) -> None:
     bpy.ops.stiv.check()
     told = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
     triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
-    assert told == f"Objects: 2, triangles: {triangles}; not tested: 1 hidden (\"Hidden\")"
+    assert told == f'Objects: 2, triangles: {triangles}; not tested: 1 hidden ("Hidden")'
 
 
 @pytest.mark.parametrize("constraints", ["per_patch", "single"])
