@@ -78,9 +78,8 @@ def check_scene(
     names = {mesh.owner.name for mesh in assembly.meshes}
     count = sum(len(faces) for _, faces in seams)
     triangles = len(assembly.surface.triangles)
-    return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason)
     left_out = find_left_out(context, names, objects or ())
-    return SceneCheck(pairs, len(names), len(assembly.surface.triangles), scene.hidden, count, left_out)
+    return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason, left_out)
 
 
 def exclusions_now(
