@@ -264,3 +264,16 @@ def test_undo_in_edit_mode_finds_nothing_of_the_copies() -> None:
     for step, state in ((bpy.ops.ed.undo, 1), (bpy.ops.ed.undo, 0), (bpy.ops.ed.redo, 1), (bpy.ops.ed.redo, 2)):
         step()
         assert snapshot() == states[state] and counts() == kept
+
+
+def test_a_start_that_intersects_only_when_rendered_names_the_way_out() -> None:
+    add_grid("Wall", 2, 2.0, (0.9, 0, 0), rotation_euler=(0, np.pi / 2, 0))
+    cube = add_cube("Cube")
+    add_modifier(cube, "SUBSURF", levels=2, render_levels=0)
+    select(cube)
+    before = snapshot()
+    bpy.context.scene.stiv.separation = 0.001
+    assert "only when rendered; set Guard to Viewport" in move()
+    assert snapshot() == before
+    bpy.context.scene.stiv.guard = "viewport"
+    assert move() == ""

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 import stiv
 from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly
+from stiv.blender.evaluations import RENDER
 from stiv.blender.parts import Part
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
@@ -64,7 +65,16 @@ def make_session(
         time_budget=settings.time_budget,
         threads=settings.threads,
     )
-    return stiv.EditSession(assembly.surface, deformation, controls, options)
+    try:
+        return stiv.EditSession(assembly.surface, deformation, controls, options)
+    except stiv.StartIntersectsError as error:
+        if len(error.pairs) and all(_is_only_rendered(assembly, pair) for pair in error.pairs.tolist()):
+            error.add_note("it does so only when rendered; set Guard to Viewport to leave the render out")
+        raise
+
+
+def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
+    return any(assembly.face(triangle).evaluation == RENDER for triangle in pair)
 
 
 def deformation_of(assembly: Assembly, parts: Sequence[Part]) -> stiv.Deformation:
