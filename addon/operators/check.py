@@ -64,7 +64,7 @@ def tested(found: Any) -> str:
     """What took part in a check and what did not, as a line."""
     from stiv.checks.findings import left_out_text  # the add-on registers without the native module
 
-    left_out = f"; not tested: {left_out_text(found.left_out)}" if found.left_out else ""
+    left_out = f"; not tested, {left_out_text(found.left_out)}" if found.left_out else ""
     seams = f"; pairs of faces on seams: {found.seams:,}" if found.seams else ""
     return f"Objects: {found.objects}, triangles: {found.triangles:,}{seams}{left_out}"
 

@@ -191,7 +191,7 @@ def test_the_check_says_what_took_part(wall: Any) -> None:
     bpy.ops.stiv.check()
     told = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
     triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
-    assert told == f'Objects: 2, triangles: {triangles}; not tested: 1 hidden ("Hidden")'
+    assert told == f'Objects: 2, triangles: {triangles}; not tested, hidden: 1 ("Hidden")'
 
 
 @pytest.mark.parametrize("constraints", ["per_patch", "single"])
@@ -227,11 +227,11 @@ def test_what_has_no_surface_is_named_by_the_operator_and_kept_for_the_panel(wal
     bpy.context.collection.objects.link(bpy.data.objects.new("Hair", bpy.data.hair_curves.new("Hair")))
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     assert bpy.ops.stiv.move(value=(1, 0, 0)) == {"FINISHED"}
-    said = 'Not guarded: 1 hair curves ("Hair")'
+    said = 'Not guarded, hair curves: 1 ("Hair")'
     assert bpy.context.window_manager.stiv_check.left_out == said
     assert said in capfd.readouterr().out
     bpy.ops.stiv.check()
-    assert 'not tested: 1 hair curves ("Hair")' in bpy.context.window_manager.stiv_check.summary
+    assert 'not tested, hair curves: 1 ("Hair")' in bpy.context.window_manager.stiv_check.summary
     bpy.data.objects.remove(bpy.data.objects["Hair"])
     bpy.ops.stiv.move(value=(1, 0, 0))
     assert bpy.context.window_manager.stiv_check.left_out == ""

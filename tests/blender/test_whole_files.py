@@ -73,7 +73,7 @@ def test_hidden_objects_are_counted_and_tested_where_asked_for(tmp_path: Path, c
     code, file = checked(tmp_path)
     assert code == 0 and file["objects"] == ["Shown"]
     assert file["left_out_counts"] == {"hidden": 2, "in an excluded collection": 1}
-    said = 'not tested: 2 hidden ("Eye", "Monitor"), 1 in an excluded collection ("Excluded")'
+    said = 'not tested, hidden: 2 ("Eye", "Monitor"); in an excluded collection: 1 ("Excluded")'
     assert said in capsys.readouterr().out
     code, file = checked(tmp_path, "--hidden")
     assert code == 4 and sorted(file["objects"]) == ["Excluded", "Eye", "Monitor", "Shown"]
@@ -84,7 +84,7 @@ def test_what_is_rendered_and_not_shown_is_tested(tmp_path: Path) -> None:
     add_cube("Shown")
     add_cube("Rendered", (0.5, 0.4, 0.3)).hide_set(True)
     code, file = checked(tmp_path)
-    assert code == 4 and all(pair["rendered"] for pair in file["pairs"])
+    assert code == 4 and all(pair["rendered"] for pair in file["pairs"]) and file["left_out"] == []
     bpy.data.objects["Rendered"].hide_render = True
     assert checked(tmp_path)[0] == 0
 
@@ -134,5 +134,5 @@ def test_what_has_no_surface_is_named_as_not_tested(tmp_path: Path, capsys) -> N
         ("Hair", "hair curves"), ("Dust", "point clouds"), ("Smoke", "volumes"),
         ("Path", "curves without surface"), ("Lawn", "particle hair"),
     }  # fmt: skip
-    assert '1 hair curves ("Hair")' in capsys.readouterr().out
+    assert 'hair curves: 1 ("Hair")' in capsys.readouterr().out
     assert {each["why"] for each in checked(tmp_path, "--object", "Cube")[1]["left_out"]} == {"not named"}

@@ -51,8 +51,9 @@ def check_frames(
             if evaluation in before or evaluation in present:
                 start, end = (poses.get(evaluation, poses[evaluations[0]]) for poses in (before, present))
                 yield _between(start, end, evaluation, threads)
+        tested = {name for pose in present.values() for name in pose.look.shapes.names}
+        left_out = find_left_out(context, tested, objects) if number == 0 else ()
         for pose in present.values():
-            left_out = find_left_out(context, pose.look.shapes.names, objects) if number == 0 else ()
             yield replace(pose.look, left_out=left_out)
         before = present
 

@@ -38,7 +38,7 @@ def find_left_out(
 def text_without_surface(context: bpy.types.Context) -> str:
     """What of the visible scene edits pass through, since it has no surface; "" for nothing."""
     found = [LeftOut(name, why) for name, why in dict.fromkeys(_without_surface(context))]
-    return f"Not guarded: {left_out_text(found)}" if found else ""
+    return f"Not guarded, {left_out_text(found)}" if found else ""
 
 
 def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:

@@ -160,15 +160,15 @@ def when(finding: Finding) -> str:
 
 
 def left_out_text(left_out: Sequence[LeftOut], most: int = 3) -> str:
-    """How many objects are not tested and why, with the first names: `2 hidden ("Proxy", "Ref"), ...`."""
+    """How many objects are not tested and why, with the first names: `hidden: 2 ("Proxy", "Ref"); ...`."""
     names: dict[str, dict[str, None]] = {}
     for each in left_out:
         names.setdefault(each.why, {})[each.object] = None
     told = []
     for why, objects in sorted(names.items()):
         listed = ", ".join(f'"{name}"' for name in list(objects)[:most]) + (", ..." if len(objects) > most else "")
-        told.append(f"{len(objects):,} {why} ({listed})")
-    return ", ".join(told)
+        told.append(f"{why}: {len(objects):,} ({listed})")
+    return "; ".join(told)
 
 
 def counted(pairs: int, triangle_pairs: int) -> str:

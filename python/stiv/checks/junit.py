@@ -35,7 +35,7 @@ def _add_suite(root: ElementTree.Element, check: FileCheck) -> None:
             _add(case, "error", message=check.error)
         elif findings:
             _add(case, "failure", message=_headline(findings)).text = _clean(_listed(findings))
-    told = [f"not tested: {left_out_text(check.left_out)}"] if check.left_out else []
+    told = [f"not tested, {left_out_text(check.left_out)}"] if check.left_out else []
     told += [f"accepted by the baseline:\n{_listed(check.accepted)}"] if check.accepted else []
     if told:
         _add(suite, "system-out").text = _clean("\n".join(told))

@@ -62,7 +62,7 @@ def summary(check: FileCheck, with_seams: bool = False) -> str:
     if check.frames:
         size += f", {len(check.frames)} frames"
     accepted = f"; {len(check.accepted):,} pairs accepted by the baseline" if check.accepted else ""
-    notes = [f"  not tested: {left_out_text(check.left_out)}"] if check.left_out else []
+    notes = [f"  not tested, {left_out_text(check.left_out)}"] if check.left_out else []
     notes += [f"  note: {note}" for note in check.notes]
     notes += [f"  pairs of faces that touch along seams alone: {check.seam_count:,}"] if check.seams else []
     notes += [f"  seam: {seam}" for each in check.seams for seam in each.findings()] if with_seams else []
