@@ -81,11 +81,17 @@ Positions push_forward(const Deformation& deformation, const Controls& p, const 
   return deformation.push_forward(p, d);
 }
 
+using WeightArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+Eigen::VectorXd flat(const WeightArray& weights) {
+  return Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Index>(weights.size()));
+}
+
 Positions apply_inverse_metric(const Deformation& deformation, const Controls& p, const Positions& g, double smoothness,
-                               const Eigen::VectorXd& weights) {
+                               const WeightArray& weights, const std::vector<Eigen::Matrix3d>& weight_axes) {
   check_rows(p, deformation.control_count(), "controls");
   check_rows(g, deformation.control_count(), "covector");
-  const auto metric = deformation.metric({smoothness, weights});
+  const auto metric = deformation.metric({smoothness, flat(weights), weight_axes});
   return dense(metric->apply_inverse(p, nonzero_rows(g)), deformation.control_count());
 }
 
@@ -188,10 +194,11 @@ void bind_class(py::module_& module) {
            py::call_guard<py::gil_scoped_release>(),
            "J(p) d, (n, 3): the surface's velocity under a motion d of the controls, (m, 3).")
       .def("apply_inverse_metric", &apply_inverse_metric, py::arg("controls"), py::arg("covector"),
-           py::arg("smoothness") = 0.1, py::arg("weights") = Eigen::VectorXd(),
-           py::call_guard<py::gil_scoped_release>(),
+           py::arg("smoothness") = 0.1, py::arg("weights") = WeightArray(0),
+           py::arg("weight_axes") = std::vector<Eigen::Matrix3d>(), py::call_guard<py::gil_scoped_release>(),
            "W^1/2 (J'J + damping)^-1 W^1/2 g, (m, 3), of a covector g over controls, (m, 3). `smoothness` > 0 is the "
-           "damping relative to the diagonal; `weights`, (m,), default 1, pin a control where 0.")
+           "damping relative to the diagonal; `weights`, (m,) or (m, 3), default 1, pin a control or one of its\n"
+           "coordinates where 0. `weight_axes`, (m, 3, 3): three weights act along the columns of a rotation.")
       .def("support", &support, py::arg("control"), "Vertices that a control moves, ascending; a list.");
 }
 

@@ -185,6 +185,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("keep_between", &EditOptions::keep_between)
       .def_readwrite("smoothness", &EditOptions::smoothness)
       .def_readwrite("weights", &EditOptions::weights)
+      .def_readwrite("weight_axes", &EditOptions::weight_axes)
       .def_readwrite("exclude", &EditOptions::excluded)
       .def_readwrite("constraints", &EditOptions::constraints)
       .def_readwrite("solver", &EditOptions::solver)

@@ -92,6 +92,18 @@ ControlsView rows_of_part(const ControlsView& p, const std::vector<Index>& start
   return p.middleRows(starts[part], starts[part + 1] - starts[part]);
 }
 
+/// The options for some controls of `options`, those from `first` on.
+MetricOptions options_of_rows(const MetricOptions& options, Index first, Index count, Index control_count) {
+  MetricOptions some{options.smoothness, {}, {}};
+  if (options.weights.size() > 0) {
+    const Index values = static_cast<Index>(options.weights.size()) / control_count;
+    some.weights = options.weights.segment(values * first, values * count);
+  }
+  if (!options.weight_axes.empty())
+    some.weight_axes.assign(options.weight_axes.begin() + first, options.weight_axes.begin() + first + count);
+  return some;
+}
+
 class BlockMetric final : public Metric {
  public:
   BlockMetric(std::vector<std::unique_ptr<Metric>> blocks, std::vector<Index> starts)
@@ -199,12 +211,12 @@ class Concatenation final : public Deformation {
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    const Eigen::VectorXd weights = checked_weights(options, control_count());
+    checked_weights(options, control_count());
     std::vector<std::unique_ptr<Metric>> blocks;
     for (std::size_t part = 0; part < parts_.size(); ++part) {
       const Index count = control_starts_[part + 1] - control_starts_[part];
       blocks.push_back(
-          parts_[part].deformation->metric({options.smoothness, weights.segment(control_starts_[part], count)}));
+          parts_[part].deformation->metric(options_of_rows(options, control_starts_[part], count, control_count())));
     }
     return std::make_unique<BlockMetric>(std::move(blocks), control_starts_);
   }

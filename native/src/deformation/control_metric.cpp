@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <utility>
 
-#include "deformation/checks.hpp"
+#include "deformation/axis_metric.hpp"
 #include "stiv/deformation/metric.hpp"
 
 namespace stiv {
@@ -34,7 +34,9 @@ class ControlMetric final : public Metric {
 }  // namespace
 
 std::unique_ptr<Metric> make_control_metric(const MetricOptions& options, Index control_count, bool local) {
-  return std::make_unique<ControlMetric>(checked_weights(options, control_count), local);
+  return make_axis_metric(checked_weights(options, control_count), [&](const Eigen::VectorXd& weights) {
+    return std::make_unique<ControlMetric>(weights, local);
+  });
 }
 
 }  // namespace stiv

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "deformation/checks.hpp"
+#include "deformation/axis_metric.hpp"
 #include "deformation/gram_metric.hpp"
 
 namespace stiv {
@@ -308,17 +308,21 @@ Eigen::MatrixXd HandleMap::gram(const WeightMatrix* surface_gram) const {
 }
 
 std::unique_ptr<Metric> HandleMap::metric(const MetricOptions& options, const WeightMatrix* surface_gram) const {
-  const Eigen::VectorXd weights = checked_weights(options, control_count());
+  ResponseWeights weights = checked_weights(options, control_count());
   const double products = static_cast<double>(vertex_count()) * control_count() * control_count();
   if (!is_full() || products > limits_.products) {
     const auto product = [&](const ColumnBlock& d) { return gram_product(d, surface_gram); };
-    return make_low_rank_metric(product, limits_.probes, options.smoothness,
-                                active_controls(Eigen::VectorXd::Ones(control_count()), weights));
+    return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
+      return make_low_rank_metric(product, limits_.probes, options.smoothness,
+                                  active_controls(Eigen::VectorXd::Ones(control_count()), some));
+    });
   }
   const Eigen::MatrixXd whole = gram(surface_gram);
-  ActiveControls active = active_controls(whole.diagonal(), weights);
-  Eigen::MatrixXd part = whole(active.control, active.control);
-  return make_gram_metric(std::move(part), options.smoothness, std::move(active));
+  return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
+    ActiveControls active = active_controls(whole.diagonal(), some);
+    Eigen::MatrixXd selected = whole(active.control, active.control);
+    return make_gram_metric(std::move(selected), options.smoothness, std::move(active));
+  });
 }
 
 }  // namespace stiv

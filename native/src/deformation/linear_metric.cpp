@@ -4,7 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <utility>
 
-#include "deformation/checks.hpp"
+#include "deformation/axis_metric.hpp"
 #include "deformation/gram_metric.hpp"
 #include "stiv/error.hpp"
 
@@ -63,15 +63,21 @@ class SparseLinearMetric final : public Metric {
   Eigen::SimplicialLDLT<WeightColumns> factor_;
 };
 
+std::unique_ptr<Metric> metric_of_active(const WeightColumns& matrix, double smoothness, ActiveControls active) {
+  const WeightColumns selected = selected_columns(matrix, active.control);
+  if (selected.cols() <= full_inverse_limit)
+    return make_gram_metric(dense_gram(selected), smoothness, std::move(active));
+  return std::make_unique<SparseLinearMetric>(selected, smoothness, std::move(active));
+}
+
 }  // namespace
 
 std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options) {
-  ActiveControls active =
-      active_controls(squared_lengths(matrix), checked_weights(options, static_cast<Index>(matrix.cols())));
-  const WeightColumns selected = selected_columns(matrix, active.control);
-  if (selected.cols() <= full_inverse_limit)
-    return make_gram_metric(dense_gram(selected), options.smoothness, std::move(active));
-  return std::make_unique<SparseLinearMetric>(selected, options.smoothness, std::move(active));
+  const Eigen::VectorXd lengths = squared_lengths(matrix);
+  const auto of_weights = [&](const Eigen::VectorXd& weights) {
+    return metric_of_active(matrix, options.smoothness, active_controls(lengths, weights));
+  };
+  return make_axis_metric(checked_weights(options, static_cast<Index>(matrix.cols())), of_weights);
 }
 
 }  // namespace stiv

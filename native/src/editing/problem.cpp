@@ -30,9 +30,19 @@ EditOptions checked(EditOptions options, Index control_count) {
 }
 
 std::unique_ptr<Metric> metric_of(const Deformation& deformation, const EditOptions& options) {
-  const MetricOptions metric{options.smoothness, options.weights};
+  const MetricOptions metric{options.smoothness, options.weights, options.weight_axes};
   if (options.metric == MetricKind::controls) return make_control_metric(metric, deformation.control_count());
   return deformation.metric(metric);
+}
+
+/// Rotation vectors that may be composed as rotations: not those with pinned coordinates, which that would change.
+std::vector<Index> free_rotation_rows(const Deformation& deformation, const Eigen::VectorXd& weights) {
+  std::vector<Index> rows = deformation.rotation_rows();
+  if (weights.size() == 0 || weights.size() == deformation.control_count()) return rows;
+  rows.erase(std::remove_if(rows.begin(), rows.end(),
+                            [&](Index row) { return (weights.segment<3>(3 * row).array() == 0).any(); }),
+             rows.end());
+  return rows;
 }
 
 double first_time(const Events& events) {
@@ -57,7 +67,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
     : surface_(fitting(std::move(surface), deformation)),
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
-      rotation_rows_(deformation_->rotation_rows()),
+      rotation_rows_(free_rotation_rows(*deformation_, options_.weights)),
       metric_(metric_of(*deformation_, options_)),
       detector_(surface_, {.broad_phase = options_.broad_phase}),
       candidate_cache_(detector_),
@@ -71,7 +81,7 @@ Problem::Problem(std::shared_ptr<const Surface> surface, std::shared_ptr<const D
   reference_ = centred(q);
   const MovingExtent extent = moving_extent(*surface_, *deformation_, q);
   diagonal_ = extent.diagonal;
-  const double least = least_separation(extent, controls, options_.storage, rotation_rows_);
+  const double least = least_separation(extent, controls, options_.storage, deformation_->rotation_rows());
   set_proximity(extent, least);
   if (!excluded_.empty()) depth_.emplace(surface_, options_.excluded, least);
   if (options_.narrow_phase != NarrowPhase::conservative)

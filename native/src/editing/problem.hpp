@@ -64,6 +64,7 @@ class Problem {
   const Deformation& deformation() const { return *deformation_; }
   const Metric& metric() const { return *metric_; }
   const EditOptions& options() const { return options_; }
+  /// Rotation vectors that are interpolated as rotations.
   const std::vector<Index>& rotation_rows() const { return rotation_rows_; }
   Proximity proximity() const { return proximity_; }
   /// That of the rounds, which aim for no distance where volumes are as published and none is asked for.

@@ -35,11 +35,27 @@ RoundOutcome straight_way(const Problem& problem, const Aim& aim, PairLimit pair
   return outcome;
 }
 
-/// Does the goal move controls that do not respond? What they hit must give way, which may raise the energy.
+/// The displacement of a control along the axes of its weights. A trifle of it is the rounding of turned axes.
+Vector3 along_weight_axes(const EditOptions& options, Index control, const Vector3& displacement) {
+  constexpr double rounding = 1e-12;
+  if (options.weight_axes.empty()) return displacement;
+  const Vector3 along = options.weight_axes[static_cast<std::size_t>(control)].transpose() * displacement;
+  return (along.array().abs() > rounding * displacement.norm()).select(along, 0);
+}
+
+/// Does the goal move controls along axes in which they do not respond? What they hit must give way, which may raise
+/// the energy.
 bool moves_pinned_controls(const Problem& problem, const Controls& from, const Controls& to) {
-  const Eigen::VectorXd& weights = problem.options().weights;
-  for (Index k = 0; k < weights.size(); ++k)
-    if (weights[k] == 0 && from.row(k) != to.row(k)) return true;
+  const EditOptions& options = problem.options();
+  if (options.weights.size() == 0) return false;
+  const Index values = static_cast<Index>(options.weights.size() / from.rows());
+  for (Index k = 0; k < from.rows(); ++k) {
+    const auto weights = options.weights.segment(values * k, values);
+    if (!(weights.array() == 0).any() || from.row(k) == to.row(k)) continue;
+    if (values == 1) return true;
+    const Vector3 moved = along_weight_axes(options, k, (to.row(k) - from.row(k)).transpose());
+    if ((weights.array() == 0 && moved.array() != 0).any()) return true;
+  }
   return false;
 }
 
@@ -111,7 +127,8 @@ void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& repor
 
 void solve_in_turns(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
   const std::vector<Index>& rows = problem.rotation_rows();
-  const auto turn = [&] { return largest_rotation(accepted.controls, aim.controls, rows); };
+  const std::vector<Index> turning = problem.deformation().rotation_rows();
+  const auto turn = [&] { return largest_rotation(accepted.controls, aim.controls, turning); };
   const int steps = static_cast<int>(std::ceil(turn() / largest_turn));
   for (int step = 1; step < steps; ++step) {
     const double fraction = std::min(1.0, largest_turn / turn());

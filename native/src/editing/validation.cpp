@@ -19,11 +19,13 @@ void require(bool condition, const std::string& message) {
 
 void check_weights(const Eigen::VectorXd& weights, Index control_count) {
   if (weights.size() == 0) return;
-  require(weights.size() == control_count, "weights has " + std::to_string(weights.size()) + " entries for " +
-                                               std::to_string(control_count) + " controls");
+  const bool by_axis = weights.size() == 3 * control_count;
+  require(by_axis || weights.size() == control_count, "weights has " + std::to_string(weights.size()) +
+                                                          " entries for " + std::to_string(control_count) +
+                                                          " controls: give one for each, or three");
   for (Index k = 0; k < weights.size(); ++k)
     require(std::isfinite(weights[k]) && weights[k] >= 0,
-            "weights, control " + std::to_string(k) + ": must be finite and not negative");
+            "weights, control " + std::to_string(by_axis ? k / 3 : k) + ": must be finite and not negative");
 }
 
 void check_storage(const std::vector<StorageFrame>& frames, Index control_count) {

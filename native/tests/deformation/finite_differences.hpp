@@ -99,45 +99,87 @@ inline Eigen::MatrixXd dense_jacobian(const Deformation& deformation, const Cont
   return jacobian;
 }
 
+/// The weight of each degree of freedom, (3m).
+inline Eigen::VectorXd weights_of_freedoms(const MetricOptions& options, Index m) {
+  if (options.weights.size() == 0) return Eigen::VectorXd::Ones(3 * m);
+  if (options.weights.size() == 3 * m) return options.weights;
+  Eigen::VectorXd weights(3 * m);
+  for (Index row = 0; row < 3 * m; ++row) weights[row] = options.weights[row / 3];
+  return weights;
+}
+
+/// Along which axes a metric is damped, where those of the weights are not x, y and z.
+enum class DampingAxes { weights, world };
+
 /// `metric` against W^1/2 (J'J + diag(damping))^-1 W^1/2 of the degrees of freedom whose weight is positive.
 /// @param damping (3m) what is added to the diagonal of J'J
 inline void check_metric(const Deformation& deformation, const Controls& p, const MetricOptions& options,
-                         const Eigen::VectorXd& damping, double tolerance = 1e-9) {
+                         const Eigen::VectorXd& damping, DampingAxes damping_along = DampingAxes::weights) {
+  constexpr double tolerance = 1e-9;
   const Index m = deformation.control_count();
   const Eigen::MatrixXd jacobian = dense_jacobian(deformation, p);
   Eigen::MatrixXd full = jacobian.transpose() * jacobian;
-  full.diagonal() += damping;
-  const Eigen::VectorXd weights = options.weights.size() > 0 ? options.weights : Eigen::VectorXd::Ones(m).eval();
+  const Eigen::VectorXd weights = weights_of_freedoms(options, m);
+  Eigen::MatrixXd axes = Eigen::MatrixXd::Identity(3 * m, 3 * m);
+  for (std::size_t k = 0; k < options.weight_axes.size(); ++k)
+    axes.block<3, 3>(3 * static_cast<Index>(k), 3 * static_cast<Index>(k)) = options.weight_axes[k];
+  if (damping_along == DampingAxes::world) full.diagonal() += damping;
+  full = (axes.transpose() * full * axes).eval();
+  if (damping_along == DampingAxes::weights) full.diagonal() += damping;
   std::vector<Index> free;
   for (Index row = 0; row < 3 * m; ++row)
-    if (weights[row / 3] > 0) free.push_back(row);
+    if (weights[row] > 0) free.push_back(row);
   const SparseField g = random_field(m, 1, 11);
   const Positions covector = dense(g, m);
-  const Eigen::VectorXd flat = Eigen::Map<const Eigen::VectorXd>(covector.data(), 3 * m);
+  const Eigen::VectorXd flat = axes.transpose() * Eigen::Map<const Eigen::VectorXd>(covector.data(), 3 * m);
   Eigen::VectorXd root(static_cast<Index>(free.size()));
-  for (std::size_t k = 0; k < free.size(); ++k) root[static_cast<Index>(k)] = std::sqrt(weights[free[k] / 3]);
+  for (std::size_t k = 0; k < free.size(); ++k) root[static_cast<Index>(k)] = std::sqrt(weights[free[k]]);
   const Eigen::VectorXd solution =
       root.cwiseProduct(Eigen::MatrixXd(full(free, free)).partialPivLu().solve(root.cwiseProduct(flat(free))));
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(3 * m);
   expected(free) = solution;
+  expected = (axes * expected).eval();
 
   const SparseField step = deformation.metric(options)->apply_inverse(p, g);
   CHECK(std::is_sorted(step.index.begin(), step.index.end()));
-  for (const Index control : step.index) CHECK(weights[control] > 0);
+  for (const Index control : step.index) CHECK(weights.segment<3>(3 * control).maxCoeff() > 0);
   const Positions found = dense(step, m);
+  if (options.weight_axes.empty())
+    for (Index row = 0; row < 3 * m; ++row)
+      if (weights[row] == 0) CHECK(found(row / 3, row % 3) == 0);
   CHECK((Eigen::Map<const Eigen::VectorXd>(found.data(), 3 * m) - expected).norm() <= tolerance * expected.norm());
 }
 
-/// Damping of linear deformations: eps times the mean diagonal of J'J over the controls that may respond.
+/// Damping of linear deformations: along each axis eps times the mean diagonal of J'J over the controls that may
+/// respond along it.
 inline Eigen::VectorXd mean_damping(const Deformation& deformation, const Controls& p, const MetricOptions& options) {
   const Eigen::VectorXd diagonal = dense_jacobian(deformation, p).colwise().squaredNorm();
-  double sum = 0, count = 0;
-  for (Index row = 0; row < diagonal.size(); ++row) {
-    if (options.weights.size() > 0 && options.weights[row / 3] == 0) continue;
-    sum += diagonal[row];
-    ++count;
+  const Eigen::VectorXd weights = weights_of_freedoms(options, static_cast<Index>(diagonal.size()) / 3);
+  Eigen::VectorXd damping(diagonal.size());
+  for (Index axis = 0; axis < 3; ++axis) {
+    double sum = 0, count = 0;
+    for (Index row = axis; row < diagonal.size(); row += 3) {
+      if (weights[row] == 0) continue;
+      sum += diagonal[row];
+      ++count;
+    }
+    for (Index row = axis; row < diagonal.size(); row += 3) damping[row] = options.smoothness * sum / count;
   }
-  return Eigen::VectorXd::Constant(diagonal.size(), options.smoothness * sum / count);
+  return damping;
+}
+
+/// Weights at random for each coordinate of `count` controls, a third of them 0, and where asked for a rotation.
+inline MetricOptions random_axis_weights(Index count, unsigned seed, bool turned) {
+  MetricOptions options;
+  std::mt19937 random(seed);
+  const double choices[] = {0, 0.3, 2};
+  options.weights.resize(3 * count);
+  for (double& weight : options.weights) weight = choices[random() % 3];
+  if (turned) {
+    const Eigen::Quaterniond rotation(0.8, 0.2, -0.4, 0.4);
+    options.weight_axes.assign(static_cast<std::size_t>(count), rotation.normalized().toRotationMatrix());
+  }
+  return options;
 }
 
 }  // namespace stiv::testing

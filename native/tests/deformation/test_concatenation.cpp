@@ -69,6 +69,21 @@ TEST_CASE("concatenation: each part keeps its own metric") {
   CHECK(found.row(5) == g.value[5].transpose());
 }
 
+TEST_CASE("concatenation: weights along axes go to their part") {
+  const auto whole = mixed(random_positions(12, 1));
+  const Controls p = random_positions(6, 2);
+  for (const bool turned : {false, true}) {
+    const MetricOptions options = random_axis_weights(6, 8, turned);
+    const SparseField g = random_field(6, 1, 3);
+    const Positions found = dense(whole->metric(options)->apply_inverse(p, g), 6);
+    MetricOptions of_linear{options.smoothness, options.weights.segment(6, 6)};
+    if (turned) of_linear.weight_axes = {options.weight_axes[2], options.weight_axes[3]};
+    const auto linear_metric = make_linear(two_control_weights(4))->metric(of_linear);
+    CHECK(found.middleRows(2, 2) ==
+          dense(linear_metric->apply_inverse(p.middleRows(2, 2), {{0, 1}, {g.value[2], g.value[3]}}), 2));
+  }
+}
+
 TEST_CASE("concatenation: its metric is local if that of every part is") {
   const Positions start = random_positions(12, 1);
   const auto is_local = [&](std::vector<DeformationPart> parts) {

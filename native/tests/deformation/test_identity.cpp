@@ -15,6 +15,8 @@ TEST_CASE("identity: derivatives and metric") {
   check_metric(*identity, p, options, Eigen::VectorXd::Zero(21));
   options.weights.setLinSpaced(7, 0, 3);
   check_metric(*identity, p, options, Eigen::VectorXd::Zero(21));
+  for (const bool turned : {false, true})
+    check_metric(*identity, p, random_axis_weights(7, 3, turned), Eigen::VectorXd::Zero(21));
 }
 
 TEST_CASE("identity: what is sparse stays sparse") {
@@ -33,6 +35,14 @@ TEST_CASE("identity: bad input is named") {
   CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("control 2"), InputError);
   options.weights = Eigen::Vector3d(1, 1, 1);
   CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("3 control weights for 4"), InputError);
+  options = random_axis_weights(4, 1, true);
+  options.weights[7] = NAN;
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("control 2: weight"), InputError);
+  options.weights[7] = 1;
+  options.weight_axes[3] *= 2;
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("control 3: weight axes"), InputError);
+  options.weight_axes.resize(2);
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("weight axes for 2 of 4"), InputError);
   CHECK_THROWS_WITH_AS(identity->metric({0.0, {}}), doctest::Contains("smoothness"), InputError);
   CHECK_THROWS_AS(make_identity(-1), InputError);
   CHECK(make_identity(0)->surface(Controls(0, 3)).rows() == 0);

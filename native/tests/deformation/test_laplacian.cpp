@@ -33,6 +33,10 @@ void check_handle_metric(const Deformation& deformation, const Controls& p) {
   options.smoothness = 0.01;
   options.weights = Eigen::VectorXd::LinSpaced(p.rows(), 0, 2);
   check_metric(deformation, p, options, mean_damping(deformation, p, options));
+  for (const bool turned : {false, true}) {
+    options = random_axis_weights(static_cast<Index>(p.rows()), 5, turned);
+    check_metric(deformation, p, options, mean_damping(deformation, p, options));
+  }
 }
 
 }  // namespace

@@ -27,6 +27,10 @@ void check_linear_metric(const Deformation& linear, Index m) {
   options.weights = Eigen::VectorXd::LinSpaced(m, 0.5, 2);
   for (Index control = 0; control < m; control += 3) options.weights[control] = 0;
   check_metric(linear, p, options, mean_damping(linear, p, options));
+  for (const bool turned : {false, true}) {
+    options = random_axis_weights(m, 4, turned);
+    check_metric(linear, p, options, mean_damping(linear, p, options));
+  }
 }
 
 }  // namespace
@@ -48,6 +52,17 @@ TEST_CASE("linear: the surface has the same bits for any number of threads") {
 TEST_CASE("linear: metric of few controls") { check_linear_metric(*make_linear(banded_weights(60, 25)), 25); }
 
 TEST_CASE("linear: metric of many controls") { check_linear_metric(*make_linear(banded_weights(640, 640)), 640); }
+
+TEST_CASE("linear: equal weights along all axes give the bits of one weight for each control") {
+  constexpr Index m = 30;
+  const auto linear = make_linear(banded_weights(60, m));
+  const Controls p = Controls::Zero(m, 3);
+  const SparseField g = random_field(m, 1, 2);
+  MetricOptions one, three = random_axis_weights(m, 1, true);
+  one.weights = Eigen::VectorXd::LinSpaced(m, 0, 2);
+  for (Index row = 0; row < 3 * m; ++row) three.weights[row] = one.weights[row / 3];
+  CHECK(dense(linear->metric(one)->apply_inverse(p, g), m) == dense(linear->metric(three)->apply_inverse(p, g), m));
+}
 
 TEST_CASE("linear: a sparse covector over many controls") {
   const auto linear = make_linear(banded_weights(40, 20));

@@ -49,6 +49,9 @@ TEST_CASE("rigid: metric against the dense one") {
     check_metric(*rigid, turned(angle), options, 0.1 * diagonal);
     options.weights = Eigen::Vector2d(2, 0);
     check_metric(*rigid, turned(angle), options, 0.1 * diagonal);
+    for (unsigned seed = 0; seed < 6; ++seed)
+      check_metric(*rigid, turned(angle), random_axis_weights(2, seed, seed % 2 == 1), 0.1 * diagonal,
+                   DampingAxes::world);
   }
 }
 

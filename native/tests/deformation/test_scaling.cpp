@@ -37,6 +37,8 @@ TEST_CASE("scaling: derivatives and metric") {
   options.smoothness = 0.01;
   options.weights = Eigen::Vector2d(0, 3);
   check_metric(*scaling, p, options, 0.01 * diagonal);
+  for (unsigned seed = 0; seed < 6; ++seed)
+    check_metric(*scaling, p, random_axis_weights(2, seed, seed % 2 == 1), 0.1 * diagonal, DampingAxes::world);
 }
 
 TEST_CASE("scaling: bad input is named") {

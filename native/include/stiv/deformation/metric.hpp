@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "stiv/types.hpp"
 
@@ -17,17 +18,22 @@ struct MetricOptions {
   /// eps: damping of J'J relative to its mean diagonal; 0.1 smooth, 0.01 tight. In (0, inf).
   double smoothness = 0.1;
 
-  /// Weight w_i >= 0 of each control's response, (m); 0 pins it exactly. Empty: all 1. [P5.2]
+  /// Weight w >= 0 of the response: one for each control, (m), or one for each coordinate, (3 m), those of one control
+  /// side by side. 0 pins the control or coordinate exactly. Empty: all 1. [P5.2]
   Eigen::VectorXd weights;
+
+  /// Directions along which the three weights of a control act, as the columns of a rotation, (m). Empty: x, y and z.
+  std::vector<Eigen::Matrix3d> weight_axes = {};
 };
 
-/// The inverse metric of the controls, W^1/2 (J'J + damping)^-1 W^1/2 restricted to controls with w > 0: steps along
+/// The inverse metric of the controls, W^1/2 (J'J + damping)^-1 W^1/2 restricted to coordinates with w > 0: steps along
 /// it are steepest for E = 1/2 |f(p) - q~|^2. (mathematics.md, "Metric")
 class Metric {
  public:
   virtual ~Metric() = default;
 
-  /// M(p)^-1 g, a covector over controls to a displacement of controls. Rows of pinned controls are absent from it.
+  /// M(p)^-1 g, a covector over controls to a displacement of controls. Rows of pinned controls are absent from it,
+  /// pinned coordinates of the others are 0.
   virtual SparseField apply_inverse(const ControlsView& p, const SparseField& g) const = 0;
 
   /// Does a step move no other controls than those of the covector, or than those of the same body? Then contacts can

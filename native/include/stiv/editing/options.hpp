@@ -32,7 +32,9 @@ struct EditOptions {
   /// where it is also what compression leaves of a mesh finer than h, and between bodies.
   double keep = 0.5, keep_between = 0.9;
   double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
-  Eigen::VectorXd weights;  ///< (m) response of each control, 0 pins; empty: all 1
+  /// Response of each control, (m), or of each of its coordinates, (3 m): 0 pins. Empty: all 1. As in MetricOptions.
+  Eigen::VectorXd weights;
+  std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
   /// Pairs of triangles that may intersect, at the start and later: their number that does never grows from one
   /// accepted state to the next, and no other pair ever intersects. What belongs to such pairs alone is not detected.
   /// Two closed bodies never have more volume in common than at the start of the session, and of an open body no more
