@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,9 @@ CHOICES: Mapping[str, Mapping[str, Any]] = {
 }
 
 
+_MOST_SHOWN = 6  # entries of a list that a repr shows
+
+
 @dataclass(frozen=True)
 class StorageFrame:
     """Controls that are stored in single precision in a frame of their own.
@@ -58,7 +61,7 @@ class StorageFrame:
     frame: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))  #: (4, 4) affine, local to world
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EditOptions:
     """How an edit is solved. Every default is the one recommended."""
 
@@ -70,7 +73,10 @@ class EditOptions:
     keep: float = 0.5
     keep_between: float = 0.9  #: ... and between two bodies
     smoothness: float = 0.1  #: damping of the response: 0.1 smooth, 0.01 tight
-    weights: ArrayLike | None = None  #: (m,) response of each control, 0 pins it; None: all 1
+    #: response of each control, (m,), or of each of its coordinates, (m, 3); 0 pins exactly; None: all 1
+    weights: ArrayLike | None = None
+    #: (m, 3, 3): the three weights of a control act along the columns of a rotation; None: x, y and z
+    weight_axes: ArrayLike | None = None
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
     exclude: ArrayLike | str | None = None
     constraints: str = "per_patch"  #: "per_patch" or "single": one constraint for each patch, or one for all
@@ -91,6 +97,11 @@ class EditOptions:
     time_budget: float = 0.0  #: seconds an edit may take; never less than one round does; 0: no limit
     threads: int = 0  #: 0: one for each processor
 
+    def __repr__(self) -> str:
+        """Name the options that differ from their defaults; arrays by their shape."""
+        chosen = ((option.name, getattr(self, option.name), option) for option in fields(self))
+        return f"EditOptions({', '.join(_shown(name, value) for name, value, each in chosen if _differs(value, each))})"
+
     @classmethod
     def paper(cls, **others: Any) -> EditOptions:
         """Return the method as published (Harmon et al. 2011), the baseline of the benchmarks.
@@ -109,10 +120,53 @@ class EditOptions:
         return cls.paper(**{"volumes": "published_frozen", **others})
 
 
+def _differs(value: Any, option: Field[Any]) -> bool:
+    """Return whether a value is not the default of its option."""
+    default = option.default_factory() if option.default_factory is not MISSING else option.default
+    if value is None or default is None or isinstance(value, np.ndarray):
+        return value is not default
+    return bool(value != default)
+
+
+def _shown(name: str, value: Any) -> str:
+    """Return "name=value", an array or a long list by its shape."""
+    if isinstance(value, np.ndarray) or (isinstance(value, list | tuple) and len(value) > _MOST_SHOWN):
+        return f"{name}=<{_shape(value)}>"
+    return f"{name}={value!r}"
+
+
+def _shape(value: Any) -> str:
+    """Return a short description of an array by its shape; of anything else its type."""
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}"
+    try:
+        return f"{type(value).__name__} of shape {np.shape(value)}"
+    except ValueError:
+        return f"{type(value).__name__} of {len(value)}, rows differ in length"
+
+
+def _weights(value: ArrayLike) -> Floats:
+    """Return weights, (m,) or (m, 3), one coordinate after the other."""
+    weights = as_doubles(value, "weights")
+    if weights.ndim == 1 or (weights.ndim == 2 and weights.shape[1] == 3):
+        return weights.ravel()
+    raise InputError(f"weights: shape is {weights.shape}, expected (m,) or (m, 3): one for each control or coordinate")
+
+
+def _weight_axes(value: ArrayLike) -> list[Floats]:
+    """Return the axes of each control's weights, (3, 3) each."""
+    axes = as_doubles(value, "weight_axes")
+    if axes.ndim == 3 and axes.shape[1:] == (3, 3):
+        return list(axes)
+    raise InputError(f"weight_axes: shape is {axes.shape}, expected (m, 3, 3)")
+
+
 def _native_value(name: str, value: Any) -> Any:
     """Turn the value of an option into what the core takes."""
     if name == "weights":
-        return np.zeros(0) if value is None else as_doubles(value, "weights")
+        return np.zeros(0) if value is None else _weights(value)
+    if name == "weight_axes":
+        return [] if value is None else _weight_axes(value)
     if name == "storage":
         return [_native.StorageFrame(s.first, s.count, as_doubles(s.frame, "frame")) for s in value]
     if name == "pair_separations":
@@ -135,7 +189,8 @@ def native_options(options: EditOptions) -> _native.EditOptions:
         try:
             setattr(native, option.name, value)
         except TypeError as error:
-            raise InputError(f"{option.name}: {getattr(options, option.name)!r} is of the wrong type") from error
+            shown = _shown(option.name, getattr(options, option.name)).replace("=", ": ", 1)
+            raise InputError(f"{shown} is of the wrong type") from error
     return native
 
 

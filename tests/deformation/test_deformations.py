@@ -91,6 +91,11 @@ def test_linear_metric_against_a_dense_one(name: str, smoothness: float) -> None
     expected[free] = root * np.linalg.solve(gram, root * g.ravel()[free])
     found = f.apply_inverse_metric(p, g, smoothness, weights)
     assert np.abs(found.ravel() - expected).max() < 1e-10 * np.abs(expected).max()
+    axes = np.stack([weights, RANDOM.random(f.control_count), weights[::-1]], axis=1)
+    found = f.apply_inverse_metric(p, g, smoothness, axes)
+    for axis in range(3):
+        along = f.apply_inverse_metric(p, g, smoothness, np.ascontiguousarray(axes[:, axis]))[:, axis]
+        assert np.array_equal(found[:, axis], along)
 
 
 @pytest.mark.parametrize("name", DEFORMATIONS)

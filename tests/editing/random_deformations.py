@@ -117,9 +117,11 @@ def _rotated(turn: Array, vectors: Array) -> Array:
 
 def _weights(chance: Chance, selected: NDArray[np.bool_]) -> Array | None:
     """Who responds: all, the selected, the unselected, or some more than others."""
-    who = chance.choice(["all", "all", "selected", "unselected", "weighted"])
+    who = chance.choice(["all", "all", "selected", "unselected", "weighted", "by axis"])
     if who == "all":
         return None
+    if who == "by axis":
+        return chance.choice([0.0, 0.3, 1.0, 2.0], size=(len(selected), 3))
     if who == "weighted":
         return chance.choice([0.0, 0.3, 1.0, 2.0], size=len(selected))
     return np.where(selected == (who == "selected"), 1.0, 0.0)

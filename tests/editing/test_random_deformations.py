@@ -55,7 +55,9 @@ def check(case: Case) -> None:
         for controls in (stored, result.controls):
             assert len(stiv.find_intersections(edit.deformation.surface(controls), edit.surface)) == 0, where
         if case.options.weights is not None:
-            still = (np.asarray(case.options.weights) == 0) & (goal == before).all(axis=1)
+            weights = np.asarray(case.options.weights)
+            pinned = np.broadcast_to(weights.reshape(len(goal), -1) == 0, goal.shape)
+            still = pinned & ((goal == before) if weights.ndim == 2 else (goal == before).all(axis=1, keepdims=True))
             assert result.controls[still].tobytes() == before[still].tobytes(), where
         if how == "edit" and not result.path and result.status != "unchanged":
             assert not motion_was_possible(case, session, goal, widest), f"{where}: refused"
