@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Types of the compiled module; what it does is documented by the modules of the package that use it.
 import enum
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -86,7 +86,12 @@ class Deformation:
     def pull_back(self, controls: _Floats, covector: _Floats) -> _Floats: ...
     def push_forward(self, controls: _Floats, motion: _Floats) -> _Floats: ...
     def apply_inverse_metric(
-        self, controls: _Floats, covector: _Floats, smoothness: float = 0.1, weights: _Floats = ...
+        self,
+        controls: _Floats,
+        covector: _Floats,
+        smoothness: float = 0.1,
+        weights: _Floats = ...,
+        weight_axes: Sequence[_Floats] = ...,
     ) -> _Floats: ...
     def support(self, control: int) -> list[int]: ...
 

@@ -60,7 +60,7 @@ def test_a_locked_rotation_is_moved_about_the_pivot_without_turning() -> None:
 @pytest.mark.parametrize(
     ("kind", "locks", "message"),
     [
-        ("move", {"lock_location": (True, False, True)}, "its location is locked along X, Z"),
+        ("rotate", {"lock_location": (True, False, True)}, "its location is locked along X, Z"),
         ("move", {"lock_location": ALL}, "its transform is locked"),
         ("rotate", {"lock_rotation": (False, True, False)}, "its rotation is locked along Y"),
         ("rotate", {"lock_location": ALL}, "its location is locked along X, Y, Z"),
@@ -74,6 +74,44 @@ def test_locks_that_cannot_be_kept_are_refused(kind: str, locks: dict, message: 
         begin(kind)
 
 
+@pytest.mark.parametrize("below_parent", [False, True])
+@pytest.mark.parametrize("locks", [(True, False, False), (False, True, True), (False, False, True)])
+def test_partly_locked_locations_move_and_give_way_along_the_free_axes(
+    locks: tuple[bool, bool, bool], below_parent: bool
+) -> None:
+    """A cube pushed down a slope of another: without locks it would slide aside along every axis."""
+    cube = add_cube("Cube", (0.1, -0.2, 0.3), lock_location=locks, delta_location=(0.01, 0.02, 0.03))
+    if below_parent:
+        cube.parent = bpy.data.objects.new("Parent", None)
+        bpy.context.collection.objects.link(cube.parent)
+        cube.parent.rotation_euler, cube.parent.location = (0.4, -0.7, 1.1), (0.3, 0.1, -0.2)
+        cube.parent.scale = (0.8, 0.8, 0.8)
+    add_cube("Block", (2.9, 0.3, -2.4), 2.0, rotation_euler=(0.5, 0.6, 0.2))
+    bpy.context.view_layer.update()
+    select(cube)
+    start = np.array(cube.location)
+    edit = begin()
+    edit.apply(shift(2.5, z=-2))
+    assert edit.write().passed
+    moved = np.array(cube.location) != start
+    assert not moved[list(locks)].any()
+    assert moved.any()
+    assert tuple(cube.rotation_euler) == (0, 0, 0)
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_a_partly_locked_object_gives_way_by_itself_along_its_free_axes() -> None:
+    pusher = add_cube("Pusher")
+    locked = add_cube("Locked", (2.5, 0.7, 0.4), lock_location=(False, True, False), rotation_euler=(0.2, 0.3, 0.4))
+    select(pusher)
+    edit = begin(responders="all")
+    edit.apply(shift(2))
+    assert edit.write().passed
+    assert locked.location.x > 2.6
+    assert locked.location.y == np.float32(0.7)
+    assert check_scene(bpy.context).pairs == ()
+
+
 def test_scaling_needs_no_rotation_and_deforming_no_transform() -> None:
     cube = add_cube("Cube", lock_rotation=ALL)
     select(cube)
@@ -84,7 +122,7 @@ def test_scaling_needs_no_rotation_and_deforming_no_transform() -> None:
 
 
 def test_a_locked_object_does_not_give_way_by_itself() -> None:
-    pusher, locked = add_cube("Pusher"), add_cube("Locked", (2.5, 0, 0), lock_location=(False, True, False))
+    pusher, locked = add_cube("Pusher"), add_cube("Locked", (2.5, 0, 0), lock_location=ALL)
     add_grid("Floor", 1, 9.0, (0, 0, -4), lock_location=ALL)
     select(pusher)
     edit = begin(responders="all")

@@ -112,6 +112,8 @@ def test_a_start_that_intersects_is_refused_with_its_pairs(edit: families.Edit) 
         ({"keep": 1.0}, "keep"),
         ({"smoothness": 0.0}, "smoothness"),
         ({"weights": [1.0, 2.0]}, "weights has 2 entries"),
+        ({"weights": np.ones((4, 2))}, r"weights: shape is \(4, 2\), expected \(m,\) or \(m, 3\)"),
+        ({"weight_axes": np.ones((4, 3))}, r"weight_axes: shape is \(4, 3\), expected \(m, 3, 3\)"),
         ({"constraints": "many"}, "constraints"),
         ({"broad_phase": "magic"}, "broad_phase"),
         ({"max_rounds": "ten"}, "max_rounds"),
@@ -147,3 +149,10 @@ def test_nothing_to_move_comes_back_unchanged(edit: families.Edit) -> None:
     assert np.array_equal(result.surface, edit.controls)
     empty = stiv.edit(np.zeros((0, 3), int), stiv.identity(0), np.zeros((0, 3)), np.zeros((0, 3)))
     assert empty.status == "unchanged"
+
+
+def test_weights_are_shown_by_their_shape() -> None:
+    options = stiv.EditOptions(weights=np.ones((5000, 3)), smoothness=0.01)
+    assert repr(options) == "EditOptions(smoothness=0.01, weights=<array of shape (5000, 3)>)"
+    assert repr(stiv.EditOptions()) == "EditOptions()"
+    assert len(repr(stiv.EditOptions(weights=[1.0] * 5000))) < 100

@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 import stiv
 from stiv.blender.arrays import Floats, Indices
@@ -270,7 +270,7 @@ class BlenderEdit:
             self._influence = influence
             self._solving.weigh(
                 [
-                    np.where(part.rule.reached(influence), self._selected_weight * part.given, part.weights)
+                    _chosen(part.rule.reached(influence), self._selected_weight * part.given, part.weights)
                     for part in self._parts
                 ]
             )
@@ -280,3 +280,8 @@ class BlenderEdit:
         return stacked(
             [part.rule.goal(part.controls, old, motion) for part, old in zip(self._parts, last, strict=True)]
         )
+
+
+def _chosen(reached: NDArray[np.bool_], weights: Floats, others: Floats) -> Floats:
+    """`weights` of the controls that are reached, (m,), and `others` of the rest; (m,) or (m, 3)."""
+    return np.asarray(np.where(reached.reshape(-1, *(1 for _ in weights.shape[1:])), weights, others), np.float64)

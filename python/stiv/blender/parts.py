@@ -50,8 +50,8 @@ class Part:
         surfaces: positions, in the list of visible meshes, of what the controls move, in the deformation's order.
         deformation: from the controls to the world positions of all these meshes, vertices of a seam once.
         controls: (m, 3) at the start.
-        weights: (m,) response of each control.
-        given: (m,) the most that each may have, whoever responds; 0 pins it.
+        weights: (m,) response of each control, or (m, 3) of each along three axes.
+        given: of the same shape, the most that each may have, whoever responds; 0 pins it.
         frame: (4, 4) in which the controls are stored in single precision, handles like the vertices that they hold;
             None for placements.
         rule: what the goal asks of the controls.
@@ -59,6 +59,7 @@ class Part:
         tied: vertices of the object that are one control, so that seams stay closed; None: each is its own.
         seams: of each of `surfaces`, the vertices that stay in one place; empty: none do.
         note: what the user should know of it; "" for nothing.
+        weight_axes: (m, 3, 3) directions that (m, 3) weights are along, as columns of a rotation; None: x, y, z.
     """
 
     names: tuple[str, ...]
@@ -74,6 +75,7 @@ class Part:
     tied: Seams | None = None
     seams: tuple[Seams | None, ...] = ()
     note: str = ""
+    weight_axes: Floats | None = None
 
     def of_vertices(self, values: NDArray[Any]) -> NDArray[Any]:
         """Those of the controls, (m, ...), out of values of all vertices of the object, (n, ...)."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Floats
+from stiv.blender.location_locks import FreeDirections, free_directions, keep_locked
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.object_transform import ObjectTransform, read_transform, write_transform
 from stiv.blender.parts import Part
@@ -37,13 +38,18 @@ def rigid_part(group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, setti
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
     turns = scales or _may_turn(group, starts, kind if selected else "move")
+    objects = [root.reference.find() for root in group.roots]
+    free = None if scales else free_directions(objects, starts)
+    turns = turns and free is None  # a turn about the centre would move the origin along locked axes
     weight = settings.weight(True) if selected else 1.0
+    given = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
     references = tuple(root.reference for root in group.roots)
     return Part(
         tuple(reference.name for reference in references), "rigid", surfaces, deformation, controls,
-        np.array([weight, weight if turns else 0.0]), np.array([1.0, float(turns)]), None,
-        PlacementGoal(selected, turns, axes, starts[0].world[:3, 3]),
+        weight * given, given, None,
+        PlacementGoal(selected, turns, axes, starts[0].world[:3, 3], free),
         PlacementWriter(references, tuple(starts), controls[0], axes),
+        weight_axes=None if free is None else np.array([free.axes, np.eye(3)]),
     )  # fmt: skip
 
 
@@ -51,13 +57,15 @@ def rigid_part(group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, setti
 class PlacementGoal:
     """Centre and rotation vector follow the transform, or with `axes` (3, 3) centre and factors along them.
 
-    `origin`, (3,), is that of the first root, about which it turns and grows where each object has its own.
+    `origin`, (3,), is that of the first root, about which it turns and grows where each object has its own. `free` are
+    the directions that locked axes of the location leave, None: all.
     """
 
     selected: bool
     turns: bool
     axes: Floats | None
     origin: Floats
+    free: FreeDirections | None = None
 
     @property
     def moves(self) -> bool:
@@ -70,6 +78,8 @@ class PlacementGoal:
             return controls
         goal = controls.copy()
         goal[0] = motion.about(controls[0], self.origin) if motion.individual else motion.whole(controls[:1])[0]
+        if self.free is not None:
+            goal[0] = controls[0] + self.free.along(goal[0] - controls[0])
         linear = motion.linear
         if self.axes is not None:
             goal[1] = np.einsum("ki,kl,li->i", self.axes, linear, self.axes)
@@ -105,6 +115,8 @@ class PlacementWriter:
                 start.restore(ob)
             else:
                 write_transform(ob, start, motion, factors)
+                if self.axes is None:
+                    keep_locked(ob, start)
 
     def restore(self) -> None:
         """Put back location, rotation and scale of the start."""

@@ -44,7 +44,8 @@ def make_session(
 ) -> stiv.EditSession:
     """A session over all parts side by side, from their controls one after the other, (m, 3).
 
-    deformation: of `deformation_of`. weights: response of each part's controls, (m,) each.
+    deformation: of `deformation_of`. weights: response of each part's controls, (m,) or (m, 3)
+        each.
     Raises InputError, StartIntersectsError.
     """
     frames, first = [], 0
@@ -57,7 +58,8 @@ def make_session(
         separation=settings.separation,
         pair_separations=pair_separations_of(assembly, settings),
         smoothness=settings.smoothness,
-        weights=np.concatenate(list(weights)),
+        weights=_weights_of_all(weights),
+        weight_axes=_axes_of_all(parts),
         exclude=settings.excluded.triangles(assembly, q, settings.threads),
         constraints=settings.constraints,
         single_precision=bool(frames),
@@ -75,6 +77,21 @@ def make_session(
 
 def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
     return any(assembly.face(triangle).evaluation == RENDER for triangle in pair)
+
+
+def _weights_of_all(weights: Sequence[Floats]) -> Floats:
+    if all(each.ndim == 1 for each in weights):
+        return np.concatenate(list(weights))
+    return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
+
+
+def _axes_of_all(parts: Sequence[Part]) -> Floats | None:
+    if all(part.weight_axes is None for part in parts):
+        return None
+    world = np.eye(3)
+    return np.concatenate(
+        [np.broadcast_to(world, (len(p.controls), 3, 3)) if p.weight_axes is None else p.weight_axes for p in parts]
+    )
 
 
 def deformation_of(assembly: Assembly, parts: Sequence[Part]) -> stiv.Deformation:

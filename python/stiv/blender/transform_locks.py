@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Locks of an object's location, rotation and scale: what is locked keeps its value, or the edit is refused.
 
-A rigid part moves and turns freely or not at all, so that locks of some axes alone cannot be kept while it moves.
+Locked axes of the location leave the other directions to move in. A rigid part turns and grows freely or not at all,
+so that locks of some axes alone cannot be kept while it does.
 """
 
 from collections.abc import Sequence
@@ -35,8 +36,8 @@ def without_held(movers: Sequence[Mover], kind: str) -> list[Mover]:
 
 
 def is_locked(ob: bpy.types.Object) -> bool:
-    """Is any of the object's location locked, so that it cannot give way as a whole?"""
-    return any(ob.lock_location)
+    """Is all of the object's location locked, so that it cannot give way as a whole?"""
+    return all(ob.lock_location)
 
 
 def may_turn(ob: bpy.types.Object) -> bool:
@@ -51,7 +52,7 @@ def _is_held(ob: bpy.types.Object, kind: str) -> bool:
 
 
 def _check(ob: bpy.types.Object, kind: str) -> None:
-    locked = [("location", ob.lock_location)]
+    locked = [] if kind == "move" else [("location", ob.lock_location)]
     if kind == "rotate" and not all(ob.lock_rotation):
         locked.append(("rotation", ob.lock_rotation))
     if kind == "scale":
