@@ -7,6 +7,7 @@ A part of it here; 2,000 edits with STIV_LONG=1.
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -74,3 +75,17 @@ def test_no_intersections_pins_stay_and_nothing_possible_is_refused(first: int) 
 
 def test_all_deformations_take_part() -> None:
     assert {case.edit.name for case in CASES} == {build().name for build in BUILDERS}
+
+
+def test_weights_along_axes_give_the_same_bits_for_any_number_of_threads() -> None:
+    by_axis = [case for case in CASES if np.ndim(case.options.weights) == 2]
+    assert len(by_axis) >= 3
+    for case in by_axis[:6]:
+        found = []
+        for threads in (1, 3):
+            options = replace(case.options, threads=threads)
+            session = stiv.EditSession(case.edit.surface, case.edit.deformation, case.edit.controls, options)
+            for _, goal in case.goals[:2]:
+                session.edit(goal)
+            found.append(session.controls.tobytes())
+        assert found[0] == found[1], case.name
