@@ -109,9 +109,9 @@ def begin_drag(context: bpy.types.Context, request: Any) -> Any:
 
 
 def _told(context: bpy.types.Context, edit: Any) -> Any:
-    from stiv.blender.left_out import text_without_surface  # the add-on registers without the native module
+    from stiv.blender.left_out import text_not_guarded  # the add-on registers without the native module
 
-    context.window_manager.stiv_check.left_out = text_without_surface(context)
+    context.window_manager.stiv_check.left_out = text_not_guarded(context, edit.guard.evaluations)
     if edit.dropped:  # the summary's other warnings look at every triangle, for which a drag has no time
         context.window_manager.stiv_check.summary = edit.dropped
     return edit

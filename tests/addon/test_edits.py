@@ -223,6 +223,21 @@ def test_restoring_works_in_another_mode_too(build: Any, name: str) -> None:
     np.testing.assert_array_equal(positions(name), before)
 
 
+def test_what_is_only_rendered_is_named_unless_the_render_is_guarded(wall: Any) -> None:
+    hidden = bpy.data.objects.new("Hidden", wall.data)
+    hidden.location, hidden.hide_viewport = (-3.0, 0.0, 0.0), True
+    bpy.context.collection.objects.link(hidden)
+    cube = box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.ops.stiv.move(value=(4, 0, 0))
+    assert cube.location.x == pytest.approx(-1)
+    assert bpy.context.window_manager.stiv_check.left_out == 'Not guarded, rendered only: 1 ("Hidden")'
+    cube.location.x = -5.0
+    bpy.context.scene.stiv.guard = "both"
+    bpy.ops.stiv.move(value=(4, 0, 0))
+    assert -4 < cube.location.x < -3.4
+    assert bpy.context.window_manager.stiv_check.left_out == ""
+
+
 def test_what_has_no_surface_is_named_by_the_operator_and_kept_for_the_panel(wall: Any, capfd: Any) -> None:
     bpy.context.collection.objects.link(bpy.data.objects.new("Hair", bpy.data.hair_curves.new("Hair")))
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))

@@ -104,6 +104,19 @@ def test_what_cannot_be_placed_stays_in_the_way() -> None:
     del child
 
 
+def test_metaballs_stay_as_another_place_gives_them_another_surface() -> None:
+    data = bpy.data.metaballs.new("Ball")
+    data.elements.new()
+    ball = add("Ball", data, (2.5, 0, 0))
+    pusher = add_cube("Pusher", (-1, 0, 0), 0.5)
+    select(pusher)
+    edit = begin("all")
+    assert roles(edit)["Ball"] == "obstacle"
+    edit.apply(shift(x=3))
+    assert edit.write().passed
+    assert ball.location.x == 2.5
+
+
 def test_in_edit_mode_other_objects_stay() -> None:
     """Blender's undo of Edit Mode would not take them back."""
     sheet = add_grid("Sheet", 4)

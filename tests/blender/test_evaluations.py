@@ -144,3 +144,19 @@ def test_copies_are_removed_after_an_error() -> None:
     with pytest.raises(RuntimeError, match="Cube"):
         read_scene(bpy.context, accept, evaluations=("render",))
     assert kept() == before
+
+
+def test_metaballs_are_rendered_in_their_own_families() -> None:
+    """A copy whose name got a number would show no surface, or join another family."""
+    balls = [bpy.data.metaballs.new("Ball") for _ in range(2)]
+    for number, data in enumerate(balls):
+        data.elements.new()
+        data.resolution, data.render_resolution = 0.5, 0.2
+        add(("Ball", "Ball.001")[number], data, (1.5 * number, 0, 0))
+    found = [mesh.local for mesh in read_scene(bpy.context, evaluations=("render",)).meshes]
+    for data in balls:
+        data.resolution = data.render_resolution
+    bpy.context.view_layer.update()
+    instances = bpy.context.evaluated_depsgraph_get().object_instances
+    wanted = [len(instance.object.data.vertices) for instance in instances if instance.object.type == "MESH"]
+    assert [len(local) for local in found] == wanted == [max(wanted)]

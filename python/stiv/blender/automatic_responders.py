@@ -22,7 +22,8 @@ def automatic_responders(
 
     An object hangs together with its children. Left out, and so in the way, is a family of which a member is a mover
     already, has another role or a constraint, is animated, linked, locked or without size, or looks at or is looked at
-    by an object outside, through modifiers, constraints or instances.
+    by an object outside, through modifiers, constraints or instances. Metaballs are left out too: where they are moved
+    to, Blender gives them another surface.
     """
     taken = {mover.reference.name for mover in movers}
     tied = _tied_outside()
@@ -31,7 +32,7 @@ def automatic_responders(
         family = [ob, *ob.children_recursive]
         names = {member.name for member in family}
         above = _ancestors(ob)
-        if ob.type not in SURFACE_TYPES or names & taken or above & taken or not _are_free(family, settings):
+        if ob.type not in SURFACE_TYPES - {"META"} or names & taken or above & taken or not _are_free(family, settings):
             continue
         if any((user in names) != (used in names) for user, used in tied):
             continue

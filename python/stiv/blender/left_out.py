@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator
 import bpy
 
 from stiv.blender.evaluated_scene import SURFACE_TYPES
+from stiv.blender.evaluations import RENDER, rendered_objects
 from stiv.blender.loop_objects import cages_shown_by_others
 from stiv.checks.findings import LeftOut, left_out_text
 
@@ -35,9 +36,14 @@ def find_left_out(
     return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
 
 
-def text_without_surface(context: bpy.types.Context) -> str:
-    """What of the visible scene edits pass through, since it has no surface; "" for nothing."""
+def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str]) -> str:
+    """What edits that guard these evaluations pass through, though the viewport or the render shows it; "" for nothing.
+
+    That is what has no surface and, unless the render is guarded, what is hidden in the viewport and rendered.
+    """
     found = [LeftOut(name, why) for name, why in dict.fromkeys(_without_surface(context))]
+    if RENDER not in evaluations:
+        found += [LeftOut(name, "rendered only") for name in _rendered_only(context)]
     return f"Not guarded, {left_out_text(found)}" if found else ""
 
 
@@ -59,6 +65,15 @@ def _without_surface(context: bpy.types.Context) -> Iterator[tuple[str, str]]:
     for ob in context.view_layer.objects:
         if ob.visible_get(view_layer=context.view_layer) and any(_is_hair(modifier) for modifier in ob.modifiers):
             yield ob.name, "particle hair"
+
+
+def _rendered_only(context: bpy.types.Context) -> list[str]:
+    rendered = rendered_objects(context.view_layer)
+    return [
+        ob.name for ob in context.scene.objects
+        if ob.session_uid in rendered and ob.type in SURFACE_TYPES
+        and not (ob.name in context.view_layer.objects and ob.visible_get(view_layer=context.view_layer))
+    ]  # fmt: skip
 
 
 def _is_hair(modifier: bpy.types.Modifier) -> bool:

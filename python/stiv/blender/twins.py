@@ -82,6 +82,8 @@ class Twins:
             ob.update_from_editmode()
         twin = ob.copy()
         self._made.append(twin)
+        if ob.type == "META":  # metaballs merge by name, and one whose name got a number shows no surface
+            twin.name = f"{NAME[0]}{ob.name}"
         if getattr(ob.data, "is_editmode", False) or ob.type in COPIED_TYPES:
             twin.data = ob.data.copy()
             self._made.append(twin.data)
