@@ -20,7 +20,7 @@ def object_choices(scene: Any) -> dict[str, Any]:
             if groups_of(each) or each.anchor or each.rest != "follows" or each.pull != 0
         },
         "weights": {
-            name: WeightGroup(each.weight_group, each.weight_invert)
+            name: WeightGroup(each.weight_group, each.weight_invert, tuple(each.weight_axes))
             for name, each in chosen.items()
             if each.weight_group
         },

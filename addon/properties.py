@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import (
     BoolProperty,
+    BoolVectorProperty,
     CollectionProperty,
     EnumProperty,
     FloatProperty,
@@ -181,6 +182,13 @@ class StivObjectSettings(bpy.types.PropertyGroup):
         description="Vertex group that says how far each vertex or point gives way; 0, or not in the group, pins it",
     )
     weight_invert: BoolProperty(name="Invert", description="Pin what is in the group instead")
+    weight_axes: BoolVectorProperty(
+        name="Weight Axes",
+        description="Local axes of the object that the weights apply to",
+        default=(True, True, True),
+        size=3,
+        subtype="XYZ",
+    )
     loop: PointerProperty(type=StivLoop)
 
 

@@ -32,6 +32,10 @@ class STIV_PT_deformation(SubPanel, bpy.types.Panel):
         row = self.layout.row(align=True)
         row.prop_search(thing.stiv, "weight_group", thing, "vertex_groups")
         row.prop(thing.stiv, "weight_invert", text="", icon="ARROW_LEFTRIGHT")
+        row = self.layout.row(align=True, heading="Weight Axes")
+        row.active = bool(thing.stiv.weight_group)
+        for index, axis in enumerate("XYZ"):
+            row.prop(thing.stiv, "weight_axes", index=index, text=axis, toggle=True)
 
 
 def _draw_handles(layout: Any, thing: Any) -> None:

@@ -71,6 +71,18 @@ def test_weights_of_the_panel_pin_vertices(bar: Any) -> None:
     assert local(bar)[4:] == pytest.approx(before[4:] + (0, 0, 0.5), abs=1e-6)
 
 
+def test_weight_axes_of_the_panel_pin_single_coordinates(bar: Any) -> None:
+    bar.stiv.deformation = "vertices"
+    bar.rotation_euler.x = np.pi / 2
+    bar.stiv.weight_group, bar.stiv.weight_invert, bar.stiv.weight_axes = "Left", True, (False, False, True)
+    before = local(bar)
+    bpy.ops.stiv.move(value=(0.25, -0.5, 1.0))  # along the bar's axes: (0.25, 1.0, 0.5)
+    now = local(bar)
+    assert (now[:4, 2] == before[:4, 2]).all()
+    assert now[:4, :2] == pytest.approx(before[:4, :2] + (0.25, 1.0), abs=1e-6)
+    assert now[4:] == pytest.approx(before[4:] + (0.25, 1.0, 0.5), abs=1e-6)
+
+
 def test_without_interference_objects_go_through_each_other(bar: Any) -> None:
     bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0, 0, 3))
     bpy.context.scene.stiv.interference = False
@@ -88,9 +100,9 @@ def test_the_panel_draws_what_there_is(bar: Any) -> None:
     drawn: list[str] = []
 
     class Layout:
-        use_property_split = False
+        use_property_split = active = False
 
-        def row(self, align: bool) -> "Layout":
+        def row(self, align: bool, heading: str = "") -> "Layout":
             return self
 
         def box(self) -> "Layout":
@@ -112,3 +124,4 @@ def test_the_panel_draws_what_there_is(bar: Any) -> None:
     bpy.ops.stiv.handle_add()
     STIV_PT_deformation.draw(type("Panel", (), {"layout": Layout()})(), bpy.context)
     assert {"deformation", "name", "anchor", "rest", "pull", "weight_group", "weight_invert"} <= set(drawn)
+    assert drawn.count("weight_axes") == 3

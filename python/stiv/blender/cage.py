@@ -10,7 +10,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.control_weights import control_weights
+from stiv.blender.control_weights import ControlWeights, axes_of_weights, control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.evaluations import SHOWN
 from stiv.blender.lattice_points import is_undeformed
@@ -35,18 +35,19 @@ def cage_part(
     """
     ob = mover.reference.find()
     frame, local = open_cage(ob)
-    writer = cage_writer(mover.reference, ob, frame, local, settings)
+    found = control_weights(ob, settings)
+    given = found.given
+    writer = cage_writer(mover.reference, ob, frame, local, settings, found)
     deformation = subdivision_in(ob, scene, writer, evaluations) or stiv.identity(len(local))
-    given = control_weights(ob, settings)
-    selected = selected_vertices(ob, mover.selected) & (given > 0)
+    selected = selected_vertices(ob, mover.selected) & found.movable
     others = settings.weight(False) if mover.selected else 1.0
     controls = transform_points(frame, local)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return Part(
         (ob.name,), "cage", surfaces, deformation, controls,
         point_weights(selected, settings.weight(True), others, given), given, frame,
-        PointGoal(selected, controls, read_edges(ob.data), origin, given > 0),
-        writer,
+        PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
+        writer, weight_axes=axes_of_weights(given, found.directions),
     )  # fmt: skip
 
 
@@ -109,17 +110,21 @@ def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:
 
 @dataclass(frozen=True)
 class CageWriter:
-    """Writes cage vertices. `original` are the local positions at the start, (m, 3)."""
+    """Writes cage vertices.
+
+    `original` are the local positions at the start, (m, 3); `kept` the coordinates of them that are pinned, (m, 3).
+    """
 
     reference: ObjectReference
     mode: str
     frame: Floats
     original: Singles
     refined: RefinedWriter | None = None
+    kept: Flags | None = None
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3), and what shows them."""
-        local = stored(self.frame, controls, self.original)
+        local = stored(self.frame, controls, self.original, self.kept)
         _write_local(self.reference.find_in_mode(self.mode), local)
         if self.refined is not None:
             self.refined.write(transform_points(self.frame, local))
@@ -132,10 +137,15 @@ class CageWriter:
 
 
 def cage_writer(
-    reference: ObjectReference, ob: bpy.types.Object, frame: Floats, local: Singles, settings: EditSettings
+    reference: ObjectReference,
+    ob: bpy.types.Object,
+    frame: Floats,
+    local: Singles,
+    settings: EditSettings,
+    weights: ControlWeights,
 ) -> CageWriter:
     """The writer of a cage at these local positions, (m, 3), in the mode that it is in. Raises InputError."""
-    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings))
+    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings), weights.kept_coordinates)
 
 
 def _write_local(ob: bpy.types.Object, local: Singles) -> None:

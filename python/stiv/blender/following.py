@@ -16,7 +16,7 @@ from stiv.blender.joining import seam_note
 from stiv.blender.motion import Motion
 from stiv.blender.movers import Mover
 from stiv.blender.parts import Part
-from stiv.blender.points import PointGoal
+from stiv.blender.points import PointGoal, point_weights
 from stiv.blender.references import ObjectReference
 from stiv.blender.roles import has_surface, mover_of, once
 from stiv.blender.scene_state import SceneState, read_state
@@ -213,7 +213,7 @@ def _responding(part: Part, changes: dict[str, Change], settings: EditSettings) 
     moved = change.points[_followed_vertices(part, change)]
     return replace(
         part,
-        weights=np.where(moved, settings.weight(True), settings.weight(False)) * part.given,
+        weights=point_weights(moved, settings.weight(True), settings.weight(False), part.given),
         rule=PointGoal(moved, part.controls),
         note="" if part.tied is None else seam_note(part.names[0], change.points, part.tied),
     )

@@ -12,6 +12,7 @@ from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Indices
 from stiv.blender.assembly import mesh_seams
 from stiv.blender.cage import read_cage
+from stiv.blender.control_weights import pinned_directions
 from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.mesh_reading import read_triangles
 from stiv.blender.parts import Part, Writer
@@ -125,13 +126,16 @@ def _tied(part: Part, on_seam: Flags) -> Part:
         writer=TiedWriter(part.writer, tied),
         tied=tied,
         note=seam_note(part.names[0], rule.selected, tied),
+        weight_axes=None if part.weight_axes is None else part.weight_axes[tied.first],
     )
 
 
 def _tied_rule(rule: PointGoal, selected: Flags, given: Floats, tied: Seams) -> PointGoal:
     free = None if rule.free is None else np.asarray((given > 0).reshape(len(given), -1).any(axis=1))
     edges = None if rule.edges is None else tied.index[rule.edges]
-    return PointGoal(selected if free is None else selected & free, rule.start[tied.first], edges, rule.origin, free)
+    pinned = None if rule.pinned is None else pinned_directions(given, rule.pinned.directions)
+    selected = selected if free is None else selected & free
+    return PointGoal(selected, rule.start[tied.first], edges, rule.origin, free, pinned)
 
 
 def _kept(part: Part, found: Sequence[Seams | None], counts: Sequence[int]) -> tuple[Seams | None, ...]:

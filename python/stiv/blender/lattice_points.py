@@ -9,7 +9,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.control_weights import control_weights
+from stiv.blender.control_weights import axes_of_weights, control_weights
 from stiv.blender.errors import SceneChangedError
 from stiv.blender.movability import check_data
 from stiv.blender.movers import Mover
@@ -53,14 +53,16 @@ def lattice_part(
         ob.update_from_editmode()
     frame, local = as_matrix(ob.matrix_world), read_points(ob.data)
     controls = transform_points(frame, local)
-    given = control_weights(ob, settings)
-    selected = _selected(ob, mover) & (given > 0)
+    found = control_weights(ob, settings)
+    given = found.given
+    selected = _selected(ob, mover) & found.movable
     others = settings.weight(False) if mover.selected else 1.0
     weights = point_weights(selected, settings.weight(True), others, given)
     return Part(
         (ob.name,), "lattice", surfaces, deformation, controls, weights, given, frame,
-        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], given > 0),
-        LatticeWriter(mover.reference, ob.mode, frame, local),
+        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], found.movable, found.pinned),
+        LatticeWriter(mover.reference, ob.mode, frame, local, found.kept_coordinates),
+        weight_axes=axes_of_weights(given, found.directions),
     )  # fmt: skip
 
 
@@ -84,16 +86,21 @@ def _selected(ob: bpy.types.Object, mover: Mover) -> Flags:
 
 @dataclass(frozen=True)
 class LatticeWriter:
-    """Writes lattice points; in Edit Mode Blender passes them on to the lattice being edited."""
+    """Writes lattice points; in Edit Mode Blender passes them on to the lattice being edited.
+
+    `kept` are the local coordinates, (m, 3), that are pinned.
+    """
 
     reference: ObjectReference
     mode: str
     frame: Floats
     original: Singles
+    kept: Flags | None = None
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        _write_local(self.reference.find_in_mode(self.mode), stored(self.frame, controls, self.original))
+        local = stored(self.frame, controls, self.original, self.kept)
+        _write_local(self.reference.find_in_mode(self.mode), local)
 
     def restore(self) -> None:
         """Write the original positions, in whatever mode the object is by now."""

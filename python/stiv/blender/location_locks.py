@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Locked axes of objects' locations: the directions that are left to move in."""
+"""Locked or pinned axes: the directions that are left to move in."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from stiv.blender.object_transform import ObjectTransform
 
 @dataclass(frozen=True)
 class FreeDirections:
-    """Orthonormal directions in world space, and which of them the locks leave free.
+    """Orthonormal directions in world space, and which of them locks or pins leave free.
 
     Attributes:
         axes: (3, 3), a direction a column.
@@ -24,9 +24,9 @@ class FreeDirections:
     free: Flags
 
     def along(self, displacement: Floats) -> Floats:
-        """The part of a world displacement, (3,), that the locks allow."""
+        """The component along the free directions of world displacements, (..., 3)."""
         basis = self.axes[:, self.free]
-        allowed: Floats = basis @ (basis.T @ displacement)
+        allowed: Floats = displacement @ basis @ basis.T
         return allowed
 
 

@@ -7,8 +7,26 @@ from functools import cached_property
 import numpy as np
 
 from stiv.blender.arrays import Flags, Floats, Indices, Singles, transform_points
+from stiv.blender.location_locks import FreeDirections
 from stiv.blender.motion import Influence, Motion
 from stiv.blender.nearness import distances_along, island_centres, nearest_distances
+
+ROUNDING = 1e-11  # relative error allowed for the way to the world and back, all steps of an edit together
+
+
+@dataclass(frozen=True)
+class PinnedDirections:
+    """Points, (m,) flags, that move along the free directions only."""
+
+    points: Flags
+    directions: FreeDirections
+
+    def limited(self, start: Floats, goal: Floats) -> Floats:
+        """The goal, (m, 3), without what the pins forbid of the way from the start."""
+        allowed = goal.copy()
+        way = goal[self.points] - start[self.points]
+        allowed[self.points] = start[self.points] + self.directions.along(way)
+        return allowed
 
 
 @dataclass(frozen=True)
@@ -17,7 +35,7 @@ class PointGoal:
 
     `start` are their world positions, (m, 3); `edges`, (e, 2), connect them, None where nothing does; `origin` is that
     of an object in Object Mode, None in Edit Mode, where each connected piece of the selection has its own; `free`,
-    (m,), says which may move at all, None: all.
+    (m,), says which may move at all, None: all; `pinned` which of them keep to some directions, None: none.
     """
 
     selected: Flags
@@ -25,6 +43,7 @@ class PointGoal:
     edges: Indices | None = None
     origin: Floats | None = None
     free: Flags | None = None
+    pinned: PinnedDirections | None = None
 
     @property
     def moves(self) -> bool:
@@ -33,6 +52,10 @@ class PointGoal:
 
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the points, (m, 3)."""
+        goal = self._unlimited(controls, motion)
+        return goal if self.pinned is None else self.pinned.limited(controls, goal)
+
+    def _unlimited(self, controls: Floats, motion: Motion) -> Floats:
         goal = controls.copy()
         if motion.influence is not None:
             shares = self.shares(motion.influence)
@@ -72,20 +95,32 @@ class PointGoal:
 
 
 def point_weights(selected: Flags, of_selected: float, of_others: float, given: Floats) -> Floats:
-    """Response weight of each point, (m,), with the weights that the user gave, (m,)."""
-    return np.asarray(np.where(selected, of_selected, of_others) * given, np.float64)
+    """Response weights of points, selected or not, of the shape of those that the user gave, (m,) or (m, 3)."""
+    chosen = np.where(selected, of_selected, of_others)
+    return np.asarray(chosen.reshape(-1, *(1 for _ in given.shape[1:])) * given, np.float64)
 
 
-def stored(frame: Floats, world: Floats, original: Singles) -> Singles:
+def stored(frame: Floats, world: Floats, original: Singles, kept: Flags | None = None) -> Singles:
     """Local coordinates, (m, 3), in single precision, of points in world space.
 
     Points that are where `original`, (m, 3), the local ones at the start, put them keep those bit by bit: the way to
-    the world and back may lose digits of coordinates that are far smaller than others.
+    the world and back may lose digits of coordinates that are far smaller than others. So do the single coordinates
+    `kept`, (m, 3), where they differ by rounding alone.
     """
     local = as_single(frame, world)
     resting = (world == transform_points(frame, original)).all(axis=1)
     local[resting] = original[resting]
+    if kept is not None:
+        restored = kept & _is_rounding(frame, world, original)
+        local[restored] = original[restored]
     return local
+
+
+def _is_rounding(frame: Floats, world: Floats, original: Singles) -> Flags:
+    """Which local coordinates, (m, 3), of points in world space differ from the original by rounding alone."""
+    inverse = np.linalg.inv(frame).astype(np.float64)
+    sizes = (np.abs(world) + np.abs(frame[:3, 3])) @ np.abs(inverse[:3, :3]).T
+    return np.asarray(np.abs(transform_points(inverse, world) - original) <= ROUNDING * sizes)
 
 
 def as_single(frame: Floats, world: Floats) -> Singles:

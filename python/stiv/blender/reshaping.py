@@ -26,10 +26,18 @@ from stiv.blender.mesh_reading import read_edges, read_loose_numbers, read_trian
 from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
-from stiv.blender.points import PointGoal
+from stiv.blender.points import PointGoal, point_weights
 from stiv.blender.recutting import Cut, with_cuts
 from stiv.blender.references import ObjectReference
-from stiv.blender.sessions import deformation_of, mobilities, pair_separations_of, seams_of, stacked
+from stiv.blender.sessions import (
+    axes_of_all,
+    deformation_of,
+    mobilities,
+    pair_separations_of,
+    seams_of,
+    stacked,
+    weights_of_all,
+)
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import FacePair, Verification, Verifier
 
@@ -70,7 +78,7 @@ class Reshaped:
         parts: the cages, one an object.
         cage: the meshes of all cages side by side, the vertices of which are the controls.
         start: controls at the beginning, (m, 3).
-        moves: which of them may move, (m,): the selected ones in Edit Mode, all in Object Mode.
+        moves: which of them may move, (m,): the selected ones in Edit Mode, all in Object Mode, without pinned ones.
         settings: separation, roles, threads.
     """
 
@@ -107,11 +115,13 @@ class Reshaped:
 
     def edit_options(self) -> stiv.EditOptions:
         """How an edit of all controls that may move is solved."""
+        given = weights_of_all([part.given for part in self.parts])
         return stiv.EditOptions(
             separation=self.settings.separation,
             pair_separations=pair_separations_of(self.assembly, self.settings),
             smoothness=self.settings.smoothness,
-            weights=np.where(self.moves, np.concatenate([part.given for part in self.parts]), 0.0),
+            weights=point_weights(self.moves, 1.0, 0.0, given),
+            weight_axes=axes_of_all(self.parts),
             constraints=self.settings.constraints,
             storage=self.frames,
             time_budget=self.settings.time_budget,
@@ -190,8 +200,10 @@ def writer_of(part: Part) -> CageWriter:
 
 
 def _selected(part: Part) -> NDArray[np.bool_]:
-    assert isinstance(part.rule, PointGoal)
-    return part.rule.selected
+    """Those that may move. What is pinned along any axis stays: shapes contract along all three."""
+    rule = part.rule
+    assert isinstance(rule, PointGoal)
+    return rule.selected if rule.pinned is None else rule.selected & ~rule.pinned.points
 
 
 def _movers(context: bpy.types.Context, settings: EditSettings) -> list[Mover]:

@@ -58,8 +58,8 @@ def make_session(
         separation=settings.separation,
         pair_separations=pair_separations_of(assembly, settings),
         smoothness=settings.smoothness,
-        weights=_weights_of_all(weights),
-        weight_axes=_axes_of_all(parts),
+        weights=weights_of_all(weights),
+        weight_axes=axes_of_all(parts),
         exclude=settings.excluded.triangles(assembly, q, settings.threads),
         constraints=settings.constraints,
         single_precision=bool(frames),
@@ -79,13 +79,15 @@ def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
     return any(assembly.face(triangle).evaluation == RENDER for triangle in pair)
 
 
-def _weights_of_all(weights: Sequence[Floats]) -> Floats:
+def weights_of_all(weights: Sequence[Floats]) -> Floats:
+    """Weights of each part, (m,) or (m, 3), one after the other; (m, 3) if those of any part are."""
     if all(each.ndim == 1 for each in weights):
         return np.concatenate(list(weights))
     return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
 
 
-def _axes_of_all(parts: Sequence[Part]) -> Floats | None:
+def axes_of_all(parts: Sequence[Part]) -> Floats | None:
+    """The axes, (m, 3, 3), of the weights of all parts; None: x, y, z for all."""
     if all(part.weight_axes is None for part in parts):
         return None
     world = np.eye(3)

@@ -47,11 +47,23 @@ class Handles:
 class WeightGroup:
     """How far each control of an object gives way: its weight in a vertex group, 0 where it is not in the group.
 
-    0 pins it, so that not even the edit moves it. `inverted`: one minus the weight.
+    0 pins it, so that not even the edit moves it.
+
+    Attributes:
+        name: the vertex group.
+        inverted: use one minus the weight.
+        axes: to which axes of the object's local space the weight applies, X, Y, Z; along the others it is 1. Blender's
+            own locks of an object's location are along its parent's axes instead.
     """
 
     name: str
     inverted: bool = False
+    axes: tuple[bool, bool, bool] = (True, True, True)
+
+    def __post_init__(self) -> None:
+        """Refuse anything but a choice for each axis."""
+        if len(self.axes) != 3 or any(each not in (True, False) for each in self.axes):
+            raise InputError(f"axes: {self.axes!r} is not true or false for each of X, Y, Z")
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from stiv import InputError
 from stiv.blender.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.assembly import mesh_seams
 from stiv.blender.cage import cage_writer, open_cage, selected_vertices, subdivision_in
-from stiv.blender.control_weights import control_weights
+from stiv.blender.control_weights import axes_of_weights, control_weights, pinned_directions
 from stiv.blender.joining import TiedWriter, copied, joined_rows, seam_note
 from stiv.blender.mesh_reading import read_triangles
 from stiv.blender.movers import Mover
@@ -38,10 +38,10 @@ def soft_parts(
     ob = mover.reference.find()
     frame, local = open_cage(ob)
     chosen = settings.handles.get(ob.name, Handles())
-    given = control_weights(ob, settings)
+    limits = control_weights(ob, settings)
     triangles = read_triangles(ob.data)[0]
     tied = mesh_seams(local, triangles)
-    found = _find_handles(ob, mover, chosen, given, tied)
+    found = _find_handles(ob, mover, chosen, limits.given, tied)
     if len(found.vertices) == 0:
         _check_none(ob, chosen)
         return []
@@ -50,7 +50,7 @@ def soft_parts(
     pull = chosen.pull * found.strength if chosen.pull > 0 else None
     mesh = make(rest, joined_rows(triangles, tied), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
-    writer = cage_writer(mover.reference, ob, frame, local, settings)
+    writer = cage_writer(mover.reference, ob, frame, local, settings, limits)
     subdivision = subdivision_in(ob, scene, writer, evaluations)
     shown = cage if tied is None else copied(cage, tied)
     others = settings.weight(False) if mover.selected else 1.0
@@ -59,8 +59,10 @@ def soft_parts(
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return [Part(
         (ob.name,), "soft", surfaces, shown if subdivision is None else stiv.compose(subdivision, shown),
-        controls, weights, given, frame, PointGoal(found.moving, controls, None, origin),
+        controls, weights, given, frame,
+        PointGoal(found.moving, controls, None, origin, None, pinned_directions(given, limits.directions)),
         HandleWriter(cage, writer if tied is None else TiedWriter(writer, tied)), note=found.note,
+        weight_axes=axes_of_weights(given, limits.directions),
     )]  # fmt: skip
 
 
@@ -84,8 +86,8 @@ class HandleWriter:
 class _FoundHandles:
     """Vertices that are handles, (m,), how strongly each pulls, which move with the goal, and what is held in place.
 
-    Vertices are those of the mesh with its seams joined. `given`, (m,): the most response that each may have. `note`:
-    of seams that are selected in part.
+    Vertices are those of the mesh with its seams joined. `given`, (m,) or (m, 3): the most response that each may have.
+    `note`: of seams that are selected in part.
     """
 
     vertices: Indices
@@ -101,7 +103,7 @@ def _find_handles(
 ) -> _FoundHandles:
     regions = {name: group_weights(ob, name, "a handle") for name in chosen.groups}
     strength, moving = _strengths(ob, mover, regions)
-    held = given == 0
+    held = np.asarray((given == 0).reshape(len(given), -1).all(axis=1))
     if chosen.anchor:
         held |= group_weights(ob, chosen.anchor, "the anchor") > 0
     note = "" if tied is None else seam_note(ob.name, moving, tied)
