@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Deformations, handles and weights chosen in the panel, carried out by the operators."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -81,6 +83,22 @@ def test_weight_axes_of_the_panel_pin_single_coordinates(bar: Any) -> None:
     assert (now[:4, 2] == before[:4, 2]).all()
     assert now[:4, :2] == pytest.approx(before[:4, :2] + (0.25, 1.0), abs=1e-6)
     assert now[4:] == pytest.approx(before[4:] + (0.25, 1.0, 0.5), abs=1e-6)
+
+
+def test_weights_and_their_axes_come_from_an_edit_script(bar: Any, tmp_path: Path) -> None:
+    from stiv.blender.replaying import replay
+    from stiv.edit_scripts import read_edit_script
+
+    chosen = {"deformation": "vertices", "weight_group": "Right", "weight_axes": [True, False, False]}
+    step = {"operator": "move", "objects": ["Bar"], "values": {"value": [0.5, 0.0, 0.25]}}
+    script = {"schema": "stiv-edits", "version": 1, "settings": {"objects": {"Bar": chosen}}, "steps": [step]}
+    (tmp_path / "edits.json").write_text(json.dumps(script))
+    before = local(bar)
+    replay(read_edit_script(tmp_path / "edits.json"))
+    now = local(bar)
+    assert (now[:28, 0] == before[:28, 0]).all()
+    assert now[:28, 2] == pytest.approx(before[:28, 2] + 0.25)
+    assert now[28:] == pytest.approx(before[28:] + (0.5, 0, 0.25))
 
 
 def test_without_interference_objects_go_through_each_other(bar: Any) -> None:

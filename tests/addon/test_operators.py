@@ -36,6 +36,7 @@ class RecordingEdit:
     begun: Any = None
     summary = SimpleNamespace(warnings=())
     dropped = ""
+    guard = SimpleNamespace(evaluations=("viewport",))
     failing: Exception | None = None
 
     @classmethod
@@ -81,6 +82,8 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
+    said = SimpleNamespace(text_not_guarded=lambda context, evaluations: "")
+    monkeypatch.setitem(sys.modules, "stiv.blender.left_out", said)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(availability, "problem", lambda: "")
     return bpy.context.active_object
