@@ -18,8 +18,10 @@ from stiv.batch.job import Job, parse_job, read_job
 CHECK = {"name": "a", "do": "check", "scene": "a.blend"}
 REPLAY = {"name": "b ü", "do": "replay", "scene": "a.blend", "edits": "e.json", "output": "b.blend", "report": "b.json"}
 CHECK_ALL = {"name": "e", "do": "check", "scene": "a.blend", "scene_name": "B", "render": False, "hidden": True}
+CHECK_ALL["guard"] = "render"
 RESOLVE = {"name": "c", "do": "resolve", "scene": "a.blend", "frames": "1:9", "output": "c.blend", "hold": ["-x"]}
-REPAIR = {"name": "d", "do": "repair", "scene": "a.blend", "output": "d.blend"}
+RESOLVE["guard"] = "both"
+REPAIR = {"name": "d", "do": "repair", "scene": "a.blend", "output": "d.blend", "guard": "viewport"}
 
 
 def job(*entries, **more):
@@ -34,9 +36,9 @@ def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
     assert [entry.arguments for entry in read.entries] == [
         ("check", scene),
         ("replay", scene, str(tmp_path / "e.json"), f"--output={tmp_path}/b.blend", f"--report={tmp_path}/b.json"),
-        ("resolve", scene, f"--output={tmp_path}/c.blend", "--frames=1:9", "--hold=-x"),
-        ("repair", scene, f"--output={tmp_path}/d.blend"),
-        ("check", scene, "--scene=B", "--hidden"),
+        ("resolve", scene, f"--output={tmp_path}/c.blend", "--frames=1:9", "--guard=both", "--hold=-x"),
+        ("repair", scene, f"--output={tmp_path}/d.blend", "--guard=viewport"),
+        ("check", scene, "--scene=B", "--guard=render", "--hidden"),
     ]
     assert read.entries[1].inputs == (tmp_path / "a.blend", tmp_path / "e.json")
     assert read.entries[1].outputs == (tmp_path / "b.blend", tmp_path / "b.json")
@@ -59,6 +61,7 @@ WRONG = [
     (job(CHECK | {"scene": ""}), 'entry 0 ("a"): "scene" is not the path of a file'),
     (job(CHECK | {"frames": "9:1"}), "entry 0 (\"a\"): frames '9:1' must ascend"),
     (job(CHECK | {"hidden": 1}), 'entry 0 ("a"): "hidden" is neither true nor false'),
+    (job(REPAIR | {"guard": "All"}), 'entry 0 ("d"): "guard" is \'All\', none of auto, viewport, render, both'),
     (job(CHECK | {"scene_name": 1}), 'entry 0 ("a"): "scene_name" is not a text'),
     (job(CHECK | {"objects": "x"}), 'entry 0 ("a"): "objects" is not a list of names'),
     (job(CHECK, CHECK), 'entry 1: the name "a" is that of entry 0 too'),
@@ -75,7 +78,8 @@ def test_what_is_wrong_is_named(data, message, tmp_path):
 
 
 def test_the_schema_takes_what_the_reader_takes():
-    jsonschema.validate(job(CHECK, REPLAY, RESOLVE, REPAIR, time_limit=60, description="x"), schema_of("batch_job"))
+    entries = (CHECK, REPLAY, RESOLVE, REPAIR, CHECK_ALL)
+    jsonschema.validate(job(*entries, time_limit=60, description="x"), schema_of("batch_job"))
     refused = [data for data, message in WRONG if not accepted_by_schema(data)]
     assert len(refused) >= len(WRONG) - 6  # repeated names and paths are beyond a schema
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
+from stiv.command_line.guard_option import CHOICES
 from stiv.json_files import read_json
 
 SCHEMA, VERSION = "stiv-batch", 1
@@ -19,10 +20,10 @@ MAX_NAME = 100
 _FILES_IN = ("scene", "edits", "baseline")
 _FILES_OUT = ("output", "report")
 _FIELDS: Mapping[str, tuple[set[str], set[str]]] = {  # by what is done: fields that must be there, and that may be
-    "check": ({"scene"}, {"report", "frames", "objects", "baseline", "scene_name", "render", "hidden"}),
-    "replay": ({"scene", "edits", "output"}, {"report"}),
-    "repair": ({"scene", "output"}, {"report"}),
-    "resolve": ({"scene", "frames", "output"}, {"report", "hold"}),
+    "check": ({"scene"}, {"report", "frames", "objects", "baseline", "scene_name", "render", "hidden", "guard"}),
+    "replay": ({"scene", "edits", "output"}, {"report", "guard"}),
+    "repair": ({"scene", "output"}, {"report", "guard"}),
+    "resolve": ({"scene", "frames", "output"}, {"report", "hold", "guard"}),
 }
 
 
@@ -109,6 +110,8 @@ def _arguments(task: str, data: Mapping[str, Any], files: Mapping[str, Path], wh
         arguments.append(f"--frames={_frames(data['frames'], where)}")
     if "scene_name" in data:
         arguments.append(f"--scene={_text(data['scene_name'], 'scene_name', where)}")
+    if "guard" in data:
+        arguments.append(f"--guard={_guard(data['guard'], where)}")
     arguments += [f"--{field}" for field in ("render", "hidden") if _flag(data.get(field, False), field, where)]
     arguments += [f"--object={name}" for name in _names(data.get("objects", []), "objects", where)]
     return arguments + [f"--hold={name}" for name in _names(data.get("hold", []), "hold", where)]
@@ -156,6 +159,12 @@ def _flag(value: object, field: str, where: str) -> bool:
     if not isinstance(value, bool):
         raise InputError(f'{where}: "{field}" is neither true nor false')
     return value
+
+
+def _guard(value: object, where: str) -> str:
+    if value not in CHOICES:
+        raise InputError(f'{where}: "guard" is {value!r}, none of {", ".join(CHOICES)}')
+    return str(value)
 
 
 def _names(value: object, field: str, where: str) -> list[str]:

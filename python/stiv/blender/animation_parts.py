@@ -99,7 +99,7 @@ def _rigid_groups(tracks: Sequence[Track]) -> list[tuple[int, ...]]:
     for index, track in enumerate(tracks):
         if track.kind != "rigid":
             continue
-        same = next((group for group in groups if _move_alike(tracks[group[0]], track)), None)
+        same = next((group for group in groups if move_alike(tracks[group[0]], track)), None)
         if same is None:
             groups.append([index])
         else:
@@ -107,7 +107,7 @@ def _rigid_groups(tracks: Sequence[Track]) -> list[tuple[int, ...]]:
     return [tuple(group) for group in groups]
 
 
-def _move_alike(one: Track, other: Track) -> bool:
+def move_alike(one: Track, other: Track) -> bool:
     """Have they a common ancestor (or is one the other's), and do they keep their places to each other?"""
     if _root(one) != _root(other):
         return False

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
@@ -12,6 +13,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.arrays import Floats, Singles, transform_points
 from stiv.blender.evaluated_scene import VisibleMesh, read_scene
+from stiv.blender.evaluations import SHOWN
 from stiv.blender.frame_checking import go_to
 from stiv.blender.placement import is_rotation
 
@@ -35,20 +37,25 @@ class Track:
         return moved
 
 
-def read_tracks(context: bpy.types.Context, frames: Sequence[float]) -> list[Track]:
-    """All visible meshes at these frames. Raises InputError for one that comes, goes, or changes its vertices."""
+def read_tracks(
+    context: bpy.types.Context, frames: Sequence[float], evaluations: Collection[str] = (SHOWN,)
+) -> list[Track]:
+    """All meshes that these evaluations show at these frames; a mesh that several of them show comes once.
+
+    Raises InputError for one that comes, goes, or changes its vertices.
+    """
     locals_: list[list[Singles]] = []
     matrices: list[list[Floats]] = []
     first: tuple[VisibleMesh, ...] = ()
     for frame in frames:
         go_to(context.scene, frame)
-        meshes = read_scene(context).meshes
+        meshes = read_scene(context, evaluations=evaluations).meshes
         if not first:
             first = meshes
             locals_, matrices = [[mesh.local] for mesh in meshes], [[mesh.matrix] for mesh in meshes]
             continue
         _check_same(first, meshes, frames[0], frame)
-        for mesh, shapes, places in zip(meshes, locals_, matrices, strict=True):
+        for mesh, shapes, places in zip(_in_order_of(first, meshes), locals_, matrices, strict=True):
             shapes.append(shapes[-1] if np.array_equal(shapes[-1], mesh.local) else mesh.local)
             places.append(mesh.matrix)
     tracks = [Track(m, tuple(a), tuple(b)) for m, a, b in zip(first, locals_, matrices, strict=True)]
@@ -73,13 +80,28 @@ def check_movable(tracks: Sequence[Track], hold: Collection[str]) -> None:
             raise InputError(f'object "{ob.name}": a {ob.type.lower()} that changes its shape; convert it to a mesh')
 
 
+_Identity = tuple[int, str, frozenset[str]]  # what a mesh keeps while frames change; instances may share it
+
+
+def _identity(mesh: VisibleMesh) -> _Identity:
+    return mesh.owner.session_uid, mesh.source, mesh.exists_in
+
+
+def _in_order_of(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh]) -> list[VisibleMesh]:
+    """The same meshes in the order that they had at the first frame."""
+    waiting: dict[_Identity, list[VisibleMesh]] = defaultdict(list)
+    for mesh in reversed(meshes):
+        waiting[_identity(mesh)].append(mesh)
+    return [waiting[_identity(mesh)].pop() for mesh in first]
+
+
 def _check_same(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh], start: float, frame: float) -> None:
-    now = {(mesh.owner.session_uid, mesh.source): mesh for mesh in meshes}
-    names = {(mesh.owner.session_uid, mesh.source) for mesh in first}
+    now = {_identity(mesh): mesh for mesh in meshes}
+    names = {_identity(mesh) for mesh in first}
     for mesh in first:
-        other = now.get((mesh.owner.session_uid, mesh.source))
+        other = now.get(_identity(mesh))
         if other is None:
-            raise InputError(f'object "{mesh.owner.name}": is visible at frame {start:g} and not at frame {frame:g}')
+            raise InputError(_missing(mesh, meshes, start, frame))
         if len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
             raise InputError(
                 f'object "{mesh.owner.name}": has {len(mesh.local)} vertices at frame {start:g} and '
@@ -87,9 +109,20 @@ def _check_same(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh], sta
             )
     for key, mesh in now.items():
         if key not in names:
-            raise InputError(f'object "{mesh.owner.name}": is visible at frame {frame:g} and not at frame {start:g}')
-    if len(first) != len(meshes):
+            raise InputError(_missing(mesh, first, frame, start))
+    if Counter(map(_identity, first)) != Counter(map(_identity, meshes)):
         raise InputError(f"the number of instances changes between frames {start:g} and {frame:g}; make them real")
+
+
+def _missing(mesh: VisibleMesh, others: Sequence[VisibleMesh], here: float, there: float) -> str:
+    """What to say of a mesh that is at one frame and not among those of another."""
+    name = mesh.owner.name
+    if any(_identity(mesh)[:2] == _identity(other)[:2] for other in others):
+        return (
+            f'object "{name}": is rendered differently at frame {there:g} than at frame {here:g}; '
+            "keep its render settings the same, or use --guard viewport"
+        )
+    return f'object "{name}": is visible at frame {here:g} and not at frame {there:g}'
 
 
 def _kind(track: Track) -> str:

@@ -14,6 +14,7 @@ from stiv.blender.animation_parts import MovingPart, make_moving_parts
 from stiv.blender.animation_poses import Track, check_movable
 from stiv.blender.arrays import Floats
 from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.sessions import meets_only_rendered
 from stiv.seams import Seams
 
 
@@ -75,9 +76,7 @@ class _Solver:
         self.deformation = stiv.concatenate(
             [(p.deformation, _vertices(assembly, p)) for p in parts], assembly.positions
         )
-        self.session = stiv.EditSession(
-            assembly.surface, self.deformation, self._goal, self._options(separation, threads)
-        )
+        self.session = _session(assembly, self.deformation, self._goal, self._options(separation, threads))
         self._steps = stiv.StepCheck(assembly.surface, threads)
 
     def solve(self, place: int, before: float, frame: float) -> tuple[list[Key], dict[str, Any]]:
@@ -139,6 +138,17 @@ class _Solver:
         return stiv.EditOptions(
             separation=separation, weights=weights, single_precision=bool(frames), storage=frames, threads=threads
         )
+
+
+def _session(
+    assembly: Assembly, deformation: stiv.Deformation, controls: Floats, options: stiv.EditOptions
+) -> stiv.EditSession:
+    try:
+        return stiv.EditSession(assembly.surface, deformation, controls, options)
+    except stiv.StartIntersectsError as error:
+        if meets_only_rendered(assembly, error):
+            error.add_note("it does so only when rendered; --guard viewport leaves the render out")
+        raise
 
 
 def _assembly(tracks: Sequence[Track], parts: Sequence[MovingPart]) -> Assembly:

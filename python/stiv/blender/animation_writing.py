@@ -18,6 +18,7 @@ from stiv.blender.animation_parts import MovingPart, stored_placement
 from stiv.blender.animation_poses import Track
 from stiv.blender.animation_resolving import Key, Resolved
 from stiv.blender.arrays import Floats, Singles, transform_points
+from stiv.blender.evaluated_scene import open_evaluations
 from stiv.blender.fixed_triangulation import flipped_faces, split_faces
 from stiv.blender.frame_checking import go_to
 from stiv.blender.mesh_reading import evaluated_mesh
@@ -65,13 +66,17 @@ def _fix_triangulations(context: bpy.types.Context, tracks: Sequence[Track], res
 def _evaluated_meshes(
     context: bpy.types.Context, tracks: Sequence[Track], parts: Sequence[MovingPart]
 ) -> dict[int, bpy.types.Mesh]:
-    """Meshes of their own for what changes its shape, as Blender shows it at the first frame."""
-    graph = context.evaluated_depsgraph_get()
-    meshes = {}
-    for index in (part.tracks[0] for part in parts if part.frame is not None):
-        ob = tracks[index].mesh.owner.find()
-        meshes[index] = bpy.data.meshes.new_from_object(ob.evaluated_get(graph), depsgraph=graph)
-        meshes[index].name = f"{ob.name} resolved"
+    """Meshes of their own for what changes its shape, as the evaluation it was read in has it at the first frame."""
+    shapes = {part.tracks[0]: tracks[part.tracks[0]].mesh for part in parts if part.frame is not None}
+    meshes: dict[int, bpy.types.Mesh] = {}
+    if not shapes:
+        return meshes
+    with open_evaluations(context, {mesh.read_in for mesh in shapes.values()}) as opened:
+        for index, mesh in shapes.items():
+            graph = opened.depsgraph(mesh.read_in)
+            evaluated = opened.evaluated(mesh.read_in, mesh.owner)
+            meshes[index] = bpy.data.meshes.new_from_object(evaluated, depsgraph=graph)
+            meshes[index].name = f"{mesh.owner.name} resolved"
     return meshes
 
 
@@ -86,8 +91,8 @@ def _free(ob: bpy.types.Object) -> None:
 
 
 def _write_placements(part: MovingPart, tracks: Sequence[Track], keys: Sequence[Key]) -> None:
-    for index in part.tracks:
-        ob, last = tracks[index].mesh.owner.find(), None
+    for owner, index in {tracks[index].mesh.owner: index for index in reversed(part.tracks)}.items():
+        ob, last = owner.find(), None
         for key in keys:
             location, rotation, scale = stored_placement(ob, part.motion(key.controls) @ tracks[index].matrices[0])
             if last is not None and rotation.dot(last) < 0:

@@ -19,6 +19,13 @@ def checked_evaluations(context: bpy.types.Context, render: bool = False) -> tup
     return (VIEWPORT,)
 
 
+def chosen_evaluations(context: bpy.types.Context, guard: str, render: bool = False) -> tuple[str, ...]:
+    """The evaluations of a guard: "viewport", "render", "both", or "auto" as `checked_evaluations` has it."""
+    if guard == "auto":
+        return checked_evaluations(context, render)
+    return tuple(each for each in (VIEWPORT, RENDER) if guard in (each, "both"))
+
+
 def note_on(context: bpy.types.Context, evaluations: Sequence[str]) -> str:
     """What to tell of an evaluation that is not read; "" where all are."""
     if RENDER in evaluations:

@@ -132,8 +132,7 @@ class Opened:
     ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Object, bpy.types.Object]]:
         """Each mesh that an evaluation shows, the object that it belongs to, and the one whose data it is."""
         twins = self.twins.get(read_in)
-        graph = self._context.evaluated_depsgraph_get() if twins is None else twins.depsgraph
-        for instance in graph.object_instances:
+        for instance in self.depsgraph(read_in).object_instances:
             if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
                 continue
             owner = instance.parent.original if instance.is_instance else instance.object.original
@@ -142,6 +141,10 @@ class Opened:
                 owner, source = twins.owner(owner), twins.owner(source)
             if is_wanted(owner):
                 yield instance, owner, source
+
+    def depsgraph(self, read_in: str) -> bpy.types.Depsgraph:
+        """What evaluates it."""
+        return self.twins[read_in].depsgraph if read_in in self.twins else self._context.evaluated_depsgraph_get()
 
     def evaluated(self, read_in: str, owner: ObjectReference) -> bpy.types.Object:
         """An object as evaluated."""

@@ -50,7 +50,8 @@ def check_frames(
         for evaluation in evaluations if before else ():
             if evaluation in before or evaluation in present:
                 start, end = (poses.get(evaluation, poses[evaluations[0]]) for poses in (before, present))
-                yield _between(start, end, evaluation, threads)
+                look = _between(start, end, evaluation, threads)
+                yield look if evaluation == evaluations[0] else replace(look, notes=())
         tested = {name for pose in present.values() for name in pose.look.shapes.names}
         left_out = find_left_out(context, tested, objects) if number == 0 else ()
         for pose in present.values():
@@ -111,14 +112,15 @@ def _read(
             continue
         meshes = [mesh for mesh in scene.meshes if evaluation in mesh.exists_in]
         assembly = assemble_joined(meshes)
-        poses[evaluation] = Pose(assembly, _at_rest(assembly, evaluation, frame, threads))
+        look = _at_rest(assembly, evaluation, frame, threads)
+        poses[evaluation] = Pose(assembly, replace(look, seams=()) if number else look)
     return poses
 
 
 def _at_rest(assembly: Assembly, evaluation: str, frame: float | None, threads: int) -> Look:
     pairs, touching = find_pairs_and_seams(assembly, threads)
     found = [Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs]
-    seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces) and evaluation != RENDER)
+    seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces))
     told = _told_once(found, assembly, evaluation)
     return Look(shapes_of(assembly, assembly.positions), frame, None, told, seams=seams)
 
@@ -152,7 +154,7 @@ def _between(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
     first = min((finding.time for finding in found if finding.time is not None), default=0.0)
     shapes = shapes_of(moving, moving.positions + first * (goal - moving.positions))
     told = _told_once(found, moving, evaluation)
-    return Look(shapes, start.look.frame, end.look.frame, told, tuple(notes) if evaluation != RENDER else ())
+    return Look(shapes, start.look.frame, end.look.frame, told, tuple(notes))
 
 
 def crossings(assembly: Assembly, goal: Floats, threads: int = 0) -> list[Finding]:

@@ -70,9 +70,14 @@ def make_session(
     try:
         return stiv.EditSession(assembly.surface, deformation, controls, options)
     except stiv.StartIntersectsError as error:
-        if len(error.pairs) and all(_is_only_rendered(assembly, pair) for pair in error.pairs.tolist()):
+        if meets_only_rendered(assembly, error):
             error.add_note("it does so only when rendered; set Guard to Viewport to leave the render out")
         raise
+
+
+def meets_only_rendered(assembly: Assembly, error: stiv.StartIntersectsError) -> bool:
+    """Does a start intersect in the render alone?"""
+    return len(error.pairs) > 0 and all(_is_only_rendered(assembly, pair) for pair in error.pairs.tolist())
 
 
 def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:

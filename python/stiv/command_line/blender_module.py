@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from stiv import InputError
 
@@ -45,3 +46,11 @@ def addon_registered(path: Path) -> Iterator[None]:
         yield
     finally:
         addon.unregister()
+
+
+def stored_settings(context: Any, path: Path) -> Any:
+    """The settings that the add-on has stored in the open scene; the defaults where the add-on is not installed."""
+    if importlib.util.find_spec("stiv_addon") is None:
+        return require_blender("stiv.blender", path).EditSettings()
+    with addon_registered(path):
+        return require_blender("stiv_addon.settings", path).edit_settings(context.scene)

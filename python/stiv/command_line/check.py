@@ -19,6 +19,7 @@ from stiv.checks.report import file_report, report_of, summary
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.file_checking import Choices, check_path
 from stiv.command_line.frame_ranges import frame_range
+from stiv.command_line.guard_option import CHOICES
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.progress import progress_bar
@@ -60,6 +61,10 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("--object", action="append", default=[], metavar="NAME", help="test only objects of this name")
     parser.add_argument("--scene", default="all", metavar="NAME|all", help="test this scene of a .blend (all)")
     parser.add_argument("--render", action="store_true", help="test render levels however large they are")
+    parser.add_argument(
+        "--guard", choices=CHOICES, default="auto",
+        help="test the viewport, the render or both; auto is both unless the render is very large",
+    )  # fmt: skip
     parser.add_argument("--hidden", action="store_true", help="test what is hidden or excluded too")
     parser.add_argument(
         "--frames",
@@ -108,6 +113,8 @@ def _check_arguments(arguments: argparse.Namespace) -> None:
         require_folder(path)
     if arguments.write_baseline and arguments.baseline is None:
         raise InputError("--write-baseline needs --baseline F, the file to write")
+    if arguments.render and arguments.guard == "viewport":
+        raise InputError("--render tests the render and --guard viewport leaves it out; give one of them")
     if not 1 <= arguments.subframes <= 1000:
         raise InputError(f"--subframes: {arguments.subframes} is not between 1 and 1000")
     if arguments.pictures is not None:
@@ -128,7 +135,7 @@ def _checked(
 ) -> FileCheck:
     choices = Choices(
         tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures, arguments.scene,
-        arguments.render, arguments.hidden,
+        arguments.render, arguments.hidden, arguments.guard,
     )  # fmt: skip
     try:
         check = check_path(path, choices, on_look)

@@ -34,6 +34,7 @@ class Choices:
     scene: str = "all"  #: name of the scene of a .blend
     render: bool = False  #: test what is rendered, however large
     hidden: bool = False  #: test what is hidden too
+    guard: str = "auto"  #: test the "viewport", the "render" or "both"; "auto": both unless the render is very large
 
 
 def check_path(
@@ -82,12 +83,12 @@ def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look
     )
     if choices.hidden:
         whole.unhide_all(context)
-    chosen = evaluations.checked_evaluations(context, choices.render)
+    chosen = evaluations.chosen_evaluations(context, choices.guard, choices.render)
     frames = _frames(path, choices, checking, context)
     objects = [name for name in choices.objects if name in context.scene.objects]
     if choices.objects and not objects:
         return
-    note = evaluations.note_on(context, chosen)
+    note = evaluations.note_on(context, chosen) if choices.guard == "auto" else ""
     for number, look in enumerate(checking.check_frames(context, frames, objects, 0, chosen)):
         yield replace(look, notes=(note, *look.notes)) if note and number == 0 else look
 

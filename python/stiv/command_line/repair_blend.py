@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stiv.command_line.blender_module import addon_registered, require_blender
+from stiv.command_line.blender_module import require_blender, stored_settings
 from stiv.command_line.output_files import written_atomically
 from stiv.command_line.progress import share_bar
 from stiv.command_line.quiet import quiet_blender
@@ -54,11 +53,7 @@ def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -
 
 
 def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
-    if importlib.util.find_spec("stiv_addon") is None:
-        settings = require_blender("stiv.blender", source).EditSettings()
-    else:
-        with addon_registered(source):
-            settings = require_blender("stiv_addon.settings", source).edit_settings(context.scene)
+    settings = stored_settings(context, source)
     separation, guard = choices.separation or settings.separation, choices.guard or settings.guard
     return replace(settings, separation=separation, guard=guard, time_budget=choices.time_limit)
 

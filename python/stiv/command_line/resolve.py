@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import stiv
 from stiv import InputError
 from stiv.checks.findings import Finding
-from stiv.command_line.blender_module import require_blender
+from stiv.command_line.blender_module import require_blender, stored_settings
 from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.frame_ranges import frame_range
+from stiv.command_line.guard_option import add_guard_option
 from stiv.command_line.installed_blender import add_blender_option
 from stiv.command_line.output_files import require_folder, write_json, written_atomically
 from stiv.command_line.progress import progress_bar
@@ -52,6 +53,7 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
     parser.add_argument("--hold", action="append", default=[], metavar="NAME", help="object that does not give way")
     parser.add_argument("--separation", type=float, default=0.0, metavar="X", help="distance to keep, world units")
+    add_guard_option(parser)
     parser.add_argument("--report", type=Path, metavar="F", help="write what each frame came to to F, as JSON")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
@@ -64,32 +66,34 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
         raise InputError(f"{arguments.scene}: there is no such file")
     try:
         with quiet_blender():
-            left, frames = _resolve(arguments)
+            left, frames, guard = _resolve(arguments)
     except stiv.StartIntersectsError as error:
-        print(f"{arguments.scene}: the first frame: {error}")
+        print("; ".join([f"{arguments.scene}: the first frame: {error}", *getattr(error, "__notes__", ())]))
         return ExitCode.NOT_FREE
     if arguments.report is not None:
-        write_json(arguments.report, report_of(arguments.scene, left, frames))
-    print(summary(arguments.scene, left, frames))
+        write_json(arguments.report, report_of(arguments.scene, left, frames, guard.choice))
+    print("; ".join(filter(None, [summary(arguments.scene, left, frames), guard.reason])))
     return ExitCode.NOT_FREE if left else ExitCode.DONE
 
 
-def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dict[str, Any]]]:
-    """What Blender shows to meet in the result, and what each frame came to; writes the file if nothing meets."""
+def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dict[str, Any]], Any]:
+    """What meets in the result, what each frame came to, and the guard; writes the file if nothing meets."""
     scene = arguments.scene
-    files, poses, resolving, writing, checking, keyed = (
+    files, poses, resolving, writing, checking, keyed, guarding, evaluations = (
         require_blender(f"stiv.blender.{name}", scene)
         for name in (
             "blend_files", "animation_poses", "animation_resolving", "animation_writing", "frame_checking",
-            "keyed_frames",
+            "keyed_frames", "animation_guarding", "checked_evaluations",
         )
     )  # fmt: skip
     context = files.open_blend(scene)
     chosen = arguments.frames
     first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
     frames = list(range(first, last + 1, step))
+    checking.go_to(context.scene, first)
+    guard = guarding.choose_animation_guard(context, arguments.guard or stored_settings(context, scene).guard)
     try:
-        tracks = poses.read_tracks(context, frames)
+        tracks = guarding.written_tracks(poses.read_tracks(context, frames, guard.evaluations))
         with progress_bar("frames", len(frames)) as advance:
             resolved = resolving.resolve(tracks, frames, arguments.hold, arguments.separation, 0, advance)
     except stiv.StartIntersectsError:
@@ -101,13 +105,15 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
     try:
         with written_atomically(arguments.output) as temporary:
             files.save_blend(temporary)
-            looks = checking.check_frames(files.open_blend(temporary), _tested(frames, keyed))
+            opened = files.open_blend(temporary)
+            tested = evaluations.chosen_evaluations(opened, guard.choice)
+            looks = checking.check_frames(opened, _tested(frames, keyed), evaluations=tested)
             left = [found for look in looks for found in look.findings if not _keeps(found, alike)]
             if left:
                 raise _NotFreeError
     except _NotFreeError:
         pass
-    return left, resolved.frames
+    return left, resolved.frames, guard
 
 
 def _tested(frames: Sequence[int], keyed: Any) -> list[float]:
@@ -120,13 +126,14 @@ class _NotFreeError(Exception):
     """Keeps what is not free from taking the place of the output."""
 
 
-def report_of(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def report_of(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]], guard: str) -> dict[str, Any]:
     """The report (python/stiv/schemas/resolve.schema.json)."""
     pairs = [str(finding) for finding in left[:100]]
     return {
         "schema": SCHEMA,
         "version": VERSION,
         "scene": scene.name,
+        "guard": guard,
         "free": not left,
         "pairs": pairs,
         "frames": list(frames),
