@@ -12,6 +12,7 @@ import pytest
 from building import add, add_cube, add_grid, add_modifier
 from oracles import exact
 
+from stiv.blender import animation_guarding
 from stiv.blender.animation import channel_curves
 from stiv.blender.blend_files import open_blend, save_blend
 from stiv.command_line import program
@@ -78,7 +79,7 @@ SCENES = {
     "corners": lambda: into_wall(smooth_cube()),
     "hidden wall": hidden_wall,
     "switched": switched,
-    "shape": bending,
+    "shape": bending,  # written without modifiers
 }
 
 
@@ -195,6 +196,16 @@ REFUSED = [
 ]
 
 
+@pytest.mark.parametrize("guard", ["viewport", "render", "both"])
+def test_shapes_are_written_at_the_levels_of_their_guard(tmp_path: Path, guard: str) -> None:
+    SCENES["shape"]()
+    code, _, out = run(tmp_path, "--guard", guard)
+    assert code == 0 and meetings(out) == (0, 0)
+    cube = bpy.data.objects["Cube"]
+    assert not cube.modifiers and len(cube.data.vertices) == (8 if guard == "render" else 98)
+    assert len(cube.data.shape_keys.key_blocks) >= LAST
+
+
 @pytest.mark.parametrize(("make", "expected", "said"), REFUSED)
 def test_what_cannot_be_guarded_is_refused_by_name(
     tmp_path: Path, capsys: Any, make: Callable[[], None], expected: int, said: str
@@ -204,6 +215,23 @@ def test_what_cannot_be_guarded_is_refused_by_name(
     captured = capsys.readouterr()
     assert code == expected and not out.exists()
     assert said in captured.err + captured.out and "--guard viewport" in captured.err + captured.out
+
+
+@pytest.mark.usefixtures("registered")
+def test_the_scenes_own_guard_applies_and_a_large_render_is_said(
+    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    SCENES["corners"]()
+    for choice in ("render", "auto"):
+        bpy.context.scene.stiv.guard = choice
+        code, source, _ = run(tmp_path)
+        report = json.loads((tmp_path / "report.json").read_text())
+        assert (code, report["guard"]) == (0, "render" if choice == "render" else "both")
+        open_blend(source)
+    monkeypatch.setattr(animation_guarding, "checked_evaluations", lambda context: ("viewport",))
+    assert run(tmp_path)[0] == 0
+    assert json.loads((tmp_path / "report.json").read_text())["guard"] == "viewport"
+    assert "the render is not guarded: too many triangles; --guard both guards it" in capsys.readouterr().out
 
 
 def test_entries_of_a_batch_have_their_guards(tmp_path: Path) -> None:
