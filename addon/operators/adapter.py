@@ -111,7 +111,8 @@ def begin_drag(context: bpy.types.Context, request: Any) -> Any:
 def _told(context: bpy.types.Context, edit: Any) -> Any:
     from stiv.blender.left_out import text_not_guarded  # the add-on registers without the native module
 
-    context.window_manager.stiv_check.left_out = text_not_guarded(context, edit.guard.evaluations)
+    found = text_not_guarded(context, edit.guard.evaluations, edit.carried)
+    context.window_manager.stiv_check.left_out = found
     if edit.dropped:  # the summary's other warnings look at every triangle, for which a drag has no time
         context.window_manager.stiv_check.summary = edit.dropped
     return edit

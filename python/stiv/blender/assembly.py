@@ -14,12 +14,12 @@ from stiv.seams import Seams, find_seams
 
 ROUNDING = 2.0**-19  # of an object's extent: Blender computes the copies of a seam one by one, in single precision
 
-_Body = tuple[str, str, frozenset[str]]  # its object, its mobility, and the evaluations that show it
+_Body = tuple[str, str, frozenset[str], frozenset[str]]  # object, mobility, evaluations, what it grows from
 
 
 @dataclass(frozen=True)
 class Element:
-    """A face, loose edge or vertex of an object's evaluated mesh, by its number there. `kind` says which.
+    """A face, loose edge or vertex of an object's evaluated mesh, or a strand, by its number. `kind` says which.
 
     evaluation: which one, where it is not the one shown now: "viewport" (Object Mode) or "render".
     """
@@ -67,17 +67,19 @@ class Assembly:
     def face(self, triangle: int) -> Element:
         """The face a triangle of the surface belongs to."""
         mesh, number = self._locate(triangle, [len(each.triangles) for each in self.meshes])
-        return Element(mesh.owner.name, "face", int(mesh.faces[number]), mesh.read_in)
+        return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_in)
 
     def loose_edge(self, edge: int) -> Element:
         """The edge that a loose edge of the surface is."""
         mesh, number = self._locate(edge, [len(each.loose_edges) for each in self.meshes])
-        return Element(mesh.owner.name, "edge", int(mesh.loose_numbers[number]), mesh.read_in)
+        return Element(mesh.owner.name, _kind(mesh, "edge"), int(mesh.loose_numbers[number]), mesh.read_in)
 
     def vertex(self, vertex: int) -> Element:
         """The vertex that a vertex of the surface is."""
         place = int(np.searchsorted(self.starts, vertex, side="right")) - 1
         mesh, seams, number = self.meshes[place], self.seams[place], int(vertex - self.starts[place])
+        if mesh.strands is not None:
+            return Element(mesh.owner.name, "strand", int(mesh.strands[number]), mesh.read_in)
         first = number if seams is None else int(seams.first[number])
         return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_in)
 
@@ -85,6 +87,10 @@ class Assembly:
         ends = np.cumsum(sizes)
         mesh = int(np.searchsorted(ends, index, side="right"))
         return self.meshes[mesh], int(index - (ends[mesh] - sizes[mesh]))
+
+
+def _kind(mesh: VisibleMesh, kind: str) -> str:
+    return kind if mesh.strands is None else "strand"
 
 
 def unjoined_triangles(meshes: Sequence[VisibleMesh]) -> Indices:
@@ -99,9 +105,10 @@ def mesh_seams(local: Singles, triangles: Indices) -> Seams | None:
 
 
 def assemble_joined(meshes: Sequence[VisibleMesh], ignored: Sequence[tuple[str, str]] = ()) -> Assembly:
-    """Put meshes into one surface as `assemble`: every body deformable, seams of each mesh joined."""
-    seams = [mesh_seams(mesh.local, mesh.triangles) for mesh in meshes]
-    return assemble(meshes, ["deformable"] * len(meshes), (), ignored, seams)
+    """Put meshes into one surface as `assemble`: strands fixed, all else deformable, seams of each mesh joined."""
+    seams = [mesh_seams(mesh.local, mesh.triangles) if mesh.strands is None else None for mesh in meshes]
+    mobility = ["deformable" if mesh.strands is None else "fixed" for mesh in meshes]
+    return assemble(meshes, mobility, (), ignored, seams)
 
 
 def assemble(
@@ -115,14 +122,15 @@ def assemble(
 
     mobility: "fixed", "rigid" or "deformable", one for each mesh. together: names of objects that move as one, and are
     not tested against each other where rigid. ignored: pairs of names that are not tested. seams: vertices of each mesh
-    that become one; empty: none do. Meshes that no evaluation shows together are not tested against each other.
+    that become one; empty: none do. Meshes that no evaluation shows together are not tested against each other, nor
+    strands against what they grow from.
     """
     joins = tuple(seams) or (None,) * len(meshes)
     counts = [len(mesh.local) if each is None else len(each.first) for mesh, each in zip(meshes, joins, strict=True)]
     starts = np.cumsum([0, *counts]).astype(np.int32)
     bodies: dict[_Body, int] = {}
     body = [
-        bodies.setdefault((mesh.owner.name, m, mesh.exists_in), len(bodies))
+        bodies.setdefault((mesh.owner.name, m, mesh.exists_in, mesh.rooted_in), len(bodies))
         for mesh, m in zip(meshes, mobility, strict=True)
     ]
     surface = stiv.Surface(
@@ -130,7 +138,7 @@ def assemble(
         int(starts[-1]),
         _shifted([mesh.loose_edges for mesh in meshes], starts, joins, 2),
         np.repeat(np.array(body, np.int32), np.diff(starts)),
-        [stiv.Body(name, kind) for name, kind, _ in bodies] or None,
+        [stiv.Body(name, kind) for name, kind, *_ in bodies] or None,
         _ignored(bodies, together, ignored),
     )
     world = [_joined(each, mesh.world()) for mesh, each in zip(meshes, joins, strict=True)]
@@ -158,11 +166,12 @@ def _ignored(
     bodies: Mapping[_Body, int], together: Sequence[frozenset[str]], ignored: Sequence[tuple[str, str]]
 ) -> list[tuple[int, int]]:
     pairs = set()
-    for (first, kind, here), a in bodies.items():
-        for (second, other, there), b in bodies.items():
+    for (first, kind, here, roots), a in bodies.items():
+        for (second, other, there, grown), b in bodies.items():
             if b < a:
                 continue
             rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
-            if rigid or not here & there or (first, second) in ignored or (second, first) in ignored:
+            rooted = first in grown or second in roots
+            if rigid or rooted or not here & there or (first, second) in ignored or (second, first) in ignored:
                 pairs.add((a, b))
     return sorted(pairs)

@@ -11,11 +11,12 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, as_matrix
 from stiv.blender.assembly import Assembly, assemble
+from stiv.blender.evaluated_scene import VisibleMesh
 from stiv.blender.guarding import Guard, read_guarded_scene
 from stiv.blender.movers import Mover
 from stiv.blender.participants import make_parts
 from stiv.blender.parts import Part
-from stiv.blender.reach import Reach
+from stiv.blender.reach import Reach, tied
 from stiv.blender.sessions import mobilities, seams_of, stacked
 from stiv.blender.settings import EditSettings
 
@@ -32,6 +33,7 @@ class Beginning:
         hidden: how many objects do not take part because they are hidden.
         dropped: which exclusions of intersections no longer count, empty if all do.
         digest: equal for edits that begin with the same controls, surfaces that move and placements.
+        carried: names of the objects whose strands follow what moves, and are no obstacles.
     """
 
     assembly: Assembly
@@ -41,6 +43,7 @@ class Beginning:
     hidden: int
     dropped: str
     digest: str
+    carried: frozenset[str]
 
 
 def read_beginning(
@@ -61,26 +64,46 @@ def read_beginning(
         settings,
         lambda name: settings.takes_part(name) and name not in left_out,
         lambda name: None if reach is None else reach.box_of(name),
+        strands=True,
     )
-    found, groups = make_parts(context, movers, scene.meshes, settings, kind)
+    solid = [mesh for mesh in scene.meshes if mesh.strands is None]
+    found, groups = make_parts(context, movers, solid, settings, kind)
     parts = tuple(adapt(part) for part in found)
     if not any(part.rule.moves for part in parts):
         raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
-    count = len(scene.meshes)
+    moving = {mover.reference.name for mover in movers}.union(
+        *(group.members for group in groups), (solid[index].owner.name for part in parts for index in part.surfaces)
+    )
+    still, carried = _still_strands(context, scene.meshes, moving)
+    meshes = [*solid, *still]
+    count = len(meshes)
     assembly = assemble(
-        scene.meshes, mobilities(count, parts), [group.members for group in groups], settings.ignored_pairs,
+        meshes, mobilities(count, parts), [group.members for group in groups], settings.ignored_pairs,
         seams_of(count, parts),
     )  # fmt: skip
-    excluded, dropped = settings.excluded.current(scene.meshes)
+    excluded, dropped = settings.excluded.current(solid)
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
-    moving = assembly.positions[moving_vertices(assembly, parts)]
-    digest = _digest(stacked([part.controls for part in parts]), moving, *placements)
-    return Beginning(assembly, parts, replace(settings, excluded=excluded), guard, scene.hidden, dropped, digest)
+    points = assembly.positions[moving_vertices(assembly, parts)]
+    digest = _digest(stacked([part.controls for part in parts]), points, *placements)
+    chosen = replace(settings, excluded=excluded)
+    return Beginning(assembly, parts, chosen, guard, scene.hidden, dropped, digest, carried)
 
 
 def moving_vertices(assembly: Assembly, parts: Sequence[Part]) -> Indices:
     """The vertices of the surface that follow controls of the parts."""
     return np.concatenate([assembly.range_of(index) for part in parts for index in part.surfaces])
+
+
+def _still_strands(
+    context: bpy.types.Context, meshes: Sequence[VisibleMesh], moving: set[str]
+) -> tuple[list[VisibleMesh], frozenset[str]]:
+    """The strands that stay, and the names of the objects whose strands follow what moves, by name."""
+    strands = [mesh for mesh in meshes if mesh.strands is not None]
+    if not strands:
+        return [], frozenset()
+    follow = tied(list(context.view_layer.objects), moving)
+    carried = frozenset(mesh.owner.name for mesh in strands if {mesh.source, *mesh.rooted_in} & follow)
+    return [mesh for mesh in strands if mesh.owner.name not in carried], carried
 
 
 def _digest(*arrays: Floats) -> str:

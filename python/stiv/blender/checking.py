@@ -72,12 +72,12 @@ def check_scene(
     another object shows counts only if it is named.
     """
     settings = settings or EditSettings()
-    scene, guard = read_guarded_scene(context, settings, counted_names(context, settings, objects))
+    scene, guard = read_guarded_scene(context, settings, counted_names(context, settings, objects), strands=True)
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs, seams = find_pairs_and_seams(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}
     count = sum(len(faces) for _, faces in seams)
-    triangles = len(assembly.surface.triangles)
+    triangles = sum(len(mesh.triangles) for mesh in assembly.meshes if mesh.strands is None)
     left_out = find_left_out(context, names, objects or ())
     return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason, left_out)
 
@@ -87,7 +87,7 @@ def exclusions_now(
 ) -> tuple[Exclusions, tuple[FacePair, ...]]:
     """All pairs of faces that meet, to be excluded from edits, and the pairs that cannot be: with loose elements."""
     chosen = settings or EditSettings()
-    scene, _ = read_guarded_scene(context, chosen, counted_names(context, chosen))
+    scene, _ = read_guarded_scene(context, chosen, counted_names(context, chosen), strands=True)
     assembly = assemble_joined(scene.meshes, chosen.ignored_pairs)
     pairs = find_pairs(assembly, chosen.threads)
     excluded = Exclusions.of(pairs, scene.meshes)

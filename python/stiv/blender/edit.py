@@ -39,13 +39,14 @@ class BlenderEdit:
         dropped: which exclusions of intersections no longer count, empty if all do.
         guard: the evaluations that are kept free of intersections.
         start_digest: equal for edits that begin with the same controls, surfaces that move and placements.
+        carried: names of the objects whose strands follow what moves, and are no obstacles.
     """
 
     def __init__(self, beginning: Beginning) -> None:
         """Use `begin`."""
         settings = beginning.settings
         self.dropped, self.start_digest = beginning.dropped, beginning.digest
-        self.guard = beginning.guard
+        self.guard, self.carried = beginning.guard, beginning.carried
         self._hidden, self._parts = beginning.hidden, beginning.parts
         self._selected_weight = settings.weight(True)
         self._influence: Influence | None = None

@@ -4,9 +4,11 @@
 from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.arrays import Floats, Indices, Singles, as_matrix, transform_points
@@ -22,6 +24,17 @@ from stiv.blender.evaluations import (
 from stiv.blender.mesh_reading import evaluated_mesh, read_edges, read_loose_numbers, read_positions, read_triangles
 from stiv.blender.near_faces import NearFaces, read_near_faces
 from stiv.blender.references import ObjectReference
+from stiv.blender.strand_reading import (
+    STRAND_TYPES,
+    check_finite,
+    hair_systems,
+    helper_curves,
+    read_particle_hair,
+    read_strands,
+    why_no_particle_hair,
+    why_no_strands,
+)
+from stiv.blender.strands import Strands, cover
 from stiv.blender.twins import Twins, open_twins
 
 SURFACE_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"})
@@ -34,7 +47,7 @@ class VisibleMesh:
     Attributes:
         owner: the object that shows it: for an instance, the object that makes the instance.
         source: name of the object whose data is shown; the owner's own name for what is not an instance.
-        local: positions in its own frame as stored, (n, 3).
+        local: positions in its own frame as stored, (n, 3): single precision, of strands double.
         matrix: frame to world, (4, 4).
         triangles: Blender's triangulation, (f, 3).
         faces: the face each triangle belongs to, (f,).
@@ -43,11 +56,13 @@ class VisibleMesh:
         near: which part of Blender's mesh this is; None: all of it.
         read_in: the evaluation that it was read from.
         exists_in: the evaluations that show exactly this mesh.
+        strands: of curves and hair, the strand that each vertex belongs to, (n,); None for a mesh of Blender's.
+        rooted_in: names of the objects that strands grow from or hang on, and are not tested against.
     """
 
     owner: ObjectReference
     source: str
-    local: Singles
+    local: NDArray[Any]
     matrix: Floats
     triangles: Indices
     faces: Indices
@@ -56,6 +71,8 @@ class VisibleMesh:
     near: NearFaces | None = None
     read_in: str = SHOWN
     exists_in: frozenset[str] = frozenset(EVALUATIONS)
+    strands: Indices | None = None
+    rooted_in: frozenset[str] = frozenset()
 
     @property
     def is_instance(self) -> bool:
@@ -127,13 +144,18 @@ class Opened:
             found.add(RENDER)
         return frozenset(found & self._wanted)
 
+    def hair_exists_in(self, number: int) -> frozenset[str]:
+        """The wanted evaluations in which an object has particle hair, which is read as the viewport shows it."""
+        found = {SHOWN, VIEWPORT} | ({RENDER} if number in self._differences.rendered else set())
+        return frozenset(found & self._wanted)
+
     def instances(
-        self, read_in: str, is_wanted: Callable[[bpy.types.Object], bool]
+        self, read_in: str, is_wanted: Callable[[bpy.types.Object], bool], types: Collection[str] = ("MESH",)
     ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Object, bpy.types.Object]]:
-        """Each mesh that an evaluation shows, the object that it belongs to, and the one whose data it is."""
+        """Each mesh, or what is of other types, that an evaluation shows, with its owner and whose data it is."""
         twins = self.twins.get(read_in)
         for instance in self.depsgraph(read_in).object_instances:
-            if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
+            if instance.object.type not in types or not (instance.show_self or instance.is_instance):
                 continue
             owner = instance.parent.original if instance.is_instance else instance.object.original
             source = instance.instance_object.original if instance.is_instance else owner
@@ -176,13 +198,14 @@ def read_scene(
     accept: Callable[[str], bool] = lambda name: True,
     box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
     evaluations: Collection[str] = (SHOWN,),
+    strands: bool = False,
 ) -> EvaluatedScene:
     """Read every mesh whose owner's name is accepted; with a box of the world, (3,) and (3,), what touches it.
 
     evaluations: which ones to read; a mesh that several of them show comes once, and says in which it exists.
     Curves, text, surfaces, metaballs and instances come as the meshes they show. Local view is respected where the
     context has a 3D view, but not by the render. Raises InputError naming object and vertex when a coordinate is not
-    finite.
+    finite. strands: also read curves without surface, hair curves and particle hair, after all meshes.
     """
     shown: dict[int, bool] = {}
 
@@ -192,6 +215,7 @@ def read_scene(
         return shown[owner.session_uid]
 
     meshes: list[VisibleMesh] = []
+    found: list[VisibleMesh] = []
     with open_evaluations(context, evaluations) as opened:
         for read_in in opened.read_in:
 
@@ -202,7 +226,11 @@ def read_scene(
             for instance, owner, source in opened.instances(read_in, is_wanted):
                 exists_in = opened.exists_in(read_in, owner.session_uid)
                 meshes.append(_read_mesh(instance, owner, source, box_of(owner.name), read_in, exists_in))
-    return EvaluatedScene(tuple(meshes), _left_out_count(context, evaluations))
+            if strands:
+                found += _read_strands(context, opened, read_in, is_wanted)
+        if strands:
+            found += _read_particle_hair(context, opened, lambda owner: accept(owner.name) and is_shown(owner))
+    return EvaluatedScene((*meshes, *found), _left_out_count(context, evaluations))
 
 
 def read_placed(owners: frozenset[int], opened: Opened, read_in: str = SHOWN) -> list[Placed]:
@@ -247,6 +275,55 @@ def _read_mesh(
     found = VisibleMesh(owner, source, *data, near, read_in, exists_in)
     _check_finite(found)
     return found
+
+
+def _read_strands(
+    context: bpy.types.Context, opened: Opened, read_in: str, is_wanted: Callable[[bpy.types.Object], bool]
+) -> Iterator[VisibleMesh]:
+    """Curves without surface and hair curves of an evaluation that can be obstacles."""
+    helpers = helper_curves(context)
+    for instance, owner, source in opened.instances(read_in, is_wanted, STRAND_TYPES):
+        if not why_no_strands(instance.object, source, helpers):
+            exists_in = opened.exists_in(read_in, owner.session_uid)
+            yield from _covered(read_strands(instance), owner, source, read_in, exists_in)
+
+
+def _read_particle_hair(
+    context: bpy.types.Context, opened: Opened, is_wanted: Callable[[bpy.types.Object], bool]
+) -> Iterator[VisibleMesh]:
+    graph = context.evaluated_depsgraph_get()
+    for ob in context.view_layer.objects:
+        exists_in = opened.hair_exists_in(ob.session_uid)
+        if exists_in and hair_systems(ob) and is_wanted(ob):
+            evaluated = ob.evaluated_get(graph)
+            if not why_no_particle_hair(evaluated):
+                yield from _covered(read_particle_hair(evaluated), ob, ob, SHOWN, exists_in)
+
+
+def _covered(
+    strands: Strands, owner: bpy.types.Object, source: bpy.types.Object, read_in: str, exists_in: frozenset[str]
+) -> Iterator[VisibleMesh]:
+    """The surface of strands as a mesh in world space; none where there is no segment."""
+    check_finite(strands, owner.name)
+    surface = cover(strands)
+    if len(surface.positions):
+        faces = surface.numbers[surface.triangles[:, 0]]
+        numbers = surface.numbers[surface.edges[:, 0]]
+        yield VisibleMesh(
+            ObjectReference.of(owner), source.name, surface.positions, np.eye(4), surface.triangles, faces,
+            surface.edges, numbers, None, read_in, exists_in, surface.numbers, _roots(owner),
+        )  # fmt: skip
+
+
+def _roots(owner: bpy.types.Object) -> frozenset[str]:
+    """The object itself, its parents, and the surface that hair curves are attached to."""
+    found, waiting = set(), [owner]
+    while waiting:
+        ob = waiting.pop()
+        found.add(ob.name)
+        surface = ob.data.surface if isinstance(ob.data, bpy.types.Curves) else None
+        waiting += [each for each in (ob.parent, surface) if each is not None and each.name not in found]
+    return frozenset(found)
 
 
 def _check_finite(mesh: VisibleMesh) -> None:

@@ -113,8 +113,9 @@ def _name(name: str, evaluation: str) -> str:
 
 
 def _names(mesh: VisibleMesh) -> set[str]:
-    """What the mesh is called: as in the viewport, as in the render; as in Edit Mode alone it has no name."""
-    return {_name(mesh.owner.name, mesh.read_in)} if mesh.exists_in != {SHOWN} else set()
+    """What the mesh is called: as in the viewport, as in the render; as in Edit Mode alone, and strands, have none."""
+    counts = mesh.exists_in != {SHOWN} and mesh.strands is None
+    return {_name(mesh.owner.name, mesh.read_in)} if counts else set()
 
 
 def _digest(meshes: Sequence[VisibleMesh], name: str) -> str:

@@ -105,7 +105,8 @@ def _read(
     threads: int,
 ) -> dict[str, Pose]:
     """The poses by evaluation; only those that show something otherwise than the first one."""
-    scene = read_scene(context, counted_names(context, EditSettings(), objects or None), evaluations=evaluations)
+    is_counted = counted_names(context, EditSettings(), objects or None)
+    scene = read_scene(context, is_counted, evaluations=evaluations, strands=True)
     poses = {}
     for number, evaluation in enumerate(evaluations):
         if number and all(mesh.exists_in >= set(evaluations) for mesh in scene.meshes):
@@ -185,18 +186,20 @@ def _matched(before: Assembly, after: Assembly, when: str) -> tuple[list[tuple[V
         if other is None or len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
             why = "comes or goes" if other is None else "changes its number of vertices or faces"
             notes.append(f'{when}: object "{mesh.owner.name}" {why}, and was not followed')
+        elif mesh.strands is not None and not np.array_equal(mesh.local, other.local):
+            notes.append(f'{when}: hair or curves of object "{mesh.owner.name}" move, and were not followed')
         else:
             pairs.append((mesh, other))
     notes += [f'{when}: object "{mesh.owner.name}" comes or goes, and was not followed' for mesh in left.values()]
     return pairs, notes
 
 
-def _by_name(assembly: Assembly) -> dict[tuple[int, str, int], VisibleMesh]:
+def _by_name(assembly: Assembly) -> dict[tuple[int, str, bool, int], VisibleMesh]:
     """Meshes by what keeps while frames change: owner, source, and the how-manieth of these."""
-    found: dict[tuple[int, str, int], VisibleMesh] = {}
-    counts: dict[tuple[int, str], int] = {}
+    found: dict[tuple[int, str, bool, int], VisibleMesh] = {}
+    counts: dict[tuple[int, str, bool], int] = {}
     for mesh in assembly.meshes:
-        name = (mesh.owner.session_uid, mesh.source)
+        name = (mesh.owner.session_uid, mesh.source, mesh.strands is not None)
         counts[name] = counts.get(name, -1) + 1
         found[*name, counts[name]] = mesh
     return found
@@ -204,11 +207,13 @@ def _by_name(assembly: Assembly) -> dict[tuple[int, str, int], VisibleMesh]:
 
 def _mobility(one: VisibleMesh, other: VisibleMesh) -> str:
     """What keeps its shape cannot cross itself; its straight ways between frames would only make it seem to."""
+    if one.strands is not None:
+        return "fixed"
     return "rigid" if np.array_equal(one.local, other.local) else "deformable"
 
 
 def _seams_of_both(one: VisibleMesh, other: VisibleMesh) -> Seams | None:
     """The seams of a mesh that stay closed from one frame to the next; what keeps its shape needs none."""
-    if _mobility(one, other) == "rigid":
+    if _mobility(one, other) != "deformable":
         return None
     return common_seams(*(mesh_seams(mesh.local, mesh.triangles) for mesh in (one, other)))

@@ -58,13 +58,14 @@ def read_guarded_scene(
     settings: EditSettings,
     accept: Callable[[str], bool] | None = None,
     box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
+    strands: bool = False,
 ) -> tuple[EvaluatedScene, Guard]:
     """Read the evaluations that the settings guard, as of `read_scene`; objects without a part in it are left out."""
     guard = choose_guard(context, settings)
-    scene = read_scene(context, accept or settings.takes_part, box_of, guard.evaluations)
+    scene = read_scene(context, accept or settings.takes_part, box_of, guard.evaluations, strands)
     if settings.guard != "auto" or guard.choice == "viewport":
         return scene, guard
-    limited = _limited(sum(len(mesh.triangles) for mesh in scene.meshes))
+    limited = _limited(sum(len(mesh.triangles) for mesh in scene.meshes if mesh.strands is None))
     if limited.choice == "both":
         return scene, limited
     return replace(scene, meshes=tuple(_of_viewport(scene.meshes))), limited

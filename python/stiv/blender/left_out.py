@@ -10,11 +10,16 @@ import bpy
 from stiv.blender.evaluated_scene import SURFACE_TYPES
 from stiv.blender.evaluations import RENDER, rendered_objects
 from stiv.blender.loop_objects import cages_shown_by_others
+from stiv.blender.strand_reading import (
+    STRAND_TYPES,
+    hair_systems,
+    helper_curves,
+    why_no_particle_hair,
+    why_no_strands,
+)
 from stiv.checks.findings import LeftOut, left_out_text
 
 WITHOUT_SURFACE = {
-    "CURVES": "hair curves",
-    "CURVE": "curves without surface",
     "POINTCLOUD": "point clouds",
     "VOLUME": "volumes",
 }
@@ -36,12 +41,16 @@ def find_left_out(
     return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
 
 
-def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str]) -> str:
+def text_not_guarded(
+    context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()
+) -> str:
     """What edits that guard these evaluations pass through, though the viewport or the render shows it; "" for nothing.
 
-    That is what has no surface and, unless the render is guarded, what is hidden in the viewport and rendered.
+    That is what cannot be tested and, unless the render is guarded, what is hidden in the viewport and rendered.
+    carried: names of the objects whose strands move along with what is edited.
     """
-    found = [LeftOut(name, why) for name, why in dict.fromkeys(_without_surface(context))]
+    reasons = [*_without_surface(context), *((name, "hair and curves that move along") for name in sorted(carried))]
+    found = [LeftOut(name, why) for name, why in dict.fromkeys(reasons)]
     if RENDER not in evaluations:
         found += [LeftOut(name, "rendered only") for name in _rendered_only(context)]
     return f"Not guarded, {left_out_text(found)}" if found else ""
@@ -57,14 +66,21 @@ def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:
 
 
 def _without_surface(context: bpy.types.Context) -> Iterator[tuple[str, str]]:
-    """What is shown and is no mesh: of objects of such a kind, and made by modifiers."""
-    for instance in context.evaluated_depsgraph_get().object_instances:
-        if instance.object.type in WITHOUT_SURFACE and (instance.show_self or instance.is_instance):
+    """What is shown, is no mesh and cannot be tested as strands: of objects of such a kind, and made by modifiers."""
+    helpers = helper_curves(context)
+    graph = context.evaluated_depsgraph_get()
+    for instance in graph.object_instances:
+        if instance.show_self or instance.is_instance:
             owner = instance.parent.original if instance.is_instance else instance.object.original
-            yield owner.name, WITHOUT_SURFACE[instance.object.type]
+            source = instance.instance_object.original if instance.is_instance else owner
+            why = _why_untested(instance, source, helpers)
+            if why:
+                yield owner.name, why
     for ob in context.view_layer.objects:
-        if ob.visible_get(view_layer=context.view_layer) and any(_is_hair(modifier) for modifier in ob.modifiers):
-            yield ob.name, "particle hair"
+        if hair_systems(ob) and ob.visible_get(view_layer=context.view_layer):
+            why = why_no_particle_hair(ob.evaluated_get(graph))
+            if why:
+                yield ob.name, why
 
 
 def _rendered_only(context: bpy.types.Context) -> list[str]:
@@ -76,9 +92,12 @@ def _rendered_only(context: bpy.types.Context) -> list[str]:
     ]  # fmt: skip
 
 
-def _is_hair(modifier: bpy.types.Modifier) -> bool:
-    return (
-        isinstance(modifier, bpy.types.ParticleSystemModifier)
-        and modifier.show_viewport
-        and modifier.particle_system.settings.type == "HAIR"
-    )
+def _why_untested(
+    instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, helpers: frozenset[str]
+) -> str:
+    shown = instance.object
+    if shown.type in STRAND_TYPES:
+        return why_no_strands(shown, source, helpers)
+    if instance.is_instance and shown.type == "MESH" and hair_systems(source):
+        return "particle hair of instances"
+    return WITHOUT_SURFACE.get(shown.type, "")

@@ -61,16 +61,16 @@ def find_reach(
     if sum(len(ob.data.polygons) for ob in candidates) < LEAST_FACES:
         return None
     named = {*settings.named_objects(), *settings.excluded.shapes}
-    tied = _tied(objects, {mover.reference.name for mover in movers})
+    linked = tied(objects, {mover.reference.name for mover in movers})
     depsgraph = context.evaluated_depsgraph_get()
-    moving = [_box(ob, depsgraph) for ob in objects if ob.name in tied and ob.type in SURFACE_TYPES]
+    moving = [_box(ob, depsgraph) for ob in objects if ob.name in linked and ob.type in SURFACE_TYPES]
     if not moving:
         return None
     low = np.min([*(box[0] for box in moving), *beyond], axis=0)
     high = np.max([*(box[1] for box in moving), *beyond], axis=0)
     size = float(np.linalg.norm(high - low)) + 2 * settings.separation
     low, high = low - size, high + size
-    free = [ob for ob in candidates if ob.name not in tied | named]
+    free = [ob for ob in candidates if ob.name not in linked | named]
     far = frozenset(ob.name for ob in free if _apart(_box(ob, depsgraph), (low, high)))
     cropped = frozenset(
         ob.name for ob in free
@@ -89,7 +89,7 @@ def _is_alike(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     return signature(ob, scene, VIEWPORT) == signature(ob, scene, RENDER)
 
 
-def _tied(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:
+def tied(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:
     """The names, and all that hang on them or look at them, directly or not."""
     users = {ob.name: {each.used for each in dependencies(ob)} for ob in objects}
     for ob in objects:

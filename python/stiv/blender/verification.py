@@ -123,19 +123,23 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
 
 
 def _read_meshes(assembly: Assembly, opened: Opened) -> list[Floats]:
-    """World positions of each mesh as Blender evaluates it now, vertices of seams each by itself."""
+    """World positions of each mesh as Blender evaluates it now, vertices of seams each by itself.
+
+    Strands stay where they were read: edits leave out those that depend on what moves.
+    """
     placed: list[Placed] = []
-    for read_in in dict.fromkeys(mesh.read_in for mesh in assembly.meshes):
-        owners = frozenset(mesh.owner.session_uid for mesh in assembly.meshes if mesh.read_in == read_in)
+    meshes = [mesh for mesh in assembly.meshes if mesh.strands is None]
+    for read_in in dict.fromkeys(mesh.read_in for mesh in meshes):
+        owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_in == read_in)
         if read_in in opened.read_in:
             placed += read_placed(owners, opened, read_in)
-    if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in assembly.meshes]:
+    if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in meshes]:
         raise SceneChangedError("objects were shown, hidden or changed in size during the edit")
-    parts = [
+    parts = iter(
         each if mesh.near is None else each.limited_to(mesh.near.vertices)
-        for each, mesh in zip(placed, assembly.meshes, strict=True)
-    ]
-    return [part.world() for part in parts]
+        for each, mesh in zip(placed, meshes, strict=True)
+    )
+    return [next(parts).world() if mesh.strands is None else mesh.world() for mesh in assembly.meshes]
 
 
 def _joined(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
