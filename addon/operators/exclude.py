@@ -37,7 +37,7 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
         if others:
             self.report(
                 {"WARNING"},
-                f"Excluded pairs of faces: {len(excluded.pairs)}; {len(others)} with loose edges or vertices "
+                f"Excluded pairs of faces: {len(excluded.pairs)}; {len(others)} with loose edges, vertices or hair "
                 f'cannot be, the first in object "{others[0].first.object}": delete those or ignore the object',
             )
         else:

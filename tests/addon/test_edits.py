@@ -239,14 +239,14 @@ def test_what_is_only_rendered_is_named_unless_the_render_is_guarded(wall: Any) 
 
 
 def test_what_has_no_surface_is_named_by_the_operator_and_kept_for_the_panel(wall: Any, capfd: Any) -> None:
-    bpy.context.collection.objects.link(bpy.data.objects.new("Hair", bpy.data.hair_curves.new("Hair")))
+    bpy.context.collection.objects.link(bpy.data.objects.new("Dust", bpy.data.pointclouds.new("Dust")))
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     assert bpy.ops.stiv.move(value=(1, 0, 0)) == {"FINISHED"}
-    said = 'Not guarded, hair curves: 1 ("Hair")'
+    said = 'Not guarded, point clouds: 1 ("Dust")'
     assert bpy.context.window_manager.stiv_check.left_out == said
     assert said in capfd.readouterr().out
     bpy.ops.stiv.check()
-    assert 'not tested, hair curves: 1 ("Hair")' in bpy.context.window_manager.stiv_check.summary
-    bpy.data.objects.remove(bpy.data.objects["Hair"])
+    assert 'not tested, point clouds: 1 ("Dust")' in bpy.context.window_manager.stiv_check.summary
+    bpy.data.objects.remove(bpy.data.objects["Dust"])
     bpy.ops.stiv.move(value=(1, 0, 0))
     assert bpy.context.window_manager.stiv_check.left_out == ""

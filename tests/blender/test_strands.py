@@ -11,6 +11,8 @@ from building import add, add_cube, add_grid, add_modifier, edit_mode, select, s
 from mathutils import Vector
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene
+from stiv.blender.evaluations import EVALUATIONS
+from stiv.blender.frame_checking import check_frames
 from stiv.blender.left_out import text_not_guarded
 
 RADIUS = 0.2
@@ -172,3 +174,31 @@ def test_too_many_segments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {(each.object, each.why) for each in check_scene(bpy.context).left_out} == {
         ("Hair", "hair curves of more than 1 segments"), ("Lawn", "particle hair of more than 1 segments"),
     }  # fmt: skip
+
+
+def test_between_frames_strands_that_stay_are_tested_and_others_named() -> None:
+    """A cube jumps over a wire that stays; hair that moves by itself is not followed."""
+    bare_curve()
+    hair = hair_curves(LINE + np.array([0, 20, 0]))
+    for ob, end in ((add_cube("Cube"), 6), (hair, 1)):
+        for frame, x in ((1, 0), (2, end)):
+            ob.location.x = x
+            ob.keyframe_insert("location", frame=frame)
+    looks = list(check_frames(bpy.context, (1, 2)))
+    found = [each for look in looks for each in look.findings]
+    assert found and {each.kind for each in found} == {"crossing"}
+    assert {(end.object, end.kind) for each in found for end in (each.first, each.second)} >= {("Wire", "strand")}
+    assert {name for each in found for name in each.objects} == {"Cube", "Wire"}
+    assert [note for look in looks for note in look.notes] == [
+        'between frames 1 and 2: hair or curves of object "Hair" move, and were not followed'
+    ]
+
+
+@pytest.mark.parametrize("guard", ["viewport", "render", "both"])
+def test_particle_hair_is_an_obstacle_in_each_evaluation(guard: str) -> None:
+    lawn, cube = particle_hair(), add_cube("Cube")
+    add_modifier(cube, "SUBSURF", levels=1, render_levels=2)
+    pushed(cube, guard=guard)
+    assert 0.2 < np.linalg.norm(cube.location) < 3.9
+    assert check_scene(bpy.context, EditSettings(guard=guard)).pairs == ()
+    assert lawn.location.x == pytest.approx(2.3)

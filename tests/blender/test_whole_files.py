@@ -9,7 +9,7 @@ import bpy
 import pytest
 from building import CUBE, CUBE_FACES, add, add_cube, add_grid, add_modifier, mesh
 
-from stiv.blender import checked_evaluations
+from stiv.blender import checked_evaluations, render_size, strand_reading
 from stiv.blender.blend_files import save_blend
 from stiv.command_line import program
 from stiv.pytest_plugin import _check
@@ -111,7 +111,7 @@ def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path
     bpy.data.objects["Wall"].location.x = 1.5
     bpy.data.objects["Cube"].modifiers[0].render_levels = 4
     assert checked_evaluations.rendered_triangles(bpy.context) == 6 * 2 * 4**4
-    monkeypatch.setattr(checked_evaluations, "MOST_TRIANGLES", 3000)
+    monkeypatch.setattr(render_size, "MOST_TRIANGLES", 3000)
     code, file = checked(tmp_path)
     assert code == 0 and file["triangles"] < 1000 and len(file["notes"]) == 1
     assert "render levels, of about 3,072 triangles, were not tested; --render tests them" in file["notes"][0]
@@ -119,20 +119,19 @@ def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path
     assert code == 0 and file["triangles"] > 3000 and file["notes"] == []
 
 
-def test_what_has_no_surface_is_named_as_not_tested(tmp_path: Path, capsys) -> None:
-    add_cube("Cube")
+def test_what_cannot_be_tested_is_named(tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.setattr(strand_reading, "MOST_SEGMENTS", 0)
+    add_modifier(add_cube("Cube"), "CURVE", object=add("Guide", bpy.data.curves.new("Guide", "CURVE"), (5, 0, 0)))
     for name, data in (
-        ("Hair", bpy.data.hair_curves.new("Hair")),
         ("Dust", bpy.data.pointclouds.new("Dust")),
         ("Smoke", bpy.data.volumes.new("Smoke")),
-        ("Path", bpy.data.curves.new("Path", "CURVE")),
     ):
         add(name, data, (5, 0, 0))
     add_modifier(add_grid("Lawn", 2, 1.0, (9, 0, 0)), "PARTICLE_SYSTEM").particle_system.settings.type = "HAIR"
     code, file = checked(tmp_path)
     assert code == 0 and {(each["object"], each["why"]) for each in file["left_out"]} == {
-        ("Hair", "hair curves"), ("Dust", "point clouds"), ("Smoke", "volumes"),
-        ("Path", "curves without surface"), ("Lawn", "particle hair"),
+        ("Guide", "helper curves"), ("Dust", "point clouds"), ("Smoke", "volumes"),
+        ("Lawn", "particle hair of more than 0 segments"),
     }  # fmt: skip
-    assert 'hair curves: 1 ("Hair")' in capsys.readouterr().out
+    assert 'helper curves: 1 ("Guide")' in capsys.readouterr().out
     assert {each["why"] for each in checked(tmp_path, "--object", "Cube")[1]["left_out"]} == {"not named"}

@@ -19,6 +19,7 @@ from stiv.blender.parts import Part
 from stiv.blender.reach import Reach, tied
 from stiv.blender.sessions import mobilities, seams_of, stacked
 from stiv.blender.settings import EditSettings
+from stiv.blender.strand_reading import surface_of
 
 
 @dataclass(frozen=True)
@@ -102,8 +103,13 @@ def _still_strands(
     if not strands:
         return [], frozenset()
     follow = tied(list(context.view_layer.objects), moving)
-    carried = frozenset(mesh.owner.name for mesh in strands if {mesh.source, *mesh.rooted_in} & follow)
+    carried = frozenset(mesh.owner.name for mesh in strands if _names_that_carry(mesh) & follow)
     return [mesh for mesh in strands if mesh.owner.name not in carried], carried
+
+
+def _names_that_carry(strands: VisibleMesh) -> set[str]:
+    surface = surface_of(strands.owner.find())
+    return {strands.owner.name, strands.source} | ({surface.name} if surface is not None else set())
 
 
 def _digest(*arrays: Floats) -> str:

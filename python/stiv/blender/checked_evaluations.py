@@ -7,14 +7,13 @@ from collections.abc import Sequence
 
 import bpy
 
-from stiv.blender.evaluations import RENDER, VIEWPORT, find_differences, subdivision_levels
-
-MOST_TRIANGLES = 500_000  # of what is rendered, from which the render is tested only where asked for
+from stiv.blender.evaluations import RENDER, VIEWPORT, find_differences
+from stiv.blender.render_size import is_too_large, likely_triangles
 
 
 def checked_evaluations(context: bpy.types.Context, render: bool = False) -> tuple[str, ...]:
     """The viewport and the render; the viewport alone where the render is too large, unless `render` asks for it."""
-    if render or rendered_triangles(context) < MOST_TRIANGLES:
+    if render or not is_too_large(rendered_triangles(context)):
         return VIEWPORT, RENDER
     return (VIEWPORT,)
 
@@ -41,23 +40,7 @@ def rendered_triangles(context: bpy.types.Context) -> int:
     different = find_differences(context, (VIEWPORT, RENDER)).render
     graph = context.evaluated_depsgraph_get()
     return sum(
-        _faces(ob.evaluated_get(graph)) * 2 * 4 ** max(0, _extra_levels(ob, context.scene))
+        likely_triangles(ob, ob.evaluated_get(graph), context.scene)
         for ob in context.view_layer.objects
         if ob.session_uid in different
     )
-
-
-def _faces(evaluated: bpy.types.Object) -> int:
-    return len(evaluated.data.polygons) if isinstance(evaluated.data, bpy.types.Mesh) else 0
-
-
-def _extra_levels(ob: bpy.types.Object, scene: bpy.types.Scene) -> int:
-    """By how many levels the render is subdivided beyond the viewport."""
-    levels = 0
-    for modifier in ob.modifiers:
-        if modifier.type in ("SUBSURF", "MULTIRES"):
-            if modifier.show_render:
-                levels += subdivision_levels(modifier, scene, RENDER)
-            if modifier.show_viewport:
-                levels -= subdivision_levels(modifier, scene, VIEWPORT)
-    return levels

@@ -64,15 +64,18 @@ def read_surface(context: bpy.types.Context, objects: Collection[str] | None = N
 
 
 def check_scene(
-    context: bpy.types.Context, settings: EditSettings | None = None, objects: Collection[str] | None = None
+    context: bpy.types.Context,
+    settings: EditSettings | None = None,
+    objects: Collection[str] | None = None,
+    strands: bool = True,
 ) -> SceneCheck:
     """Find every intersection of the visible scene, among obstacles and within objects too.
 
     settings: objects in the role "ignored" and ignored pairs are left out. objects: names to be limited to. A cage that
-    another object shows counts only if it is named.
+    another object shows counts only if it is named. strands: also test hair and curves without surface.
     """
     settings = settings or EditSettings()
-    scene, guard = read_guarded_scene(context, settings, counted_names(context, settings, objects), strands=True)
+    scene, guard = read_guarded_scene(context, settings, counted_names(context, settings, objects), strands=strands)
     assembly = assemble_joined(scene.meshes, settings.ignored_pairs)
     pairs, seams = find_pairs_and_seams(assembly, settings.threads)
     names = {mesh.owner.name for mesh in assembly.meshes}

@@ -31,6 +31,7 @@ from stiv.blender.strand_reading import (
     helper_curves,
     read_particle_hair,
     read_strands,
+    surface_of,
     why_no_particle_hair,
     why_no_strands,
 )
@@ -316,13 +317,15 @@ def _covered(
 
 
 def _roots(owner: bpy.types.Object) -> frozenset[str]:
-    """The object itself, its parents, and the surface that hair curves are attached to."""
+    """The object itself, its parents, the surface that hair curves are attached to, and what hangs on a curve."""
     found, waiting = set(), [owner]
     while waiting:
         ob = waiting.pop()
         found.add(ob.name)
-        surface = ob.data.surface if isinstance(ob.data, bpy.types.Curves) else None
-        waiting += [each for each in (ob.parent, surface) if each is not None and each.name not in found]
+        above = (ob.parent, surface_of(ob))
+        waiting += [each for each in above if each is not None and each.name not in found]
+    if owner.type == "CURVE":
+        found |= {child.name for child in owner.children_recursive}
     return frozenset(found)
 
 

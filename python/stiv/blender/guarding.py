@@ -8,10 +8,10 @@ import bpy
 
 from stiv.blender.arrays import Floats
 from stiv.blender.evaluated_scene import EvaluatedScene, VisibleMesh, is_visible, read_scene
-from stiv.blender.evaluations import EVALUATIONS, RENDER, SHOWN, VIEWPORT, is_active, signature, subdivision_levels
+from stiv.blender.evaluations import EVALUATIONS, RENDER, SHOWN, VIEWPORT, signature
+from stiv.blender.render_size import MOST_TRIANGLES, is_too_large, least_triangles
 from stiv.blender.settings import EditSettings
 
-MOST_TRIANGLES = 500_000  # of the surface, with which "auto" guards the render too
 OF_VIEWPORT = (SHOWN, VIEWPORT)
 OF_CHOICE = {"viewport": OF_VIEWPORT, "render": (RENDER,), "both": EVALUATIONS}
 
@@ -50,7 +50,7 @@ def choose_guard(context: bpy.types.Context, settings: EditSettings) -> Guard:
     ]  # fmt: skip
     if not different:
         return Guard("viewport")
-    return _limited(sum(_least_rendered_triangles(ob, scene) for ob in different))
+    return _limited(sum(least_triangles(ob, scene) for ob in different))
 
 
 def read_guarded_scene(
@@ -72,22 +72,9 @@ def read_guarded_scene(
 
 
 def _limited(triangles: int) -> Guard:
-    if triangles <= MOST_TRIANGLES:
+    if not is_too_large(triangles):
         return Guard("both")
-    return Guard("viewport", f"render not guarded: more than {MOST_TRIANGLES:,} triangles; set Guard to Both")
-
-
-def _least_rendered_triangles(ob: bpy.types.Object, scene: bpy.types.Scene) -> int:
-    """How many triangles an object has when rendered, other modifiers than subdivisions left out."""
-    if ob.type != "MESH":
-        return 0
-    levels = sum(
-        subdivision_levels(modifier, scene, RENDER)
-        for modifier in ob.modifiers
-        if modifier.type in ("SUBSURF", "MULTIRES") and is_active(modifier, ob, RENDER)
-    )
-    mesh = ob.data  # a face of n corners becomes n quads, each of them four more
-    return 2 * len(mesh.loops) * int(4 ** (levels - 1)) if levels else len(mesh.loops) - 2 * len(mesh.polygons)
+    return Guard("viewport", f"render not guarded: {MOST_TRIANGLES:,} triangles or more; set Guard to Both")
 
 
 def _of_viewport(meshes: tuple[VisibleMesh, ...]) -> list[VisibleMesh]:

@@ -77,6 +77,11 @@ def read_particle_hair(evaluated: bpy.types.Object) -> Strands:
     return joined(found)
 
 
+def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """The object that hair curves are attached to; None for what is not attached."""
+    return ob.data.surface if isinstance(ob.data, bpy.types.Curves) else None
+
+
 def helper_curves(context: bpy.types.Context) -> frozenset[str]:
     """Names of the curves that shape, guide or carry other objects, and are not shown for themselves."""
     return frozenset(

@@ -33,7 +33,7 @@ def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOu
 def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -> RepairOutcome:
     blender = require_blender("stiv.blender", source)
     selecting = require_blender("stiv.blender.selecting", source)
-    found = blender.check_scene(context, settings)
+    found = blender.check_scene(context, settings, strands=False)
     before = len(found.pairs)
     if before == 0:
         return RepairOutcome("already_free", "", 0, [], 0.0, "")
@@ -44,7 +44,7 @@ def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -
     with selecting.selected(context, names), share_bar("repair") as progress:
         chosen = blender.RepairSettings(settings, choices.max_deviation, choices.weld)
         report = blender.repair_scene(context, chosen, progress=progress)
-    left = blender.check_scene(context, settings).pairs
+    left = blender.check_scene(context, settings, strands=False).pairs
     if report.changed and left:
         message = "free of what is to move, but others still intersect; name them with --move"
         return RepairOutcome("refused", message, before, _plain(left), report.deviation, report.contracted)
