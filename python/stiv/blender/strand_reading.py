@@ -16,7 +16,7 @@ from stiv.blender.mesh_reading import evaluated_mesh, read_edges, read_positions
 from stiv.blender.strands import SUBDIVISION, Strands, edges_of, hair, joined, polylines
 
 STRAND_TYPES = ("CURVE", "CURVES")
-MOST_SEGMENTS = 200_000  # of one object
+MOST_SEGMENTS = 50_000  # of one object: 600,000 triangles, which every increment of an edit passes over
 MISSING_RADIUS = 0.01  # Blender's for hair curves without the attribute
 CATMULL_ROM, POLY = 0, 1  # values of the attribute curve_type
 
