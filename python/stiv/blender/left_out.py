@@ -41,9 +41,7 @@ def find_left_out(
     return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
 
 
-def text_not_guarded(
-    context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()
-) -> str:
+def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
     """What edits that guard these evaluations pass through, though the viewport or the render shows it; "" for nothing.
 
     That is what cannot be tested and, unless the render is guarded, what is hidden in the viewport and rendered.
