@@ -14,9 +14,10 @@ ROOT = Path(__file__).resolve().parents[2]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 
-def test_cmake_reads_it() -> None:
-    script = 'include(cmake/project_version.cmake)\nmessage("is ${STIV_VERSION}")\n'
-    ran = subprocess.run(["cmake", "-P", "/dev/stdin"], cwd=ROOT, input=script, capture_output=True, text=True)
+def test_cmake_reads_it(tmp_path: Path) -> None:
+    script = tmp_path / "version.cmake"
+    script.write_text('include(cmake/project_version.cmake)\nmessage("is ${STIV_VERSION}")\n')
+    ran = subprocess.run(["cmake", "-P", script], cwd=ROOT, capture_output=True, text=True)
     if ran.returncode:
         pytest.fail(ran.stderr)
     assert f"is {VERSION}\n" in ran.stderr
