@@ -37,6 +37,7 @@ class RecordingEdit:
     summary = SimpleNamespace(warnings=())
     dropped = ""
     guard = SimpleNamespace(evaluations=("viewport",))
+    carried = frozenset()
     failing: Exception | None = None
 
     @classmethod
@@ -82,7 +83,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
-    said = SimpleNamespace(text_not_guarded=lambda context, evaluations: "")
+    said = SimpleNamespace(text_not_guarded=lambda context, evaluations, carried: "")
     monkeypatch.setitem(sys.modules, "stiv.blender.left_out", said)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(availability, "problem", lambda: "")
