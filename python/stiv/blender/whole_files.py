@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 
 import bpy
 
@@ -31,10 +32,18 @@ def check_names(scene: str, objects: Collection[str]) -> None:
         raise InputError(f'there is no object "{unknown[0]}" in {where}')
 
 
-def show_scene(name: str) -> bpy.types.Context:
-    """Makes a scene the open one; Blender's context then."""
-    bpy.context.window.scene = bpy.data.scenes[name]
-    return bpy.context
+@contextmanager
+def opened_scene(name: str) -> Iterator[bpy.types.Context]:
+    """Blender's context with a scene as the open one, for as long as the context lasts.
+
+    The window keeps its scene: after another was set, Blender 4.2 crashes when the next file is opened.
+    """
+    scene = bpy.data.scenes[name]
+    if scene == bpy.context.scene:
+        yield bpy.context
+        return
+    with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
+        yield bpy.context
 
 
 def unhide_all(context: bpy.types.Context) -> None:

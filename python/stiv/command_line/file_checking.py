@@ -70,8 +70,9 @@ def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
         whole.check_names(choices.scene, choices.objects)
         names = whole.scene_names(choices.scene)
         for name in names:
-            for look in _looks_at_scene(path, whole.show_scene(name), choices):
-                yield replace(look, scene=name)
+            with whole.opened_scene(name) as context:
+                for look in _looks_at_scene(path, context, choices):
+                    yield replace(look, scene=name)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 
