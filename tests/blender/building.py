@@ -151,3 +151,17 @@ def _object(ob: Any) -> dict[str, Any]:
         values["points"] = [tuple(Vector(point.co_deform)) for point in ob.data.points]
         values["selection"] = [point.select for point in ob.data.points]
     return values
+
+
+def as_rendered() -> None:
+    """Change the file itself to show what it renders."""
+    render = bpy.context.scene.render
+    render.simplify_subdivision = render.simplify_subdivision_render
+    for ob in bpy.data.objects:
+        ob.hide_set(False)
+        ob.hide_viewport = ob.hide_render
+        for modifier in ob.modifiers:
+            modifier.show_viewport = modifier.show_render
+            if modifier.type == "SUBSURF":
+                modifier.levels = modifier.render_levels
+    bpy.context.view_layer.update()

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, select
+from building import add, add_cube, add_grid, add_lattice, add_modifier, as_rendered, edit_mode, evaluated, select
 
 from stiv.blender.evaluated_scene import read_scene
 
@@ -22,19 +22,6 @@ def read(evaluation: str) -> dict[str, np.ndarray]:
     assert kept() == before
     assert len({mesh.owner for mesh in meshes}) == len(meshes)
     return {mesh.owner.name: mesh.world() for mesh in meshes}
-
-
-def as_rendered() -> None:
-    """Change the file itself to show what it renders."""
-    render = bpy.context.scene.render
-    render.simplify_subdivision = render.simplify_subdivision_render
-    for ob in bpy.data.objects:
-        ob.hide_set(False)
-        ob.hide_viewport = ob.hide_render
-        for modifier in ob.modifiers:
-            modifier.show_viewport = modifier.show_render
-            if modifier.type == "SUBSURF":
-                modifier.levels = modifier.render_levels
 
 
 def stacks() -> dict[str, Any]:

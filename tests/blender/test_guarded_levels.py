@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, select, snapshot
+from building import add, add_cube, add_grid, add_modifier, as_rendered, edit_mode, select, snapshot
 from oracles import exact
 
 import stiv
@@ -43,18 +43,6 @@ def meet(first: str, second: str) -> int:
     low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
     near = np.argwhere((low <= high).all(axis=2))
     return sum(exact.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
-
-
-def as_rendered() -> None:
-    """Change the file itself to show what it renders."""
-    for ob in bpy.data.objects:
-        ob.hide_set(False)
-        ob.hide_viewport = ob.hide_render
-        for modifier in ob.modifiers:
-            modifier.show_viewport = modifier.show_render
-            if modifier.type == "SUBSURF":
-                modifier.levels = modifier.render_levels
-    bpy.context.view_layer.update()
 
 
 def meetings(name: str = "Cube", other: str = "Wall") -> list[int]:
