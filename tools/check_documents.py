@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check the documents: words, length of sentences and lines, links, and the references of the code to mathematics.md.
+"""Check the wording of documents and code, and the links and references in them.
 
-Words and sentences are checked in documents alone; sources are exempt until their names and comments are rewritten.
-Usage: check_documents.py. Prints FILE:LINE: MESSAGE for each finding; the exit code is 1 if there are any.
+Documents: words, length of sentences and lines, links. Code: words of comments, texts and names, and references to
+mathematics.md. Usage: check_documents.py prints FILE:LINE: MESSAGE for each finding; the exit code is 1 if any is found.
+check_documents.py --code [PATH...] lists the words in code alone, by default in all of it.
 """
 
 import re
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,10 +17,14 @@ DIALECT = ROOT / "tools/dialect.txt"
 WIDTH = 110  # characters of a line, except in tables and code
 WORDS = 30  # in a sentence; the aim is 25
 SOURCES = (".cpp", ".hpp", ".py", ".md")
+CODE = (".cpp", ".hpp", ".py", ".pyi", ".js", ".sh", ".cmake", ".toml", ".yml", "CMakeLists.txt", "Makefile", ".ci/run")
+BETWEEN = r"(?:[\s_\"#/*]+)"  # words of a name, or of a comment or text that is continued on the next line
+EXEMPT = ("tools/check_documents.py", "tests/packaging/test_documents.py")  # which quote the words
 REFERENCE = re.compile(r"(mathematics|experiments)\.md\)?,\s*(?://+\s*)?(?:\"([^\"]+)\"|Eq\. (\d))")
 
 Finding = tuple[int, str]
 Passage = tuple[int, str]
+Rule = tuple[re.Pattern[str], str]
 
 
 def blanked(text: str) -> str:
@@ -50,13 +56,39 @@ def spoken(passage: str) -> str:
     return re.sub(r" ?\[[A-Z][^\]]*\]", "", passage)
 
 
-def dialect(lines: str) -> list[tuple[re.Pattern[str], str]]:
-    """Patterns of the word list, and what to write instead."""
-    rules = [line.split(" => ") for line in lines.splitlines() if line and not line.startswith("#")]
-    return [(re.compile(pattern if "(?:^" in pattern else rf"\b(?:{pattern})\b"), use) for pattern, use in rules]
+def dialect(lines: str, *sections: str) -> list[Rule]:
+    """Patterns of these sections of the word list, and what to write instead."""
+    rules = list[Rule]()
+    section = ""
+    for line in lines.splitlines():
+        if line.startswith("["):
+            section = line.strip("[]")
+        elif section in sections and line and not line.startswith("#"):
+            pattern, use = line.split(" => ")
+            rules.append((re.compile(in_code(pattern) if section.startswith("code") else in_prose(pattern)), use))
+    return rules
 
 
-def wording(text: str, rules: list[tuple[re.Pattern[str], str]]) -> Iterator[Finding]:
+def in_prose(pattern: str) -> str:
+    """A pattern of whole words, unless it says itself how it begins."""
+    return pattern if "(?:^" in pattern else rf"\b(?:{pattern})\b"
+
+
+def in_code(pattern: str) -> str:
+    """A pattern of whole words in comments, in texts and in names, across lines, underscores and capitals."""
+    return rf"(?i)(?<![a-z])(?:{pattern.replace(' ', BETWEEN)})(?![a-z])"
+
+
+def code_wording(text: str, rules: list[Rule]) -> Iterator[Finding]:
+    """Words of the old dialect in the comments, texts and names of a source."""
+    spaced = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", text)
+    for pattern, use in rules:
+        for found in pattern.finditer(spaced):
+            words = re.sub(BETWEEN, " ", found[0]).strip()
+            yield spaced.count("\n", 0, found.start()) + 1, f'"{words}": write {use}'
+
+
+def wording(text: str, rules: list[Rule]) -> Iterator[Finding]:
     """Words of the old dialect; what stands in italics, as labels of the interface do, is exempt."""
     for number, passage in passages(text):
         plain = re.sub(r"(?<!\*)\*[^*]+\*(?!\*)|\*\*", "", spoken(passage))
@@ -109,7 +141,7 @@ def files(*endings: str) -> list[Path]:
     return [ROOT / name for name in listed.splitlines() if name.endswith(endings) and (ROOT / name).is_file()]
 
 
-def of_document(path: Path, rules: list[tuple[re.Pattern[str], str]]) -> Iterator[Finding]:
+def of_document(path: Path, rules: list[Rule]) -> Iterator[Finding]:
     """All findings in one document."""
     text = path.read_text(encoding="utf-8")
     yield from wording(text, rules)
@@ -118,17 +150,34 @@ def of_document(path: Path, rules: list[tuple[re.Pattern[str], str]]) -> Iterato
     yield from broken_links(path)
 
 
-def main() -> int:
-    """Check everything; the exit code."""
-    rules = dialect(DIALECT.read_text(encoding="utf-8"))
-    findings = [(path, finding) for path in files(".md") for finding in of_document(path, rules)]
-    for path in files(*SOURCES):
-        text = path.read_text(encoding="utf-8")
-        findings += [(path, finding) for finding in broken_references(text, ROOT / "docs")]
+def words_in_code(names: list[str]) -> list[tuple[Path, Finding]]:
+    """Words of the dialect in these files and folders."""
+    lines = DIALECT.read_text(encoding="utf-8")
+    rules = {ending: dialect(lines, "code", *more) for ending, more in ((False, ()), (True, ("code: C++",)))}
+    found = list[tuple[Path, Finding]]()
+    for path in files(*CODE):
+        name = path.relative_to(ROOT).as_posix()
+        if name not in EXEMPT and name.startswith(tuple(names)):
+            text = path.read_text(encoding="utf-8")
+            findings = sorted(code_wording(text, rules[path.suffix in (".cpp", ".hpp")]))
+            found += [(path, finding) for finding in findings]
+    return found
+
+
+def main(arguments: list[str]) -> int:
+    """Check everything, or list the words in code; the exit code."""
+    if arguments[:1] == ["--code"]:
+        findings = words_in_code(arguments[1:] or [""])
+    else:
+        rules = dialect(DIALECT.read_text(encoding="utf-8"), "documents")
+        findings = [(path, finding) for path in files(".md") for finding in of_document(path, rules)]
+        for path in files(*SOURCES):
+            text = path.read_text(encoding="utf-8")
+            findings += [(path, finding) for finding in broken_references(text, ROOT / "docs")]
     for path, (number, message) in findings:
         print(f"{path.relative_to(ROOT)}:{number}: {message}")
     return 1 if findings else 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(main(sys.argv[1:]))

@@ -8,7 +8,8 @@ import pytest
 
 from tools import check_documents, wrap_documents
 
-RULES = check_documents.dialect(check_documents.DIALECT.read_text(encoding="utf-8"))
+LIST = check_documents.DIALECT.read_text(encoding="utf-8")
+RULES = check_documents.dialect(LIST, "documents")
 ROOT = check_documents.ROOT
 
 
@@ -31,6 +32,21 @@ def lines(findings: Iterator[tuple[int, str]]) -> list[int]:
 )
 def test_words_of_the_dialect_are_found(text: str, found: list[int]) -> None:
     assert lines(check_documents.wording(text, RULES)) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("int stray_vertices = 1;", [1]),
+        ("x = 1\nclass StrayVertices:", [2]),
+        ("/// Everything that takes\n    /// part in a round.", [1]),
+        ('raise Input_Error("it is told "\n                 "nothing")', [1]),
+        ("strayed_ = 1  # told", [1, 1]),
+        ("astray = participate(partly)", []),
+    ],
+)
+def test_words_of_the_dialect_are_found_in_code(text: str, found: list[int]) -> None:
+    assert lines(check_documents.code_wording(text, check_documents.dialect(LIST, "code"))) == found
 
 
 @pytest.mark.parametrize(
