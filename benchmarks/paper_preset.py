@@ -17,8 +17,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import stiv
+from benchmarks.sessions.running import Preset
 from blend_fixtures.scenes.families import Edit, all_edits
-from stiv.bench.running import Preset
 
 from .settling import Array, geometric_mean, settle, stopped_energy
 

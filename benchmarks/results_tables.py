@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from stiv.bench.table1 import PUBLISHED
+from benchmarks.sessions.table1 import PUBLISHED
 
 FOLDER = Path(__file__).parent / "results"
 SCENES = tuple(PUBLISHED)

@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 import stiv
+from benchmarks.sessions.running import record, solver_of
 from blend_fixtures.scenes.sessions.catalogue import table_sessions
-from stiv.bench.running import record, solver_of
 
 from .settling import settle, settle_from
 

@@ -22,9 +22,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import stiv
+from benchmarks.sessions.running import Preset, solver_of, step_size
 from blend_fixtures.scenes.sessions.catalogue import table_sessions
 from blend_fixtures.scenes.sessions.session import Session, Stage
-from stiv.bench.running import Preset, solver_of, step_size
 
 from .settling import Array, geometric_mean, settle, settle_from, stopped_energy
 

@@ -7,7 +7,7 @@ Milliseconds, the least of the repeats, all measured in turn: processor time for
     first      a full detection by a detector that has its trees: every event with its own time
     again      a further find from the same start, to a nearer end: the next round of one edit
     all        ipctk given everything: LBVH and the quicker of its narrow phases, for the earliest time only
-    at best    the same in its quickest setting: static pairs filtered, or culled to what moves (stiv.bench.peer_mesh)
+    at best    the same in its quickest setting: static pairs filtered, or culled to what moves (..sessions.peer_mesh)
     mesh       culling and ipctk's own mesh for that, made once a drag: not in "all" nor "at best"
 
 all/build compares cold starts: our connectivity and trees are new; (all+mesh)/build counts those of ipctk too.

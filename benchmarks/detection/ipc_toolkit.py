@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow phases.
 
-Its documentation lets a user give it less than everything: see stiv.bench.peer_mesh for the settings.
+Its documentation lets a user give it less than everything: see benchmarks.sessions.peer_mesh for the settings.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from types import ModuleType
 
+from benchmarks.sessions.peer_mesh import LinearStep, peer_mesh
 from blend_fixtures.scenes.detection_steps import Step
-from stiv.bench.peer_mesh import LinearStep, peer_mesh
 
 NARROW_PHASES = ("additive", "tight inclusion")
 

@@ -12,9 +12,9 @@ from types import ModuleType
 import numpy as np
 
 import stiv
+from benchmarks.sessions.peer_mesh import LinearStep, settings_of
 from blend_fixtures.scenes.detection_steps import Step
 from stiv import _native
-from stiv.bench.peer_mesh import LinearStep, settings_of
 
 from .ipc_toolkit import NARROW_PHASES, Peer
 

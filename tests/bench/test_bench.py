@@ -1,21 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measuring sessions: the same edits by other options, averages over edits with contacts, the paper's own figures."""
 
+import json
+import subprocess
+import sys
 import types
 from collections.abc import Iterator
+from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
-from json_schemas import read_valid
 
 import stiv
+from benchmarks.sessions import running, scaling, table1
+from benchmarks.sessions.running import EditFigures, record, repeat
+from benchmarks.sessions.table1 import PUBLISHED, row, shares, table_text
 from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
 from blend_fixtures.scenes.sessions.catalogue import table_sessions
 from blend_fixtures.scenes.sessions.session import Session, Stage, moved, repeated, single, surface_of
-from stiv.bench import running, scaling, table1
-from stiv.bench.running import EditFigures, record, repeat
-from stiv.bench.table1 import PUBLISHED, row, shares, table_text
 from stiv.command_line import program
+
+SCHEMA = Path(table1.__file__).with_name("result.schema.json")
 
 
 def ball_onto_sheet() -> Stage:
@@ -80,7 +86,7 @@ def test_the_published_totals_are_iterations_times_their_time():
 @pytest.fixture
 def small_scenes(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     library = types.SimpleNamespace(table_sessions=lambda: {"knot": session()})
-    monkeypatch.setattr(table1, "scene_module", lambda name: library)
+    monkeypatch.setattr(table1, "catalogue", library)
     return None
 
 
@@ -88,7 +94,9 @@ def test_the_command_prints_the_table_and_writes_its_rows(small_scenes, tmp_path
     path = tmp_path / "table1.json"
     code = program.run(["bench", "table1", "--scenes", "knot", "--threads", "1", "2", "--json", str(path)])
     assert code == 0
-    rows = read_valid(path, "bench")["rows"]
+    result = json.loads(path.read_text())
+    jsonschema.validate(result, json.loads(SCHEMA.read_text()))
+    rows = result["rows"]
     kinds = [(r["preset"], r["constraints"], r["threads"]) for r in rows]
     assert kinds == [
         ("stiv", "many", 1),
@@ -145,3 +153,9 @@ def test_the_tables_sessions_meet_at_least_the_papers_contacts_a_round(name):
     values = row(name, "stiv", "many", 1, recorded, figures, figures)
     assert values["collisions"] >= PUBLISHED[name]["collisions"]
     assert values["intersections"] == 0 and values["step"] > 0.005
+
+
+def test_outside_a_checkout_the_command_says_where_the_measurements_are(tmp_path):
+    command = [sys.executable, "-m", "stiv.command_line", "bench", "table1", "--json", "table1.json"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 2 and "run `stiv bench` in a source checkout" in run.stderr

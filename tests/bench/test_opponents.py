@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import stiv
+from benchmarks.sessions.cloth import kept
+from benchmarks.sessions.models import largest_part
+from benchmarks.sessions.peer_mesh import LinearStep, culled, moving_first, settings_of
+from benchmarks.sessions.race import with_detection
 from blend_fixtures.scenes.detection_steps import knot, local_edit
 from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.sessions import real_models
 from blend_fixtures.scenes.shape import joined
-from stiv.bench.cloth import kept
-from stiv.bench.models import largest_part
-from stiv.bench.peer_mesh import LinearStep, culled, moving_first, settings_of
-from stiv.bench.race import with_detection
 from stiv.command_line import program
 
 

@@ -4,7 +4,7 @@
 import pytest
 
 from benchmarks.results_tables import FOLDER, filled, loaded
-from stiv.bench.table1 import PUBLISHED
+from benchmarks.sessions.table1 import PUBLISHED
 
 
 def test_the_tables_of_the_results_are_those_of_the_files():

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
+from benchmarks.sessions.cloth_simulation import simulate_cloth
 from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
-from stiv.blender.cloth_simulation import simulate_cloth
 
 
 def sheet(height):

@@ -8,10 +8,10 @@ import bpy
 import pytest
 
 import stiv
-from stiv.bench.dragged_profile import dragged_rows, dragged_text, shown_apart
+from benchmarks.sessions.dragged_profile import dragged_rows, dragged_text, shown_apart
+from benchmarks.sessions.in_blender import drags_in_blender
 from stiv.blender.blend_files import open_blend
 from stiv.blender.checking import find_pairs, read_surface
-from stiv.command_line.bench_in_blender import drags_in_blender
 from stiv.edit_scripts import EditScript, EditStep, read_edit_script
 
 FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
@@ -39,7 +39,7 @@ def test_every_drag_of_a_script_is_told_tick_by_tick():
 
 @pytest.mark.usefixtures("registered")
 def test_turning_is_refused():
-    from stiv.blender.dragged_frames import dragged_stages
+    from benchmarks.sessions.dragged_frames import dragged_stages
     from stiv_addon.settings import edit_settings
 
     open_blend(BLEND)

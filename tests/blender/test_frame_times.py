@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import stiv
-from stiv.bench.blender_profile import shares_with_blender
+from benchmarks.sessions.blender_profile import shares_with_blender
+from benchmarks.sessions.frame_times import frame_times, goal_matrix
 from stiv.blender.blend_files import open_blend
 from stiv.blender.checking import find_pairs, read_surface
-from stiv.blender.frame_times import frame_times, goal_matrix
 from stiv.edit_scripts import EditScript, EditStep, read_edit_script
 
 pytestmark = pytest.mark.usefixtures("registered")

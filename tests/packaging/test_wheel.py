@@ -73,8 +73,8 @@ def test_source_archive_holds_what_a_build_needs(
     assert not any(name.startswith(("build/", "dist/")) or name.endswith(".so") for name in names)
 
 
-def test_wheel_holds_the_scenes_that_bench_measures(installed_files: set[str]) -> None:
-    scenes = ROOT / "blend_fixtures" / "scenes"
-    sources = {f"stiv/scenes/{path.relative_to(scenes).as_posix()}" for path in scenes.rglob("*.py")}
-    assert len(sources) > 20
-    assert sources <= installed_files
+def test_wheel_holds_no_measurements(installed_files: set[str]) -> None:
+    names = {Path(name).stem for name in installed_files if name.endswith(".py")}
+    measured = {path.stem for path in (ROOT / "benchmarks/sessions").glob("*.py")} - {"__init__"}
+    assert names & measured == set()
+    assert not any(name.startswith(("stiv/scenes", "benchmarks", "blend_fixtures")) for name in installed_files)

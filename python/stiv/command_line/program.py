@@ -18,17 +18,18 @@ from stiv.command_line.installed_blender import run_inside, without_option
 _SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench)
 
 
-class _Parser(argparse.ArgumentParser):
+class Parser(argparse.ArgumentParser):
     """Ends with the exit code for wrong usage, which argparse takes for 2."""
 
     def error(self, message: str) -> NoReturn:
+        """Prints the usage and the message, and ends."""
         self.print_usage(sys.stderr)
         self.exit(ExitCode.USAGE, f"{self.prog}: {message}\n")
 
 
 def parser() -> argparse.ArgumentParser:
     """The parser of the command with all its subcommands."""
-    top = _Parser(prog="stiv", description="Interference-aware geometric modeling.")
+    top = Parser(prog="stiv", description="Interference-aware geometric modeling.")
     subcommands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
     for subcommand in _SUBCOMMANDS:
         subcommand.add_to(subcommands)

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from stiv.bench.running import Report, record
-from stiv.bench.scene_library import scene_module
-from stiv.bench.table1 import shares
+from benchmarks.sessions.running import Report, record
+from benchmarks.sessions.table1 import shares
+from blend_fixtures.scenes.sessions import catalogue
 
 
 def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
     """One row a scene and number of threads, with the seconds of each edit in order."""
-    sessions = scene_module("sessions.catalogue").figure_sessions()
+    sessions = catalogue.figure_sessions()
     rows = []
     for name in names:
         for count in threads:

@@ -16,8 +16,8 @@ from typing import Any, Protocol
 import bpy
 
 import stiv
+from benchmarks.sessions.frame_times import goal_matrix, name_of
 from stiv.blender.arrays import Floats
-from stiv.blender.frame_times import goal_matrix, name_of
 from stiv.blender.nearby import begin_nearby
 from stiv.blender.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings

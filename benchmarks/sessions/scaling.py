@@ -8,15 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from stiv.bench.running import Report, record
-from stiv.bench.scene_library import scene_module
+from benchmarks.sessions.running import Report, record
+from blend_fixtures.scenes.sessions.growth import growth_sessions
 
 
 def scaling(threads: Sequence[int], largest: int, report: Report) -> list[dict[str, Any]]:
     """One row a size: mean times of the edits with contacts, which are the same edits at each size."""
-    library = scene_module("sessions.growth")
     rows = []
-    for session in library.growth_sessions(largest):
+    for session in growth_sessions(largest):
         for count in threads:
             recorded, figures = record(session, {"threads": count}, lambda note: None)
             touching = [figure for figure in figures if figure.touches]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import stiv
-from stiv.bench.running import EditFigures, Preset, RecordedStage, Report, record, repeat
-from stiv.bench.scene_library import scene_module
+from benchmarks.sessions.running import EditFigures, Preset, RecordedStage, Report, record, repeat
+from blend_fixtures.scenes.sessions import catalogue
 
 #: Vertices, triangles, collisions, regions, iterations and total ms with many constraints and with one. [Table 1]
 PUBLISHED: dict[str, dict[str, Any]] = {
@@ -50,7 +50,7 @@ def table1(
     The edits are those that come when the session is solved by our defaults; every other row answers the same edits,
     each from the same accepted state, so that energies compare.
     """
-    sessions = scene_module("sessions.catalogue").table_sessions()
+    sessions = catalogue.table_sessions()
     rows = []
     for name in names:
         recorded, ours = record(sessions[name], {"threads": threads[0]}, report)

@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import blend_fixtures
+from benchmarks.sessions.dragged_profile import DragsOf, dragged_rows
+from benchmarks.sessions.running import Report
+from benchmarks.sessions.table1 import PARTS
 from stiv import InputError
-from stiv.bench.dragged_profile import DragsOf, dragged_rows
-from stiv.bench.running import Report
-from stiv.bench.scene_library import CHECKOUT
-from stiv.bench.table1 import PARTS
 
+FIXTURES = Path(blend_fixtures.__file__).parent
 FILES = {
     "plant": "plant_in_vase",
     "hare": "figures/hare_in_pot",
@@ -33,11 +34,11 @@ def blender_profile(
 
     Frames are those of one thread, each solved to its end; "dragged" are the same drags as a user sees them, for each
     number of threads (see `dragged_rows`).
-    frames_of: opens a .blend and runs the script beside it; the `stiv.blender.frame_times.FrameTime` of each frame.
+    frames_of: opens a .blend and runs the script beside it; the `FrameTime` of each frame.
     """
     rows = []
     for name in names:
-        path = CHECKOUT / "blend_fixtures" / f"{FILES[name]}.blend"
+        path = FIXTURES / f"{FILES[name]}.blend"
         if not path.is_file():
             raise InputError(f"bench profile --in-blender: there is no {path.name}; run it in a source checkout")
         frames = frames_of(path)

@@ -24,16 +24,16 @@ from typing import Any
 import numpy as np
 
 import stiv
+from benchmarks.sessions.peer_mesh import LinearStep, peer_mesh
+from benchmarks.sessions.running import EditFigures, RecordedStage, Report, record
+from blend_fixtures.scenes.sessions import catalogue
 from stiv import InputError
-from stiv.bench.peer_mesh import LinearStep, peer_mesh
-from stiv.bench.running import EditFigures, RecordedStage, Report, record
-from stiv.bench.scene_library import scene_module
 
 
 def race(names: Sequence[str], report: Report) -> list[dict[str, Any]]:
     """One row a scene, over the edits with contacts; one thread each. Raises InputError where ipctk is missing."""
     peer = _ipctk()
-    sessions = scene_module("sessions.catalogue").table_sessions()
+    sessions = catalogue.table_sessions()
     rows = []
     for name in names:
         recorded, figures = record(sessions[name], {"threads": 1}, lambda note: None)

@@ -21,7 +21,7 @@ def frames_in_blender(path: Path) -> Sequence[Any]:
     """The `FrameTime` of each edit of the script beside a .blend, each solved to its end, one thread."""
     with _opened(path) as script:
         of_scene = require_blender("stiv_addon.settings", path).edit_settings
-        times = require_blender("stiv.blender.frame_times", path)
+        times = require_blender("benchmarks.sessions.frame_times", path)
         frames: Sequence[Any] = times.frame_times(script, lambda scene: replace(of_scene(scene), threads=1))
         return frames
 
@@ -34,7 +34,7 @@ def drags_in_blender(path: Path, threads: int) -> Sequence[Any]:
         def settings_of(scene: Any) -> Any:
             return replace(settings.edit_settings(scene, time_budget=settings.DRAG_BUDGET), threads=threads)
 
-        dragged = require_blender("stiv.blender.dragged_frames", path)
+        dragged = require_blender("benchmarks.sessions.dragged_frames", path)
         stages: Sequence[Any] = dragged.dragged_stages(
             script, settings_of, lambda kind, begin, goal_of: ScriptedDrag.begun(modal, kind, begin, goal_of)
         )

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 import stiv
+from benchmarks.sessions.running import Array, Report, record
+from benchmarks.sessions.table1 import row
+from blend_fixtures.scenes.sessions import real_models
+from blend_fixtures.scenes.shape import Shape
 from stiv import InputError
-from stiv.bench.running import Array, Report, record
-from stiv.bench.scene_library import scene_module
-from stiv.bench.table1 import row
 from stiv.mesh_files import read_mesh
 
 FIGURES = {
@@ -42,7 +43,7 @@ def models(folder: Path, threads: Sequence[int], report: Report) -> list[dict[st
             report(f"nothing of {name}: {folder} has no {', '.join(missing)}")
             continue
         shapes = [repaired(folder / file, report) for file in files]
-        session = getattr(scene_module("sessions.real_models"), figure)(*shapes)
+        session = getattr(real_models, figure)(*shapes)
         for count in threads:
             recorded, figures = record(session, {"threads": count}, report)
             rows.append(row(name, "stiv", "many", count, recorded, figures, figures))
@@ -67,8 +68,7 @@ def repaired(path: Path, report: Report) -> Any:
         f"{path.name}: {len(positions)} vertices, {result.status}, {result.pairs_before} pairs before, "
         f"deviation {result.deviation:.2%}, {seconds:.1f} s"
     )
-    shape = scene_module("shape").Shape
-    return shape(result.positions, tuple(map(tuple, result.surface.triangles.tolist())))
+    return Shape(result.positions, tuple(map(tuple, result.surface.triangles.tolist())))
 
 
 def largest_part(positions: Array, triangles: Any) -> tuple[Array, Any]:

@@ -17,7 +17,7 @@ def dragged_rows(path: Path, drags_of: DragsOf, threads: Sequence[int]) -> tuple
     """A row for each number of threads, by the clock, and how many states that were shown did not pass.
 
     drags_of: opens a .blend and drags the script beside it with so many threads; its
-    `stiv.blender.dragged_frames.DraggedStage`.
+    `DraggedStage`.
     """
     rows, failed = [], 0
     for count in threads:

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import stiv
+from benchmarks.sessions.running import Array, RecordedStage, Report, record
+from blend_fixtures.scenes.sessions import catalogue, dressing
 from stiv import InputError
-from stiv.bench.running import Array, RecordedStage, Report, record
-from stiv.bench.scene_library import scene_module
 
 BODIES = ("Ogre", "Shirt")
 STAGES = ("expand", "shrink")  #: of the session: where cloth applies
@@ -24,8 +24,8 @@ def cloth(report: Report) -> list[dict[str, Any]]:
     """A row a stage of the dressing that a cloth simulation can do. Raises InputError without Blender's module."""
     if importlib.util.find_spec("bpy") is None:
         raise InputError("bench cloth: Blender's Python module is not installed (pip install bpy)")
-    simulation = importlib.import_module("stiv.blender.cloth_simulation")
-    recorded, figures = record(scene_module("sessions.catalogue").table_sessions()["dressing"], {"threads": 1}, report)
+    simulation = importlib.import_module("benchmarks.sessions.cloth_simulation")
+    recorded, figures = record(catalogue.table_sessions()["dressing"], {"threads": 1}, report)
     rows = []
     for number, part in enumerate(recorded):
         name = part.stage.name
@@ -34,7 +34,7 @@ def cloth(report: Report) -> list[dict[str, Any]]:
         start, wanted = surface_at(part, part.tasks[0].start), wanted_at_end(part)
         ours = surface_at(part, _end(recorded, number))
         body, shirt = (part.stage.surface.vertex_body == _index(part, owner) for owner in BODIES)
-        shrink = 0.0 if name == "expand" else 1 - scene_module("sessions.dressing").SHRINK ** len(part.tasks)
+        shrink = 0.0 if name == "expand" else 1 - dressing.SHRINK ** len(part.tasks)
         run = simulation.simulate_cloth(
             (start[shirt], _triangles(part, shirt)),
             (start[body], _triangles(part, body)),

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv bench`: the paper's table, profiles of its sessions, growth, a race against stopping at first contact."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import shlex
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.sessions.blender_profile import blender_profile
+from benchmarks.sessions.cloth import cloth, cloth_text
+from benchmarks.sessions.dragged_profile import dragged_text
+from benchmarks.sessions.in_blender import drags_in_blender, frames_in_blender
+from benchmarks.sessions.models import models, models_text
+from benchmarks.sessions.profile import profile, profile_text
+from benchmarks.sessions.race import race, race_text
+from benchmarks.sessions.running import Report
+from benchmarks.sessions.scaling import scaling, scaling_text
+from benchmarks.sessions.table1 import KINDS, PUBLISHED, shares_text, table1, table_text
+from stiv import InputError
+from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.output_files import require_folder, write_json
+from stiv.command_line.program import Parser
+
+SCHEMA, VERSION = "stiv-bench", 1
+
+_DESCRIPTION = """\
+Measures whole editing sessions of the sizes that the paper shows, mostly without Blender, and checks each accepted
+state by the exact test. Processor time is given for one thread, the clock's for several."""
+_EXAMPLES = """\
+examples:
+  stiv bench table1                          the paper's Table 1, its method and ours beside its figures
+  stiv bench table1 --scenes knot tree --threads 1 --json table1.json
+  stiv bench profile --scenes plant dressing frames a second, edit by edit
+  stiv bench profile --in-blender             the same as drags in Blender, its own evaluation included: each frame
+                                             solved to its end, and as a user sees them, with the add-on's time limit
+  stiv bench race                            against stopping at the first contact, and our loop on ipctk (needs ipctk)
+  stiv bench cloth                           against Blender's own cloth simulation, where it applies
+  stiv bench --models FOLDER                 Figures 9 and 1 with the bunny, the teapot and the ogre of a folder
+  stiv bench scaling --largest 300000        growth with the number of triangles
+
+exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
+
+
+def parser() -> Parser:
+    """The parser of the arguments after `stiv bench`."""
+    parser = Parser(
+        prog="stiv bench",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("what", choices=tuple(_BENCHES), nargs="?", help="what to measure")
+    parser.add_argument("--scenes", nargs="+", default=list(PUBLISHED), metavar="NAME", help="default: all five")
+    parser.add_argument("--threads", nargs="+", type=int, default=[1, 2], metavar="N", help="default: 1 2")
+    parser.add_argument(
+        "--constraints", nargs="+", choices=tuple(KINDS), default=list(KINDS), help="table1: default: both"
+    )
+    parser.add_argument(
+        "--largest",
+        type=int,
+        default=1_300_000,
+        metavar="N",
+        help="scaling: triangles of the largest size (default: all)",
+    )
+    parser.add_argument(
+        "--models",
+        type=Path,
+        metavar="FOLDER",
+        help="models: with stanford-bunny.obj, teapot.obj and ogre.obj, of which any may be absent",
+    )
+    parser.add_argument("--in-blender", action="store_true", help="profile: in Blender, from the .blend files")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
+    return parser
+
+
+def run(given: Sequence[str]) -> ExitCode:
+    """Measures what the arguments ask for. Raises InputError."""
+    arguments = parser().parse_args(given)
+    require_folder(arguments.json)
+    what = arguments.what or ("models" if arguments.models else None)
+    if what is None or (what == "models") != (arguments.models is not None):
+        raise InputError(
+            f"bench: name one of {', '.join(_BENCHES)}; models takes --models FOLDER, and nothing else does"
+        )
+    unknown = [name for name in arguments.scenes if name not in PUBLISHED]
+    if unknown or min(arguments.threads) < 1:
+        raise InputError(
+            f"bench: there is no scene {', '.join(unknown)}" if unknown else "bench: threads are from 1 on"
+        )
+    rows, text = _BENCHES[what](arguments, _say)
+    print(text)
+    if arguments.json is not None:
+        write_json(arguments.json, result(rows))
+    return ExitCode.NOT_FREE if any(row["intersections"] for row in rows) else ExitCode.DONE
+
+
+def _say(note: str) -> None:
+    print(f"measured {note}", file=sys.stderr, flush=True)
+
+
+def result(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """The rows with the command and the machine that they come from, ready for JSON."""
+    command = shlex.join(["stiv", *sys.argv[1:]])
+    machine = {"system": platform.system(), "architecture": platform.machine(), "processors": _processors()}
+    return {"schema": SCHEMA, "version": VERSION, "command": command, "machine": machine, "rows": rows}
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+_Result = tuple[list[dict[str, Any]], str]
+
+
+def _table(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = table1(arguments.scenes, arguments.threads, report, arguments.constraints)
+    return rows, table_text(rows) + "\n\n" + shares_text(rows)
+
+
+def _profile(arguments: argparse.Namespace, report: Report) -> _Result:
+    if arguments.in_blender:
+        rows = blender_profile(arguments.scenes, frames_in_blender, drags_in_blender, arguments.threads, report)
+        return rows, profile_text(rows) + "\n\n" + dragged_text(rows)
+    rows = profile(arguments.scenes, arguments.threads, report)
+    return rows, profile_text(rows)
+
+
+def _race(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = race(arguments.scenes, report)
+    return rows, race_text(rows)
+
+
+def _cloth(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = cloth(report)
+    return rows, cloth_text(rows)
+
+
+def _models(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = models(arguments.models, arguments.threads, report)
+    return rows, models_text(rows)
+
+
+def _scaling(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = scaling(arguments.threads, arguments.largest, report)
+    return rows, scaling_text(rows)
+
+
+_BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
+    "table1": _table,
+    "profile": _profile,
+    "race": _race,
+    "cloth": _cloth,
+    "models": _models,
+    "scaling": _scaling,
+}
