@@ -13,7 +13,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import live_loops
+from . import loop_updates
 from .operators.last_edit import note_written
 
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # may be chosen for a library override too
@@ -63,19 +63,19 @@ OBJECT_RESPONSES = (
 
 
 def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from .guard import watching  # which reads these settings
+    from .guard import watcher  # which reads these settings
 
-    watching.switched(context)
+    watcher.switched(context)
 
 
 def _exclusions_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from .guard import watching
+    from .guard import watcher
 
-    watching.exclusions_changed(context)
+    watcher.exclusions_changed(context)
 
 
 def _loop_changed(loop: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    live_loops.refresh_cage(loop.id_data)
+    loop_updates.refresh_cage(loop.id_data)
 
 
 class StivPairSeparation(bpy.types.PropertyGroup):

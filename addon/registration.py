@@ -5,17 +5,17 @@ import sys
 
 import bpy
 
-from . import keymap, live_loops, manual, menus, operators, panels, pie_menu, preferences, properties, translations
-from .guard import watching
-from .operators import outcomes
-from .overlay import showing
+from . import keymap, loop_updates, manual, menus, operators, panels, preferences, properties, translations
+from .guard import watcher
+from .operators.transform import drag_results
+from .overlay import display
 
 CLASSES = (
     *properties.CLASSES,
-    *showing.CLASSES,
+    *display.CLASSES,
     *operators.CLASSES,
     *panels.CLASSES,
-    *pie_menu.CLASSES,
+    *menus.CLASSES,
     *preferences.CLASSES,
 )
 
@@ -29,16 +29,16 @@ def register() -> None:
     menus.register()
     keymap.register()
     manual.register()
-    live_loops.register()
-    watching.register()
-    showing.register()
+    loop_updates.register()
+    watcher.register()
+    display.register()
 
 
 def unregister() -> None:
     """Take everything away again."""
-    showing.unregister()
-    watching.unregister()
-    live_loops.unregister()
+    display.unregister()
+    watcher.unregister()
+    loop_updates.unregister()
     manual.unregister()
     keymap.unregister()
     menus.unregister()
@@ -51,7 +51,7 @@ def unregister() -> None:
 
 def forget() -> None:
     """Give back what is kept from one drag to the next."""
-    outcomes.clear()
+    drag_results.clear()
     remembering = sys.modules.get("stiv.blender.remembering")  # there only if the native module was
     if remembering is not None:
         remembering.forget_all()

@@ -10,8 +10,8 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from ..lengths import length_text
-from ..wording import say
+from ..translations import say
+from ..units import length_text
 from .content import Content, lines_of, texts_of
 
 ARROW = 0.06  # length of an arrow in distances from the eye to the view's centre

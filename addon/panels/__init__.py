@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tab "STIV" in the sidebar of the 3D view: one panel a file, the others within the first."""
+"""The tab "STIV" in the sidebar of the 3D view: the others within the first panel."""
 
-from .check import STIV_PT_check
-from .deformation import STIV_PT_deformation
+from .check import STIV_PT_check, STIV_PT_repair
 from .edit import STIV_PT_edit
 from .guard import STIV_PT_guard
-from .loop import STIV_PT_loop
+from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
 from .overlay import STIV_PT_overlay
-from .repair import STIV_PT_repair
-from .roles import STIV_PT_roles
-from .separation import STIV_PT_separation
 
 CLASSES = (
     STIV_PT_edit,

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import bpy
 
-from .. import availability
+from .. import native_module
 from ..operators import TRANSFORMS
-from ..settings import edit_settings
-from ..wording import say
-from .drawing import SidebarPanel, draw_lines, draw_problem
+from ..scene.edit_settings import edit_settings
+from ..translations import say
+from .base import SidebarPanel, draw_lines, draw_problem
 
 SETTINGS = ("interference", "separation", "responders", "object_response", "guard", "smoothness", "constraints")
 
@@ -22,7 +22,7 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Buttons and settings, or why there are none."""
-        if availability.problem():
+        if native_module.problem():
             draw_problem(self.layout)
             return
         column = self.layout.column(align=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import bpy
 
-from ..guard import watching
+from ..guard import watcher
 from ..guard.problem import Problem
-from ..wording import say
-from .drawing import SubPanel, draw_lines
+from ..translations import say
+from .base import SubPanel, draw_lines
 
 WAYS_OUT = ("stiv.guard_revert", "stiv.check", "stiv.repair", "stiv.exclude_intersections")
 
@@ -28,12 +28,12 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         layout = self.layout
         if not context.scene.stiv.live_guard:
             layout.label(text="Off: tools may go through surfaces")
-        elif (problem := watching.problem()) is not None:
+        elif (problem := watcher.problem()) is not None:
             draw_alert(layout, problem)
         else:
             layout.label(text="The scene is clear", icon="CHECKMARK")
-        if watching.uncorrected():
-            layout.label(text=say("Results not corrected: {}").format(watching.uncorrected()))
+        if watcher.uncorrected():
+            layout.label(text=say("Results not corrected: {}").format(watcher.uncorrected()))
 
 
 def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:

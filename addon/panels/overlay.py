@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators.measure import STIV_OT_measure
-from .drawing import SubPanel
+from ..operators.check.measure import STIV_OT_measure
+from .base import SubPanel
 
 
 class STIV_PT_overlay(SubPanel, bpy.types.Panel):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.constraint import Constraint
+from ..modal.axis_lock import Constraint
 from .view import Vector, View
 
 
@@ -55,3 +55,22 @@ def orthonormal(axes: Vector) -> Vector:
     result = np.column_stack([x, y, np.cross(x, y)])
     sound = np.allclose(result.T @ result, np.eye(3), atol=1e-6)  # not for nan, nor where only rounding was normalised
     return result if sound else np.eye(3)
+
+
+def pivot_of(points: Vector, choice: str, *, cursor: Vector, active: Vector | None) -> Vector:
+    """The pivot (3,) for points (k, 3) in world space.
+
+    Args:
+        points: origins of the selected objects, or selected vertices or lattice points.
+        choice: Blender's `transform_pivot_point`; "INDIVIDUAL_ORIGINS" counts as the median.
+        cursor: (3,) the 3D cursor.
+        active: (3,) the active element, None where there is none.
+
+    """
+    if choice == "CURSOR" or len(points) == 0:
+        return cursor
+    if choice == "ACTIVE_ELEMENT" and active is not None:
+        return active
+    if choice == "BOUNDING_BOX_CENTER":
+        return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2.0)
+    return np.asarray(points.mean(axis=0))

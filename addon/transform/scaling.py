@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..modal.header_texts import decimal_text
 from ..modal.pointer import Pointer
 from ..modal.state import State
-from ..modal.typed_number import Read
-from .decimals import decimal_text
+from ..modal.typed_numbers import Read
 from .frame import Frame, about
 from .snapping import Snap
 from .view import Pixel, Vector

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.constraint import Constraint
+from ..modal.axis_lock import Constraint
 from ..modal.state import State
 from .frame import Frame
 from .view import Pixel, Vector, View

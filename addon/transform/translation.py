@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..modal.constraint import Constraint
+from ..modal.axis_lock import Constraint
+from ..modal.header_texts import decimal_text
 from ..modal.state import State
-from ..modal.typed_number import Read
-from .decimals import decimal_text
+from ..modal.typed_numbers import Read
 from .frame import Frame
 from .snapping import Snap
 from .view import Vector, View

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The interface in other languages: one catalogue a file, from English texts as they stand in the sources.
 
+Texts that the code puts together itself go through `say("text")`, and are filled in afterwards.
+
 tools/interface_messages.py lists what there is to translate; a test holds sources and catalogues together.
 """
 
@@ -30,3 +32,8 @@ def register() -> None:
 def unregister() -> None:
     """Take them back."""
     bpy.app.translations.unregister(__name__)
+
+
+def say(text: str) -> str:
+    """A text of the catalogues; the same text where interface texts are not translated."""
+    return str(bpy.app.translations.pgettext_iface(text))

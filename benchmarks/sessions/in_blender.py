@@ -20,7 +20,7 @@ PIXELS = 1000.0  # of the pointer's x for one repetition of a script
 def frames_in_blender(path: Path) -> Sequence[Any]:
     """The `FrameTime` of each edit of the script beside a .blend, each solved to its end, one thread."""
     with _opened(path) as script:
-        of_scene = require_blender("stiv_addon.settings", path).edit_settings
+        of_scene = require_blender("stiv_addon.scene.edit_settings", path).edit_settings
         times = require_blender("benchmarks.sessions.frame_times", path)
         frames: Sequence[Any] = times.frame_times(script, lambda scene: replace(of_scene(scene), threads=1))
         return frames
@@ -29,7 +29,7 @@ def frames_in_blender(path: Path) -> Sequence[Any]:
 def drags_in_blender(path: Path, threads: int) -> Sequence[Any]:
     """The `DraggedStage` of each drag of the same script, with the add-on's limit to the time of each solve."""
     with _opened(path) as script:
-        settings, modal = require_blender("stiv_addon.settings", path), _modal(path)
+        settings, modal = require_blender("stiv_addon.scene.edit_settings", path), _modal(path)
 
         def settings_of(scene: Any) -> Any:
             return replace(settings.edit_settings(scene, time_budget=settings.DRAG_BUDGET), threads=threads)
@@ -53,14 +53,14 @@ class ScriptedDrag:
         cls, modal: dict[str, ModuleType], kind: str, begin: Callable[[], Any], goal_of: Callable[[float], Any]
     ) -> ScriptedDrag:
         """A drag of a kind; `modal` are the modules of the add-on by their names."""
-        state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["request"].Request(kind))
-        drag = modal["drag"].Drag(
+        state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["edit"].Request(kind))
+        drag = modal["drag_loop"].Drag(
             lambda request: begin(),
             lambda state: state.pointer.effective[0] / PIXELS,
             lambda where, state: goal_of(where),
             state,
         )
-        return cls(drag, modal["events"].Event)
+        return cls(drag, modal["event"].Event)
 
     def point(self, where: float) -> None:
         """The mouse moved there."""
@@ -99,7 +99,7 @@ class ScriptedDrag:
 def _modal(path: Path) -> dict[str, ModuleType]:
     return {
         name: require_blender(f"stiv_addon.modal.{name}", path)
-        for name in ("drag", "events", "pointer", "request", "state")
+        for name in ("drag_loop", "edit", "event", "pointer", "state")
     }
 
 

@@ -113,7 +113,7 @@ def test_without_interference_objects_go_through_each_other(bar: Any) -> None:
 
 def test_the_panel_draws_what_there_is(bar: Any) -> None:
     """Drawn into a stand-in: Blender reports a wrong property only in a window."""
-    from stiv_addon.panels.deformation import STIV_PT_deformation
+    from stiv_addon.panels.objects import STIV_PT_deformation
 
     drawn: list[str] = []
 

@@ -9,7 +9,8 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 import stiv_addon  # noqa: E402
-from stiv_addon import keymap, pie_menu, preferences, settings  # noqa: E402
+from stiv_addon import keymap, menus, preferences  # noqa: E402
+from stiv_addon.scene import edit_settings as settings  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -39,7 +40,7 @@ def our_keys() -> list[Any]:
 
 def test_the_pie_has_its_eight_places_filled() -> None:
     layout = Layout()
-    pie_menu.STIV_MT_pie.draw(SimpleNamespace(layout=layout), bpy.context)
+    menus.STIV_MT_pie.draw(SimpleNamespace(layout=layout), bpy.context)
     assert len(layout.put) == len(set(layout.put)) == 8
     assert layout.put[:4] == ["stiv.move", "stiv.rotate", "stiv.scale", "stiv.check"]
 

@@ -40,7 +40,7 @@ def test_every_drag_of_a_script_is_told_tick_by_tick():
 @pytest.mark.usefixtures("registered")
 def test_turning_is_refused():
     from benchmarks.sessions.dragged_frames import dragged_stages
-    from stiv_addon.settings import edit_settings
+    from stiv_addon.scene.edit_settings import edit_settings
 
     open_blend(BLEND)
     name = next(ob.name for ob in bpy.context.scene.objects if ob.type == "MESH")

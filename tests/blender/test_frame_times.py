@@ -20,7 +20,7 @@ FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
 
 
 def settings_of(scene):
-    from stiv_addon.settings import edit_settings
+    from stiv_addon.scene.edit_settings import edit_settings
 
     return edit_settings(scene)
 

@@ -29,12 +29,12 @@ import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
 
 from stiv.blender import EditSettings, begin_nearby  # noqa: E402
-from stiv_addon.modal.drag import Drag, Progress  # noqa: E402
-from stiv_addon.modal.events import Event  # noqa: E402
+from stiv_addon.modal.drag_loop import Drag, Progress  # noqa: E402
+from stiv_addon.modal.edit import Request  # noqa: E402
+from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
-from stiv_addon.modal.request import Request  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
-from stiv_addon.settings import DRAG_BUDGET  # noqa: E402
+from stiv_addon.scene.edit_settings import DRAG_BUDGET  # noqa: E402
 
 SHIFT = np.array([0.02, 0.01, -0.45])
 MOVES, RESTS = 1.0, 0.5  # seconds

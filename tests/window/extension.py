@@ -21,7 +21,7 @@ def problem() -> str:
     """Why what would be driven is not the installed zip, empty if it is."""
     if NAME not in bpy.context.preferences.addons:
         return f"{NAME} is not enabled"
-    missing = module("availability").problem()
+    missing = module("native_module").problem()
     if missing:
         return str(missing)
     core = Path(importlib.import_module("stiv._native").__file__)

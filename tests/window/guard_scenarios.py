@@ -24,9 +24,9 @@ def guarded(window: Window, build: object, active: str, mode: str = "OBJECT") ->
 
 def at_rest(window: Window) -> Steps:
     """Wait until the guard has looked at everything."""
-    watching = extension.module("guard.watching")
+    watcher = extension.module("guard.watcher")
     yield from window.settle()
-    yield from window.until(lambda: not bpy.app.timers.is_registered(watching.look), "the guard at rest")
+    yield from window.until(lambda: not bpy.app.timers.is_registered(watcher.look), "the guard at rest")
     yield from window.settle()
 
 

@@ -14,18 +14,18 @@ from simulation import Steps, Window
 
 def guard_intersecting(window: Window) -> Steps:
     """Turned on where surfaces intersect already: it says so, writes nothing, and takes over once they are free."""
-    watching = extension.module("guard.watching")
+    watcher = extension.module("guard.watcher")
     bpy.context.scene.stiv.live_guard = False
     yield from prepared(window, scenes.add_box, "Box")
     bpy.data.objects["Box"].location.x = WALL_FACE
     bpy.context.scene.stiv.live_guard = True
     yield from at_rest(window)
-    assert watching.problem().names == ["Box", "Wall"], watching.problem()
+    assert watcher.problem().names == ["Box", "Wall"], watcher.problem()
     yield from open_tab(window)
     window.picture("guard_intersecting")
     window.area.spaces.active.show_region_ui = False
     yield from with_tool(window, "G", (-1.5, 0.0, 0.0))
-    assert watching.problem() is None, watching.problem()
+    assert watcher.problem() is None, watcher.problem()
     yield from with_tool(window, "G", INTO_WALL)
     expect_near(box_x(), FURTHEST, NEAR, "the box after the guard took over")
     bpy.context.scene.stiv.live_guard = False
@@ -42,11 +42,11 @@ def open_tab(window: Window) -> Steps:
 
 def guard_leaves_nothing(window: Window) -> Steps:
     """Turned off, there is no timer and no message left; another tool is not corrected."""
-    watching = extension.module("guard.watching")
+    watcher = extension.module("guard.watcher")
     yield from guarded(window, scenes.add_box, "Box")
     bpy.context.scene.stiv.live_guard = False
     yield from window.settle()
-    assert not bpy.app.timers.is_registered(watching.look)
+    assert not bpy.app.timers.is_registered(watcher.look)
     window.key("G")
     yield from window.glide(window.pixel((WALL_FACE, 0.0, 0.0)))
     window.key("LEFTMOUSE")

@@ -26,7 +26,7 @@ def add_mirrored_box() -> object:
 
 def guard_mirrored(window: Window) -> Steps:
     """Moved in Edit Mode: the result stays, everything says so, and a click in the status bar takes it back."""
-    watching = extension.module("guard.watching")
+    watcher = extension.module("guard.watcher")
     yield from guarded(window, add_mirrored_box, "Box", "EDIT")
     with window.override():
         bpy.ops.mesh.select_all(action="SELECT")
@@ -35,22 +35,22 @@ def guard_mirrored(window: Window) -> Steps:
     before, named = xs(), steps()
     yield from open_tab(window)
     yield from with_tool(window, "G", (WALL_FACE, 0.0, 0.0))
-    assert watching.problem().names == ["Box", "Wall"], watching.problem()
-    assert watching.uncorrected() == 1, watching.uncorrected()
+    assert watcher.problem().names == ["Box", "Wall"], watcher.problem()
+    assert watcher.uncorrected() == 1, watcher.uncorrected()
     assert xs() != before, "the result of the tool is gone"
     window.picture("guard_mirrored")
-    yield from click_in_status_bar(window, lambda: watching.problem() is None)
+    yield from click_in_status_bar(window, lambda: watcher.problem() is None)
     assert xs() == before, xs()
     assert steps() == [*named, "'Move'", f"'{BUTTON}'"], steps()
     expect_free(window)
     window.picture("guard_mirrored_taken_back")
     yield from window.undo()
     yield from at_rest(window)
-    assert watching.problem().names == ["Box", "Wall"], watching.problem()
+    assert watcher.problem().names == ["Box", "Wall"], watcher.problem()
     window.area.spaces.active.show_region_ui = False
     bpy.context.scene.stiv.live_guard = False
     yield from window.settle()
-    assert not extension.module("overlay.showing").content().alert
+    assert not extension.module("overlay.display").content().alert
 
 
 def click_in_status_bar(window: Window, is_done: object) -> Steps:

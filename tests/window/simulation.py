@@ -41,11 +41,11 @@ class Window:
         self.drawn_at = time.perf_counter()
 
     def _watch_interface(self) -> None:
-        """Count what a drag adds to Blender's interface and takes away: Blender itself cannot be asked."""
-        interface = extension.module("operators.interface")
+        """Count what a drag adds to Blender's window_io and takes away: Blender itself cannot be asked."""
+        window_io = extension.module("operators.window_io")
         self.timers, self.texts = 0, False
         start_timer, stop_timer, show, clear = (
-            getattr(interface, name) for name in ("start_timer", "stop_timer", "show", "clear")
+            getattr(window_io, name) for name in ("start_timer", "stop_timer", "show", "clear")
         )
 
         def started(*given: Any) -> Any:
@@ -64,7 +64,7 @@ class Window:
             clear(*given)
             self.texts = False
 
-        interface.start_timer, interface.stop_timer, interface.show, interface.clear = started, stopped, shown, cleared
+        window_io.start_timer, window_io.stop_timer, window_io.show, window_io.clear = started, stopped, shown, cleared
 
     def leftovers(self) -> str:
         """What a drag left behind, empty if nothing."""

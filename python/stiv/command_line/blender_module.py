@@ -53,4 +53,4 @@ def stored_settings(context: Any, path: Path) -> Any:
     if importlib.util.find_spec("stiv_addon") is None:
         return require_blender("stiv.blender", path).EditSettings()
     with addon_registered(path):
-        return require_blender("stiv_addon.settings", path).edit_settings(context.scene)
+        return require_blender("stiv_addon.scene.edit_settings", path).edit_settings(context.scene)

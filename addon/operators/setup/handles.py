@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.handle_add`, `stiv.handle_remove`: the list of vertex groups that are handles of the active mesh."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import IntProperty
+
+from ...native_module import NeedsNativeModule
+
+
+class _HandleOperator(NeedsNativeModule):
+    """Base: for the active mesh."""
+
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    @classmethod
+    def fits(cls, context: bpy.types.Context) -> bool:
+        """With an active mesh."""
+        return getattr(context.active_object, "type", "") == "MESH"
+
+
+class STIV_OT_handle_add(_HandleOperator, bpy.types.Operator):
+    """Make the active vertex group a handle; without one, add a row to choose one in."""
+
+    bl_idname = "stiv.handle_add"
+    bl_label = "Add Handle"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add a row, with a group that is in none yet."""
+        thing = context.active_object
+        active = thing.vertex_groups.active
+        rows = thing.stiv.handles
+        taken = {row.name for row in rows}
+        rows.add().name = active.name if active is not None and active.name not in taken else ""
+        return {"FINISHED"}
+
+
+class STIV_OT_handle_remove(_HandleOperator, bpy.types.Operator):
+    """Take a vertex group from the handles; the group itself stays."""
+
+    bl_idname = "stiv.handle_remove"
+    bl_label = "Remove Handle"
+
+    index: IntProperty(name="Row", min=0)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Remove the row."""
+        rows = context.active_object.stiv.handles
+        if self.index >= len(rows):
+            self.report({"ERROR"}, f"there are {len(rows)} handles; there is no row {self.index}")
+            return {"CANCELLED"}
+        rows.remove(self.index)
+        return {"FINISHED"}

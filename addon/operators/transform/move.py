@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.move`: move what is selected; nothing goes through anything."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import FloatVectorProperty
+
+from ...transform.translation import Translation
+from .transform_operator import TransformOperator
+
+
+class STIV_OT_move(TransformOperator, bpy.types.Operator):
+    """Move what is selected; surfaces give way instead of going through each other."""
+
+    bl_idname = "stiv.move"
+    bl_label = "Move without Interference"
+    kind = "move"
+
+    value: FloatVectorProperty(name="Move", description="In world space", subtype="TRANSLATION", unit="LENGTH")
+
+    def given(self) -> Translation:
+        """The transform of the properties."""
+        return Translation(np.array(self.value))
+
+    def own_values(self) -> tuple[Any, ...]:
+        """The properties, to be compared."""
+        return tuple(self.value)
+
+    @staticmethod
+    def arguments(transform: Translation) -> dict[str, Any]:
+        """The properties of a transform."""
+        return {"value": transform.vector.tolist()}

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.scale`: scale what is selected about the pivot; nothing goes through anything."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatVectorProperty
+
+from ...scene.orientations import active_axes
+from ...transform.scaling import Scaling
+from .transform_operator import TransformOperator
+
+ORIENTATIONS = (
+    ("GLOBAL", "Global", "Along the axes of the world"),
+    ("LOCAL", "Local", "Along the axes of the active object"),
+    ("DRAGGED", "As Dragged", "Along the axes that the drag used"),
+)
+
+
+class STIV_OT_scale(TransformOperator, bpy.types.Operator):
+    """Scale what is selected; surfaces give way instead of going through each other."""
+
+    bl_idname = "stiv.scale"
+    bl_label = "Scale without Interference"
+    kind = "scale"
+
+    value: FloatVectorProperty(name="Scale", description="Factors", default=(1.0, 1.0, 1.0), subtype="XYZ")
+    orientation: EnumProperty(name="Orientation", description="Axes of the factors", items=ORIENTATIONS)
+    axes: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
+
+    def given(self) -> Scaling:
+        """The transform of the properties."""
+        if self.orientation == "GLOBAL":
+            return Scaling(np.array(self.value))
+        dragged = self.orientation == "DRAGGED"
+        axes = np.array(self.axes).reshape(3, 3) if dragged else active_axes(bpy.context)
+        return Scaling(np.array(self.value), axes)
+
+    def own_values(self) -> tuple[Any, ...]:
+        """The properties, to be compared."""
+        return (*self.value, self.orientation, *self.axes)
+
+    @staticmethod
+    def arguments(transform: Scaling) -> dict[str, Any]:
+        """The properties of a transform."""
+        if np.array_equal(transform.axes, np.eye(3)):
+            return {"value": transform.factors.tolist(), "orientation": "GLOBAL"}
+        axes = transform.axes.ravel().tolist()
+        return {"value": transform.factors.tolist(), "orientation": "DRAGGED", "axes": axes}

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where panels stand, and text in them."""
+
+from __future__ import annotations
+
+import textwrap
+
+import bpy
+
+from .. import native_module
+
+MOST_OBJECTS = 10  # shown one a row
+
+
+class SidebarPanel:
+    """Base: a panel in the tab."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "STIV"
+
+
+class SubPanel(SidebarPanel):
+    """Base: a panel within the tab's first one, with the native module only."""
+
+    bl_parent_id = "STIV_PT_edit"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """With the native module only."""
+        return not native_module.problem()
+
+
+def draw_problem(layout: bpy.types.UILayout) -> None:
+    """Say why the add-on cannot work here, and what to do."""
+    box = layout.box()
+    box.alert = True
+    box.label(text="STIV cannot run", icon="ERROR")
+    draw_lines(box, native_module.problem())
+
+
+def draw_lines(layout: bpy.types.UILayout, text: str, width: int = 38) -> None:
+    """Text wrapped to the usual width of the sidebar."""
+    column = layout.column(align=True)
+    for line in text.splitlines():
+        for piece in textwrap.wrap(line, width):
+            column.label(text=piece)

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lengths and angles in the units of the scene: to text, and from what is typed."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import bpy
+
+from .modal.expression import Units, evaluate
+from .modal.header_texts import DECIMALS, decimal_text
+
+SCENE_LENGTHS = {
+    "KILOMETERS": "km", "METERS": "m", "CENTIMETERS": "cm", "MILLIMETERS": "mm", "MICROMETERS": "um",
+    "MILES": "mi", "FEET": "ft", "INCHES": "in", "THOU": "thou",
+}  # fmt: skip
+
+
+def length_text(value: float, units: Any, decimals: int = DECIMALS) -> str:
+    """A length with its unit: "0 m", "1.5 cm".
+
+    value: in world units. units: the scene's `unit_settings`. decimals: most digits after the point; what rounds to
+    zero is written without a sign.
+    """
+    if units.system == "NONE":
+        return decimal_text(value, decimals)
+    value *= units.scale_length
+    name = SCENE_LENGTHS.get(units.length_unit)
+    if name is not None:
+        return f"{decimal_text(value / unit_length(units.system, name), decimals)} {name}"
+    text = str(bpy.utils.units.to_string(units.system, "LENGTH", value, precision=decimals))  # adaptive
+    return text[1:] if text.startswith("-0") and not any(digit in text for digit in "123456789") else text
+
+
+@functools.cache
+def unit_length(system: str, name: str, category: str = "LENGTH") -> float:
+    """A unit by its short name, in Blender's own: metres, or radians for the category "ROTATION".
+
+    Blender calculates in single precision, so seven digits are what is meant.
+    """
+    return float(f"{bpy.utils.units.to_value(system, category, '1' + name):.7g}")
+
+
+# Only these are ever handed to Blender, which evaluates what it is given as Python.
+LENGTHS = (
+    *("km", "hm", "dam", "m", "dm", "cm", "mm", "um", "µm", "nm"),
+    *("kilometer", "kilometers", "meter", "meters", "centimeter", "centimeters", "millimeter", "millimeters"),
+    *("mi", "mile", "miles", "yd", "yard", "yards", "ft", "foot", "feet", "in", "inch", "inches", "thou", "mil"),
+    *("'", '"'),
+)
+ANGLES = ("°", "d", "deg", "degree", "degrees", "r", "rad", "radian", "radians", "'", '"')
+DEFAULT_LENGTHS = {"METRIC": "m", "IMPERIAL": "ft"}
+
+
+def readers(scene: Any) -> Mapping[str, Callable[[str], float]]:
+    """For each kind of transform, what reads its typed text. They raise ValueError."""
+    settings = scene.unit_settings
+    lengths, angles = _lengths(settings), _angles(settings)
+    return {
+        "move": lambda text: evaluate(text, lengths),
+        "rotate": lambda text: evaluate(text, angles),
+        "scale": lambda text: evaluate(text, lambda name: None if name else 1.0),
+    }
+
+
+def _lengths(settings: Any) -> Units:
+    system, scale = settings.system, settings.scale_length or 1.0
+    if system == "NONE":
+        return lambda name: None if name else 1.0
+    usual = SCENE_LENGTHS.get(settings.length_unit, DEFAULT_LENGTHS[system])
+
+    def factor(name: str) -> float | None:
+        name = name or usual
+        return unit_length(system, name) / scale if name in LENGTHS else None
+
+    return factor
+
+
+def _angles(settings: Any) -> Units:
+    usual = 1.0 if settings.system_rotation == "RADIANS" else math.radians(1.0)
+
+    def factor(name: str) -> float | None:
+        if not name:
+            return usual
+        # Blender knows the units by their short names alone.
+        short = {"deg": "d", "degree": "d", "degrees": "d", "rad": "r", "radian": "r", "radians": "r"}.get(name, name)
+        return unit_length("METRIC", short, "ROTATION") if name in ANGLES else None
+
+    return factor

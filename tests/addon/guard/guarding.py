@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What tests of the live guard share: a scene that is watched, and looking at it. Handlers run here, timers do not."""
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import bpy
+
+from stiv.blender import check_scene
+from stiv_addon.guard import undo_steps, watcher
+from stiv_addon.guard.decision import STILL
+
+FURTHEST = 1.5  # of the box's centre: the wall's face is at 2, the box is 1 wide
+
+
+def watched_scene() -> Iterator[None]:
+    """A box, selected, in front of a wall, watched over; the undo history begins with it."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 0), scale=(1, 4, 4))
+    bpy.context.object.name = "Wall"
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    bpy.context.object.name = "Box"
+    bpy.context.scene.stiv.live_guard = True
+    bpy.ops.ed.undo_push(message="start")
+    look()
+    yield
+    bpy.context.scene.stiv.live_guard = False
+
+
+def look() -> None:
+    """What the timer would do, until there is nothing to do."""
+    deadline = time.monotonic() + 3 * STILL + 20
+    while watcher.look() is not None:
+        assert time.monotonic() < deadline, "the guard never settles"
+        time.sleep(0.02)
+
+
+def box() -> Any:
+    return bpy.data.objects["Box"]
+
+
+def move(x: float) -> None:
+    bpy.ops.transform.translate("EXEC_DEFAULT", True, value=(x, 0, 0))
+
+
+def expect_free() -> None:
+    assert check_scene(bpy.context).pairs == ()
+
+
+def names_of_steps() -> list[str]:
+    return [line.split("name=")[1].strip("'") for line in undo_steps._printed().splitlines() if "name=" in line]

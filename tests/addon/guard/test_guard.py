@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live guard in Blender: what tools, scripts and operators did is corrected where it has to be."""
+
+from collections.abc import Iterator
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+pytest.importorskip("stiv._native")
+
+from guarding import FURTHEST, box, expect_free, look, move, names_of_steps, watched_scene  # noqa: E402
+
+from stiv_addon.guard import watcher  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture(autouse=True)
+def scene() -> Iterator[None]:
+    yield from watched_scene()
+
+
+def test_blenders_own_move_is_corrected_and_undone_in_one_step() -> None:
+    before = names_of_steps()
+    move(7.0)
+    look()
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
+    expect_free()
+    assert names_of_steps() == [*before, "Move"]
+    bpy.ops.ed.undo()
+    look()
+    assert box().location.x == 0.0
+    bpy.ops.ed.redo()
+    look()
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
+    expect_free()
+
+
+def test_what_meets_nothing_keeps_its_numbers() -> None:
+    move(1 / 3)
+    expected = tuple(box().location)
+    look()
+    assert tuple(box().location) == expected
+
+
+def test_a_tool_after_a_corrected_one_starts_from_it() -> None:
+    move(7.0)
+    look()
+    move(-1.0)
+    look()
+    assert box().location.x == pytest.approx(FURTHEST - 1.0, abs=0.02)
+
+
+def test_edit_mode_is_watched_and_undone_in_one_step() -> None:
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    move(7.0)
+    look()
+    expect_free()
+    box().update_from_editmode()
+    assert max(vertex.co.x for vertex in box().data.vertices) == pytest.approx(2.0, abs=0.02)
+    bpy.ops.ed.undo()
+    look()
+    box().update_from_editmode()
+    assert max(vertex.co.x for vertex in box().data.vertices) == 0.5
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_sculpting_is_corrected_and_leaves_the_stack_alone() -> None:
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
+    look()
+    steps = names_of_steps()
+    for vertex in box().data.vertices:
+        vertex.co.x += 2.0 if vertex.co.x > 0 else 0.0
+    box().data.update()
+    bpy.context.view_layer.update()
+    look()
+    assert max(vertex.co.x for vertex in box().data.vertices) == pytest.approx(2.0, abs=0.02)
+    assert min(vertex.co.x for vertex in box().data.vertices) == -0.5
+    expect_free()
+    assert names_of_steps() == steps
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_what_may_intersect_is_excluded_and_everything_else_is_guarded() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 2.5))  # stands in the top of the wall
+    bpy.context.scene.stiv.live_guard = True
+    look()
+    assert watcher.problem().pairs
+    bpy.ops.stiv.exclude_intersections()
+    look()
+    assert watcher.problem() is None
+    bpy.ops.object.select_all(action="DESELECT")
+    box().select_set(True)
+    bpy.context.view_layer.objects.active = box()
+    move(7.0)
+    look()
+    assert watcher.problem() is None
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
+
+
+def test_a_changed_structure_is_accepted_if_free_and_told_if_not() -> None:
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, location=(0, 8, 0))
+    look()
+    assert watcher.problem() is None
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(0.4, 0, 0))
+    look()
+    assert watcher.problem().pairs and "added" in watcher.problem().reason
+    bpy.ops.ed.undo()
+    look()
+    assert watcher.problem() is None
+
+
+def test_what_our_own_operators_write_is_not_corrected_again() -> None:
+    bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(7.0, 0, 0))
+    shown = tuple(box().location)
+    steps = names_of_steps()
+    look()
+    assert tuple(box().location) == shown
+    assert names_of_steps() == steps
+
+
+def test_a_cage_that_shows_a_loop_subdivision_is_corrected_by_what_is_seen() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.data.objects.remove(box())
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1)
+    bpy.context.object.name = "Box"
+    bpy.ops.stiv.loop_add()
+    bpy.context.view_layer.objects.active = box()
+    bpy.context.scene.stiv.live_guard = True
+    bpy.ops.ed.undo_push(message="cage")
+    look()
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    move(1.6)
+    look()
+    assert watcher.problem() is None
+    box().update_from_editmode()
+    bpy.context.view_layer.update()
+    shown = [vertex.co.x for vertex in bpy.data.objects["Box.loop"].data.vertices]
+    assert 1.8 < max(shown) < 2.0
+    bpy.ops.object.mode_set(mode="OBJECT")

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the live guard cannot correct: it says what intersects, counts it, and one operator goes back."""
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+pytest.importorskip("stiv._native")
+
+from guarding import box, expect_free, look, move, names_of_steps, watched_scene  # noqa: E402
+
+from stiv_addon.guard import alerts, watcher  # noqa: E402
+from stiv_addon.overlay import display  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture(autouse=True)
+def scene() -> Iterator[None]:
+    yield from watched_scene()
+
+
+def mirror_box() -> None:
+    for vertex in box().data.vertices:
+        vertex.co.y += 0.6
+    box().modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+
+
+def rig_box(in_edit_mode: bool = True) -> None:
+    bpy.ops.object.armature_add(location=(0, 0, -3))
+    modifier = box().modifiers.new("Armature", "ARMATURE")
+    modifier.object, modifier.show_in_editmode = bpy.context.object, in_edit_mode
+    bpy.context.object.name = "Rig"
+    box().vertex_groups.new(name="Bone").add(range(8), 1.0, "REPLACE")
+
+
+def watched_again(change: Any) -> None:
+    """The scene changed while the guard is off; then it is on, with Box alone selected."""
+    bpy.context.scene.stiv.live_guard = False
+    change()
+    bpy.ops.object.select_all(action="DESELECT")
+    box().select_set(True)
+    bpy.context.view_layer.objects.active = box()
+    bpy.context.scene.stiv.live_guard = True
+    bpy.ops.ed.undo_push(message="again")
+    look()
+
+
+def positions() -> np.ndarray:
+    if box().mode == "EDIT":
+        box().update_from_editmode()
+    return np.array([vertex.co for vertex in box().data.vertices])
+
+
+def shown_in_status_bar() -> tuple[list[str], list[str], bool]:
+    """Labels and buttons that the guard draws, and whether they are red."""
+    drawn: tuple[list[str], list[str]] = ([], [])
+    row = SimpleNamespace(
+        alert=False, label=lambda text, icon: drawn[0].append(text), operator=lambda name: drawn[1].append(name)
+    )
+    header = type("Header", (), {"_draw_orig": lambda self, context: None})()
+    header.layout = SimpleNamespace(row=lambda align: row)
+    alerts.draw_alert(header, bpy.context)
+    return *drawn, row.alert
+
+
+@pytest.mark.parametrize(("change", "modifier"), [(mirror_box, "Mirror"), (rig_box, "Armature")])
+def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change: Any, modifier: str) -> None:
+    watched_again(change)
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    before, steps = positions(), names_of_steps()
+    assert not bpy.ops.stiv.guard_revert.poll()
+    move(1.8)
+    look()
+    problem = watcher.problem()
+    assert problem.names == ["Box", "Wall"] and f'modifier "{modifier}"' in problem.reason
+    assert watcher.uncorrected() == 1
+    labels, buttons, is_red = shown_in_status_bar()
+    assert is_red and buttons == ["stiv.guard_revert"]
+    first = problem.pairs[0]
+    expected = f"Box, Wall intersect: {len(problem.pairs)} face pairs"
+    assert labels == [f"Live guard: {expected}, first {first.first.number} and {first.second.number}"]
+    assert display.content().alert[0].startswith(expected) and len(display.content().intersecting)
+    move(0.1)
+    look()
+    assert watcher.uncorrected() == 2
+    moved = positions()
+
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert np.array_equal(positions(), before)
+    expect_free()
+    assert watcher.problem() is None and watcher.uncorrected() == 2
+    assert not display.content().alert and not alerts._alert
+    assert names_of_steps() == [*steps, "Move", "Move", "Back to Last Clear State"]
+    bpy.ops.ed.undo()
+    look()
+    assert np.array_equal(positions(), moved)
+    assert watcher.problem().names == ["Box", "Wall"] and watcher.uncorrected() == 2
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_a_rig_that_is_moved_is_no_reason_to_take_the_scene_for_clear() -> None:
+    """The object Rig has no surface: what it does to the box was not looked at."""
+
+    def scale_by_rig() -> None:
+        rig_box(in_edit_mode=False)
+        rig = bpy.data.objects["Rig"]
+        rig.location.z, rig.pose.bones["Bone"].scale = 0.0, (2.0, 2.0, 2.0)
+
+    watched_again(scale_by_rig)
+    bpy.data.objects["Rig"].location.x = -1.5
+    bpy.ops.ed.undo_push(message="rig")
+    look()
+    assert watcher.problem().names == ["Box", "Wall"] and "Rig cannot be followed" in watcher.problem().reason
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert watcher.problem() is None and bpy.data.objects["Rig"].location.x == 0.0
+
+
+def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
+    watched_again(lambda: rig_box(in_edit_mode=False))
+    bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0
+    bpy.ops.ed.undo_push(message="pose")
+    look()
+    assert "the pose or the shape keys of object" in watcher.problem().reason
+    box().location.y = 1.0
+    bpy.ops.ed.undo_push(message="move")
+    look()
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert watcher.problem() is None
+    assert bpy.data.objects["Rig"].pose.bones["Bone"].location.x == 0.0 and box().location.y == 0.0
+
+
+def test_the_frame_of_the_clear_state_comes_back_with_it() -> None:
+    box().keyframe_insert("location", frame=1)
+    box().location.x = 2.5
+    box().keyframe_insert("location", frame=20)
+    bpy.context.scene.frame_set(1)
+    look()
+    bpy.context.scene.frame_set(20)
+    look()
+    assert watcher.problem().names == ["Box", "Wall"] and watcher.uncorrected() == 0
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert bpy.context.scene.frame_current == 1 and watcher.problem() is None
+
+
+def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_named() -> None:
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(0.4, 0, 0))
+    look()
+    box().location.y = 0.1
+    bpy.ops.ed.undo_push(message="moved")
+    look()
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert box().location.y == 0.0
+    assert watcher.problem().names == ["Box", "Cube"]
+    mesh = box().data
+    mesh.vertices.add(1)
+    mesh.update()
+    with pytest.raises(RuntimeError, match='object "Box": its structure has changed; use Undo instead'):
+        bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True)
+
+
+def test_a_stroke_is_taken_back_in_sculpt_mode_and_undo_does_not_spoil_the_mesh() -> None:
+    watched_again(mirror_box)
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
+    look()
+    before = positions()
+    for vertex in box().data.vertices:
+        vertex.co.x += 1.8
+    box().data.update()
+    bpy.context.view_layer.update()
+    look()
+    assert watcher.problem().names == ["Box", "Wall"]
+    assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
+    look()
+    assert np.array_equal(positions(), before) and watcher.problem() is None
+    expect_free()
+    bpy.ops.ed.undo()
+    look()
+    assert np.array_equal(positions(), before)
+    bpy.ops.object.mode_set(mode="OBJECT")

@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import pytest
+from fake_edit import FakeEdit
+from hypothesis import given
+from hypothesis import strategies as st
+from test_event_handling import EVENTS
+
+from stiv_addon.modal.drag_loop import LAST_SLICES, Drag, Progress
+from stiv_addon.modal.edit import Request
+from stiv_addon.modal.event import Event
+from stiv_addon.modal.expression import evaluate
+from stiv_addon.modal.pace import Pace
+from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.state import Effect, State
+
+
+def new_drag(edit: FakeEdit) -> Drag:
+    """A drag whose goal is a hundredth of the pointer's x, or the typed number."""
+    return Drag(edit.begun, measure, lambda value, state: value, State(Pointer.at((0.0, 0.0))))
+
+
+def measure(state: State) -> float:
+    typed = state.typed.value(0, lambda text: evaluate(text, {"": 1.0}.get))
+    return (typed or 0.0) if state.typed.active else state.pointer.effective[0] / 100.0
+
+
+def move_to(x: float) -> Event:
+    return Event("MOUSEMOVE", "NOTHING", (x, 0.0))
+
+
+def test_motions_are_solved_for_the_latest_only() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    for x in range(100):
+        drag.handle(move_to(x))
+    drag.tick()
+    drag.tick()
+    assert edit.goals == [0.99]
+    assert edit.calls == ["drag", "write"]
+
+
+def test_confirm_solves_what_is_left_settles_and_writes() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(30))
+    assert drag.handle(Event("LEFTMOUSE")) is Effect.CONFIRM and drag.progress is Progress.FINISHED
+    assert edit.calls == ["drag", "write", "settle", "write"]
+    assert edit.shown == drag.transform == 0.3
+
+
+def test_confirm_without_a_motion_touches_nothing() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.FINISHED and edit.calls == [] and drag.transform is None
+
+
+def test_a_typed_value_restores_and_is_left_to_the_caller() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    drag.handle(Event("TWO"))
+    drag.tick()
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.VALUE_GIVEN
+    assert edit.calls[-1] == "restore"
+    assert (drag.transform, edit.shown) == (2.0, 0.0)
+
+
+@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
+def test_cancel_restores(key: str) -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    drag.handle(Event(key))
+    assert drag.progress is Progress.CANCELLED
+    assert edit.calls[-1] == "restore"
+    assert edit.shown == 0.0 and drag.error is None
+
+
+def test_a_used_up_budget_is_continued_at_the_next_tick() -> None:
+    edit = FakeEdit(statuses=["budget", "corrected"])
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    for _ in range(4):
+        drag.tick()
+    assert edit.calls == ["drag", "write", "drag", "write"]
+
+
+def test_a_budget_that_ended_before_anything_was_accepted_writes_nothing() -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    assert edit.calls == ["drag"] and drag.result.status == "budget"
+    edit.furthest = 1.0
+    drag.tick()
+    assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5
+
+
+def test_a_goal_is_not_given_up_for_a_newer_one_before_anything_was_accepted() -> None:
+    edit = FakeEdit(statuses=["budget"] * 3, furthest=0.0)
+    drag = new_drag(edit)
+    for x in (50, 60, 70):
+        drag.handle(move_to(x))
+        drag.tick()
+    assert edit.goals == [0.5] * 3
+    edit.furthest = 1.0
+    drag.tick()
+    assert (edit.shown, drag.transform, drag.at_rest) == (0.5, 0.5, False)
+    drag.tick()
+    assert (edit.shown, drag.transform, drag.at_rest) == (0.7, 0.7, True)
+
+
+def test_what_a_tick_has_no_time_to_show_is_shown_by_the_next_before_anything_is_solved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    answers = iter([False, True, False, True])
+    monkeypatch.setattr(Pace, "has_time_to_show", lambda self, spent: next(answers))
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    for x in (50, 60, 70, 80):
+        drag.handle(move_to(x))
+        drag.tick()
+    assert edit.calls == ["drag", "write", "drag", "write"]
+    assert edit.goals == [0.5, 0.7] and not drag.at_rest
+
+
+def test_a_goal_in_hand_is_left_for_where_the_mouse_was_let_go() -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    edit.furthest = 1.0
+    drag.handle(move_to(70))
+    drag.handle(Event("RET"))
+    assert edit.goals == [0.5, 0.7] and edit.shown == drag.transform == 0.7
+
+
+@pytest.mark.parametrize("key", ["I", "W", "R"])
+def test_a_goal_in_hand_is_left_for_another_request(key: str) -> None:
+    edit = FakeEdit(statuses=["budget"], furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    drag.handle(move_to(70))
+    drag.handle(Event(key))
+    drag.tick()
+    assert edit.goals == [0.5, 0.7]
+
+
+def test_what_is_left_at_the_confirmation_is_done_in_slices() -> None:
+    edit = FakeEdit(statuses=["budget", "budget", "corrected"])
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle", "write"]
+
+
+def test_what_never_ends_is_confirmed_all_the_same() -> None:
+    edit = FakeEdit(statuses=["budget"] * 1000)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == LAST_SLICES
+
+
+def test_a_refused_value_is_told_and_can_be_corrected() -> None:
+    edit = FakeEdit(failing={"drag": ValueError("scale is zero")})
+    drag = new_drag(edit)
+    drag.handle(Event("ZERO"))
+    assert drag.tick() is Progress.RUNNING
+    assert drag.note == "scale is zero"
+    edit.failing.clear()
+    drag.handle(Event("FIVE"))
+    drag.tick()
+    assert (drag.note, edit.goals) == ("", [5.0])
+
+
+@pytest.mark.parametrize("call", ["drag", "settle", "write"])
+def test_an_exception_anywhere_restores_and_ends(call: str) -> None:
+    edit = FakeEdit(failing={call: RuntimeError("broken")})
+    drag = new_drag(edit)
+    drag.handle(move_to(40))
+    drag.tick()
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.CANCELLED
+    assert edit.calls[-1] == "restore" and edit.shown == 0.0
+    assert str(drag.error) == "broken"
+
+
+def test_a_scene_that_is_gone_ends_too() -> None:
+    edit = FakeEdit(failing={"drag": RuntimeError("gone"), "restore": RuntimeError("gone as well")})
+    drag = new_drag(edit)
+    drag.handle(move_to(40))
+    assert drag.tick() is Progress.CANCELLED
+    assert "gone as well" in drag.error.__notes__[0]
+    assert drag.handle(Event("RET")) is Effect.NONE
+
+
+def test_abort_restores_once() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    assert drag.abort(RuntimeError("mode changed")) is Progress.CANCELLED
+    drag.abort(RuntimeError("again"))
+    assert edit.calls == ["restore"]
+
+
+def test_another_request_begins_again_from_the_start() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    drag.handle(Event("R"))
+    drag.handle(Event("W"))
+    drag.tick()
+    assert edit.calls == ["drag", "write", "restore", "drag", "write"]
+    assert edit.requests == [Request(), Request("rotate", "unselected")]
+
+
+def test_a_refused_request_is_told_and_the_old_one_goes_on() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    edit.failing["begin"] = ValueError("it cannot be turned")
+    drag.handle(Event("R"))
+    assert drag.tick() is Progress.RUNNING
+    assert (drag.note, drag.state.kind, edit.shown) == ("it cannot be turned", "move", 0.7)
+
+
+def test_a_request_and_a_confirmation_at_once_end_in_the_new_kind() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.handle(Event("S"))
+    drag.handle(Event("LEFTMOUSE"))
+    assert edit.requests[-1].kind == drag.state.kind == "scale" and edit.shown == 0.7
+
+
+def test_a_refusal_at_the_confirmation_keeps_what_was_accepted() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.tick()
+    edit.failing["drag"] = ValueError("beyond the horizon")
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.shown == 0.7 and drag.transform == 0.7
+
+
+@pytest.mark.parametrize("keys", [["EQUAL", "TWO", "NUMPAD_PLUS"], ["EQUAL", "A"]])
+def test_what_is_no_number_cannot_be_confirmed(keys: list[str]) -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    for key in keys:
+        drag.handle(Event(key))
+    drag.tick()
+    assert drag.note
+    drag.handle(Event("RET"))
+    assert drag.progress is Progress.RUNNING and drag.note
+    drag.handle(Event("ESC"))
+    assert drag.progress is Progress.CANCELLED and drag.error is None
+
+
+def test_interference_is_switched_without_beginning_again() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(70))
+    drag.handle(Event("I"))
+    drag.tick()
+    drag.tick()
+    assert edit.calls == ["interference", "drag", "write"] and not edit.interference
+    drag.handle(Event("I"))
+    drag.tick()
+    assert edit.interference and len(edit.requests) == 1
+
+
+def test_another_view_solves_for_the_pointer_in_it() -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    drag.handle(move_to(30))
+    drag.tick()
+    drag.look(Pointer.at((60.0, 0.0)))
+    drag.tick()
+    assert edit.goals == [0.3, 0.6]
+
+
+FAULTS = st.dictionaries(
+    st.sampled_from(["drag", "settle", "write", "again"]), st.sampled_from([RuntimeError("broken"), ValueError("no")])
+)
+
+
+@given(st.lists(EVENTS, max_size=40), st.lists(st.sampled_from(["budget", "blocked", "reached"])), FAULTS)
+def test_every_sequence_ends_shown_as_accepted_or_restored(
+    events: list[Event], statuses: list[str], failing: dict[str, Exception]
+) -> None:
+    edit = FakeEdit(statuses=list(statuses), failing=failing)
+    drag = new_drag(edit)
+    for number, event in enumerate([*events, Event("ESC")]):
+        drag.handle(event)
+        if number % 3 == 0:
+            drag.tick()
+    if drag.progress is Progress.RUNNING:  # a number that is none cannot be confirmed
+        drag.handle(Event("ESC"))
+    assert drag.progress is not Progress.RUNNING
+    assert edit.shown == (edit.accepted if drag.progress is Progress.FINISHED else 0.0)
+    before = list(edit.calls)
+    drag.handle(Event("MOUSEMOVE", "NOTHING", (7.0, 7.0)))
+    drag.tick()
+    assert edit.calls == before
+
+
+def test_a_goal_that_one_solve_does_not_get_near_is_solved_for_until_the_mouse_has_rested_for_long_enough() -> None:
+    edit = FakeEdit(statuses=["corrected"] * 30, furthest=0.3)
+    drag = new_drag(edit)
+    drag.handle(move_to(500))  # far beyond the wall at 1
+    for _ in range(20):
+        drag.tick()
+    assert edit.shown == 1.0
+    assert edit.goals == [5.0] * 5  # the last one gained nothing
+
+
+def test_no_more_is_solved_for_a_goal_that_is_reached_or_blocked() -> None:
+    for status in ("reached", "blocked", "cancelled"):
+        edit = FakeEdit(statuses=[status])
+        drag = new_drag(edit)
+        drag.handle(move_to(500))
+        for _ in range(5):
+            drag.tick()
+        assert edit.goals == [5.0]

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from stiv_addon.modal.axis_lock import Constraint
+from stiv_addon.modal.edit import Request
+from stiv_addon.modal.event import Event
+from stiv_addon.modal.event_handling import CANCEL_KEYS, CONFIRM_KEYS, step
+from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.proportional import Proportional
+from stiv_addon.modal.state import Effect, Phase, State
+
+SHIFT = frozenset({"shift"})
+ENDS = {Effect.CONFIRM: Phase.CONFIRMED, Effect.CANCEL: Phase.CANCELLED}
+
+
+def start() -> State:
+    return State(Pointer.at((100.0, 100.0)))
+
+
+def after(*events: Event) -> State:
+    state = start()
+    for event in events:
+        state, _ = step(state, event)
+    return state
+
+
+@pytest.mark.parametrize("key", sorted(CONFIRM_KEYS | CANCEL_KEYS))
+@pytest.mark.parametrize("modifiers", [frozenset(), SHIFT, frozenset({"ctrl", "alt"})])
+def test_an_ending_key_ends_with_any_modifier(key: str, modifiers: frozenset[str]) -> None:
+    state, effect = step(start(), Event(key, modifiers=modifiers))
+    assert effect is (Effect.CONFIRM if key in CONFIRM_KEYS else Effect.CANCEL)
+    assert state.phase is ENDS[effect]
+
+
+@pytest.mark.parametrize("key", sorted(CONFIRM_KEYS | CANCEL_KEYS | {"X", "FIVE", "A"}))
+def test_a_release_does_nothing(key: str) -> None:
+    assert step(start(), Event(key, "RELEASE")) == (start(), Effect.NONE)
+
+
+@pytest.mark.parametrize(("key", "axis"), [("X", 0), ("Y", 1), ("Z", 2)])
+def test_axis_keys_lock(key: str, axis: int) -> None:
+    state, effect = step(start(), Event(key))
+    assert (state.constraint, effect) == (Constraint(axis), Effect.UPDATE)
+    assert after(Event(key, modifiers=SHIFT)).constraint == Constraint(axis, plane=True)
+    assert after(Event(key), Event(key)).constraint == Constraint(axis, second=True)
+    assert after(Event(key), Event(key), Event(key)).constraint == Constraint()
+    assert step(start(), Event(key, modifiers=frozenset({"ctrl"}))) == (start(), Effect.NONE)
+
+
+def test_a_motion_asks_for_an_update_with_the_latest_place() -> None:
+    state, effect = step(start(), Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)))
+    assert (state.pointer.effective, effect) == ((130.0, 90.0), Effect.UPDATE)
+
+
+def test_a_typed_number_outlives_motions_and_gives_way_when_deleted() -> None:
+    typed = after(Event("TWO"), Event("MINUS"), Event("PERIOD"), Event("FIVE"))
+    assert typed.typed.value(0, float) == -2.5
+    moved, effect = step(typed, Event("MOUSEMOVE", "NOTHING", (500.0, 0.0)))
+    assert (moved.typed.value(0, float), effect) == (-2.5, Effect.NONE)
+    for _ in range(4):
+        moved, effect = step(moved, Event("BACK_SPACE"))
+    assert effect is Effect.UPDATE
+    assert not moved.typed.active and moved.pointer.effective == (500.0, 0.0)
+
+
+def test_shift_makes_motions_precise_while_held() -> None:
+    assert after(Event("LEFT_SHIFT", modifiers=SHIFT)).precise
+    assert not after(Event("LEFT_SHIFT", modifiers=SHIFT), Event("LEFT_SHIFT", "RELEASE")).precise
+    state = after(Event("MOUSEMOVE", "NOTHING", (200.0, 100.0), SHIFT))
+    assert state.pointer.effective == pytest.approx((110.0, 100.0))
+
+
+@pytest.mark.parametrize("key", ["A", "F5", "WINDOW_DEACTIVATE", "TIMER", "NONE", "PAGE_UP", "O", "LEFT_ALT"])
+def test_other_events_change_nothing(key: str) -> None:
+    assert step(start(), Event(key)) == (start(), Effect.NONE)
+
+
+@pytest.mark.parametrize(("key", "kind"), [("G", "move"), ("R", "rotate"), ("S", "scale")])
+def test_another_kind_goes_on_with_lock_number_and_pointer(key: str, kind: str) -> None:
+    before = after(Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)), Event("X"), Event("TWO"))
+    for state, _ in (step(replace(before, request=Request(other)), Event(key)) for other in ("move", "rotate")):
+        assert state == replace(before, request=Request(kind))
+
+
+def test_numbers_without_a_component_are_dropped() -> None:
+    typed = after(Event("ONE"), Event("TAB"), Event("TWO"), Event("TAB"), Event("THREE"))
+    assert [typed.typed.value(i, float) for i in range(3)] == [1, 2, 3]
+    plane, _ = step(typed, Event("X", modifiers=SHIFT))
+    assert [plane.typed.value(i, float) for i in range(3)] == [1, 2, None]
+    turned, _ = step(typed, Event("R"))
+    assert [turned.typed.value(i, float) for i in range(3)] == [1, None, None] and turned.typed.index == 0
+
+
+@pytest.mark.parametrize("key", ["G", "R", "S", "X", "I", "W", "O", "SPACE", "SLASH"])
+def test_in_an_expression_keys_are_characters(key: str) -> None:
+    before = after(Event("ONE"), Event("EQUAL", text="="))
+    state, effect = step(before, Event(key))
+    assert effect is Effect.UPDATE
+    assert state == replace(before, typed=state.typed) and len(state.typed.numbers[0].digits) == 2
+
+
+@pytest.mark.parametrize("key", ["RET", "ESC", "LEFTMOUSE", "RIGHTMOUSE"])
+def test_an_expression_ends_like_everything_else(key: str) -> None:
+    assert step(after(Event("EQUAL", text="=")), Event(key))[0].phase is not Phase.DRAGGING
+
+
+@pytest.mark.parametrize("key", ["MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION", "TRACKPADPAN"])
+@pytest.mark.parametrize("value", ["PRESS", "RELEASE", "NOTHING"])
+def test_the_view_is_left_to_blender(key: str, value: str) -> None:
+    assert step(start(), Event(key, value)) == (start(), Effect.PASS)
+
+
+def test_the_wheel_changes_the_size_of_proportional_editing() -> None:
+    before = replace(start(), proportional=Proportional(True, True, 2.0))
+    larger, effect = step(before, Event("WHEELDOWNMOUSE"))
+    assert effect is Effect.UPDATE and larger.proportional.size > 2.0
+    assert step(before, Event("PAGE_DOWN"))[0].proportional.size < 2.0
+    assert step(before, Event("WHEELDOWNMOUSE", modifiers=frozenset({"alt"}))) == (before, Effect.PASS)
+    assert step(before, Event("MIDDLEMOUSE")) == (before, Effect.PASS)
+    assert not step(before, Event("O"))[0].proportional.on
+    assert step(before, Event("O", modifiers=SHIFT))[0].proportional.falloff == "SPHERE"
+    assert step(start(), Event("O")) == (start(), Effect.NONE)
+
+
+def test_ctrl_held_and_shift_tab_turn_snapping_round() -> None:
+    held, effect = step(start(), Event("LEFT_CTRL", modifiers=frozenset({"ctrl"})))
+    assert held.snapping and effect is Effect.UPDATE
+    assert step(held, Event("LEFT_CTRL", "RELEASE")) == (start(), Effect.UPDATE)
+    assert step(held, Event("MOUSEMOVE", "NOTHING", (100.0, 100.0)))[0].snapping is False
+    switched, effect = step(start(), Event("TAB", modifiers=SHIFT))
+    assert switched.snapping and effect is Effect.UPDATE
+    assert step(switched, Event("LEFT_SHIFT"))[1] is Effect.UPDATE  # finer steps
+    assert step(start(), Event("LEFT_SHIFT"))[1] is Effect.NONE
+
+
+def test_keys_ask_for_who_responds_and_whether_anything_does() -> None:
+    assert after(Event("I")).request == Request(interference=False)
+    assert after(Event("I"), Event("I")).request == Request()
+    found = [after(*[Event("W")] * times).request.responders for times in range(4)]
+    assert sorted(set(found)) == ["all", "selected", "unselected"] and found[3] == found[0]
+
+
+POINTER_KEYS = ["MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "TIMER"]
+OTHER_KEYS = ["A", *"GRSIWO", "TAB", "LEFT_SHIFT", "RIGHT_CTRL", "PAGE_UP", "WHEELUPMOUSE", "EQUAL"]
+NUMBER_KEYS = ["ZERO", "NUMPAD_3", "PERIOD", "COMMA", "MINUS", "SLASH", "NUMPAD_ASTERIX", "BACK_SPACE"]
+KEYS = st.sampled_from([*"XYZ", *POINTER_KEYS, *OTHER_KEYS, *NUMBER_KEYS, *sorted(CONFIRM_KEYS | CANCEL_KEYS)])
+EVENTS = st.builds(
+    Event,
+    type=KEYS,
+    value=st.sampled_from(["PRESS", "RELEASE", "NOTHING", "CLICK"]),
+    mouse=st.tuples(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4)),
+    modifiers=st.sets(st.sampled_from(["shift", "ctrl", "alt", "oskey"])).map(frozenset),
+    text=st.text(max_size=2),
+)
+
+
+@given(st.lists(EVENTS, max_size=40), st.sampled_from(sorted(CONFIRM_KEYS | CANCEL_KEYS)))
+def test_every_sequence_ends_once_and_stays_ended(events: list[Event], last: str) -> None:
+    state, endings = start(), []
+    for event in [*events, Event(last), *events]:
+        was_final = state.phase is not Phase.DRAGGING
+        following, effect = step(state, event)
+        assert not was_final or (following, effect) == (state, Effect.NONE)
+        if effect in ENDS:
+            endings.append(effect)
+            assert following.phase is ENDS[effect]
+        state = following
+    assert len(endings) == 1

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The modal half of the operators, which Blender without a window cannot run: with a context made of plain values."""
+
+import sys
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from fake_edit import FakeEdit  # noqa: E402
+
+from stiv_addon.modal.pointer import Pointer  # noqa: E402
+from stiv_addon.modal.state import State  # noqa: E402
+from stiv_addon.operators import window_io  # noqa: E402
+from stiv_addon.operators.transform import drag  # noqa: E402
+from stiv_addon.operators.transform.drag import Dragging  # noqa: E402
+from stiv_addon.transform.frame import Frame  # noqa: E402
+
+
+class Area:
+    """A 3D view: its header, and how often it was to be drawn."""
+
+    type = "VIEW_3D"
+
+    def __init__(self) -> None:
+        self.header: str | None = None
+        self.drawn = 0
+
+    def header_text_set(self, text: str | None) -> None:
+        self.header = text
+
+    def tag_redraw(self) -> None:
+        self.drawn += 1
+
+
+class Value(SimpleNamespace):
+    """A transform that is a number."""
+
+    rotation = None
+
+    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = str) -> str:
+        return length(self.value)
+
+
+class Probe(Dragging):
+    """A drag whose value is a hundredth of the pointer's x."""
+
+    kind = "move"
+
+    def __init__(self) -> None:
+        self.reports: list[tuple[set, str]] = []
+        self._frame, self._snap, self._readers, self._length = Frame(np.zeros(3)), None, {}, str
+        self._axes, self._notes = ("GLOBAL", "LOCAL"), []
+
+    def report(self, kind: set, text: str) -> None:
+        self.reports.append((kind, text))
+
+
+class Context(SimpleNamespace):
+    """What the adapter asks of Blender's context."""
+
+    def __init__(self) -> None:
+        self.area, self.timers, self.modals = Area(), [], []
+        manager = SimpleNamespace(
+            windows=[SimpleNamespace(screen=SimpleNamespace(areas=[self.area]))],
+            event_timer_add=lambda step, window: self.timers.append(step) or step,
+            event_timer_remove=self.timers.remove,
+            modal_handler_add=self.modals.append,
+            stiv_last_edit="",
+        )
+        nothing = dict.fromkeys(("region", "region_data", "workspace", "window"))
+        super().__init__(mode="OBJECT", **nothing, window_manager=manager)
+
+
+def event(kind: str, value: str = "PRESS", x: int = 0) -> Any:
+    nothing = dict.fromkeys(window_io.MODIFIERS, False)
+    return SimpleNamespace(type=kind, value=value, mouse_x=x, mouse_y=0, unicode="", **nothing)
+
+
+@pytest.fixture
+def edit() -> FakeEdit:
+    return FakeEdit()
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Context]:
+    monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
+    monkeypatch.setattr(drag, "measure", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0))
+    monkeypatch.setattr(drag, "make_motion", lambda transform, *rest: transform.value)
+    monkeypatch.setattr(drag, "make_influence", lambda proportional: None)
+    operator, context = Probe(), Context()
+    operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begun)
+    return operator, context
+
+
+def expect_clean(context: Context) -> None:
+    assert context.area.header is None and not context.timers
+
+
+def test_a_drag_shows_its_value_and_leaves_nothing_behind(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+    assert context.area.header.startswith("0.5") and edit.shown == 0.5
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert edit.shown == 0.0 and operator.reports == []
+    expect_clean(context)
+
+
+def test_a_timer_that_only_waits_draws_nothing(started: Any) -> None:
+    operator, context = started
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    drawn = context.area.drawn
+    for _ in range(20):
+        operator.modal(context, event("TIMER"))
+    assert context.area.drawn == drawn
+
+
+@pytest.mark.parametrize("failing", ["drag", "write"])
+def test_a_fault_of_the_edit_restores_reports_and_clears(started: Any, edit: FakeEdit, failing: str) -> None:
+    operator, context = started
+    edit.failing = {failing: RuntimeError("broken")}
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert edit.calls[-1] == "restore" and operator.reports == [({"ERROR"}, "broken")]
+    expect_clean(context)
+
+
+def test_a_fault_of_the_interface_ends_the_drag_too(
+    started: Any, edit: FakeEdit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    operator, context = started
+
+    def fail(*arguments: Any) -> None:
+        raise AttributeError("no such area")
+
+    monkeypatch.setattr(window_io, "show", fail)
+    assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"CANCELLED"}
+    assert edit.calls == ["restore"] and operator.reports == [({"ERROR"}, "no such area")]
+    expect_clean(context)
+
+
+def test_what_cannot_be_restored_is_said(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    edit.failing = {"drag": RuntimeError("broken"), "restore": RuntimeError("the box is gone")}
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    assert operator.reports == [({"ERROR"}, "broken; while restoring: the box is gone")]
+    expect_clean(context)
+
+
+def test_what_turns_the_view_is_left_to_blender(started: Any) -> None:
+    operator, context = started
+    assert operator.modal(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
+    assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
+
+
+def test_another_mode_ends_the_drag(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    context.mode = "EDIT_MESH"
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert edit.calls == ["restore"] and "mode changed" in operator.reports[0][1]
+    expect_clean(context)
+
+
+def test_blender_may_end_the_drag(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    operator.cancel(context)
+    assert edit.calls == ["restore"]
+    expect_clean(context)
