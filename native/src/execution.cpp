@@ -11,9 +11,8 @@
 #include <xmmintrin.h>
 #endif
 
-#include "helper_threads.hpp"
 #include "stiv/error.hpp"
-#include "usable_processors.hpp"
+#include "thread_pool.hpp"
 
 namespace stiv {
 
@@ -83,7 +82,7 @@ void Execution::for_chunks(Index count, Index chunk_size, const std::function<vo
   };
   const bool shared = std::min<Index>(threads_, chunks) > 1 && !in_loop_.exchange(true, std::memory_order_acquire);
   if (shared) {
-    if (!helpers_) helpers_ = std::make_unique<HelperThreads>(threads_ - 1);
+    if (!helpers_) helpers_ = std::make_unique<ThreadPool>(threads_ - 1);
     helpers_->run(std::ref(run));
     in_loop_.store(false, std::memory_order_release);
   } else {

@@ -13,7 +13,7 @@
 
 namespace stiv {
 
-class HelperThreads;
+class ThreadPool;
 
 /// What was done, in numbers that do not depend on the machine.
 struct Counters {
@@ -95,7 +95,7 @@ class Execution {
   bool waits_for_gain_ = false;
   std::function<void(const char*, double)> progress_;
   mutable std::atomic<bool> in_loop_{false};
-  mutable std::unique_ptr<HelperThreads> helpers_;
+  mutable std::unique_ptr<ThreadPool> helpers_;
 };
 
 /// Adds the time of a scope to one of the timings.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editing/acceptance_search.hpp"
 
-#include "stiv/editing/goal.hpp"
+#include "editing/control_interpolation.hpp"
 
 namespace stiv {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stiv/editing/goal.hpp"
+#include "editing/control_interpolation.hpp"
 
 namespace stiv {
 

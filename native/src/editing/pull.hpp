@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "editing/solve.hpp"
+#include "editing/sub_edit_loop.hpp"
 
 namespace stiv {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "editing/problem.hpp"
+#include "editing/edit_context.hpp"
 
 namespace stiv {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "editing/pull.hpp"
-#include "editing/report.hpp"
-#include "stiv/editing/goal.hpp"
+#include "editing/edit_result.hpp"
+#include "editing/control_interpolation.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {

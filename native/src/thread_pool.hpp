@@ -10,15 +10,20 @@
 
 namespace stiv {
 
+/// How many threads a call takes that is told no number: one for each processor that this process may run on, no more
+/// than the environment's STIV_THREADS if that is set, as it is for processes that share a machine (a batch's workers).
+/// @throws InputError if STIV_THREADS is not a whole number from 1 up
+int usable_processors();
+
 /// Threads that help the calling one with one piece of work after the other: started once, asleep in between, ended
 /// with the object. To start them anew for each loop of a call took longer than many loops.
-class HelperThreads {
+class ThreadPool {
  public:
   /// Fewer, or none, where the system refuses them.
-  explicit HelperThreads(int count);
-  ~HelperThreads();
-  HelperThreads(const HelperThreads&) = delete;
-  HelperThreads& operator=(const HelperThreads&) = delete;
+  explicit ThreadPool(int count);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
   /// Calls `work` in the calling thread and in those that wake up before it returns there; returns when it has in all
   /// of them. It must not throw, and share out what there is to do by itself. One call at a time.

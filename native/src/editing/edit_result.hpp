@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "editing/solve.hpp"
+#include "editing/sub_edit_loop.hpp"
 #include "stiv/editing/session.hpp"
 
 namespace stiv {

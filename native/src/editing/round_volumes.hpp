@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "editing/problem.hpp"
+#include "editing/edit_context.hpp"
 #include "stiv/volumes/stiv.hpp"
 
 namespace stiv {

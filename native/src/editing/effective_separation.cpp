@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/editing/separation.hpp"
+#include "editing/effective_separation.hpp"
 
 #include <algorithm>
 #include <cmath>

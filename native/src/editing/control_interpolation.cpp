@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/editing/goal.hpp"
+#include "editing/control_interpolation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "usable_processors.hpp"
+#include "thread_pool.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <exception>
 #include <string>
-#include <thread>
 
 #if defined(__linux__)
 #include <sched.h>
@@ -43,5 +43,52 @@ int limited(int processors) {
 }  // namespace
 
 int usable_processors() { return limited(std::max(1, allowed_processors())); }
+
+ThreadPool::ThreadPool(int count) {
+  threads_.reserve(static_cast<std::size_t>(count));
+  try {
+    for (int k = 0; k < count; ++k) threads_.emplace_back([this] { wait_for_work(); });
+  } catch (const std::exception&) {
+    // Those that there are will do.
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  begun_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadPool::run(const std::function<void()>& work) {
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = &work;
+    ++number_;
+  }
+  begun_.notify_all();
+  work();
+  std::unique_lock lock(mutex_);
+  work_ = nullptr;
+  ended_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void ThreadPool::wait_for_work() {
+  std::uint64_t done = 0;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    begun_.wait(lock, [&] { return closing_ || (work_ != nullptr && number_ != done); });
+    if (closing_) return;
+    const std::function<void()>& work = *work_;
+    done = number_;
+    ++busy_;
+    lock.unlock();
+    work();
+    lock.lock();
+    if (--busy_ == 0) ended_.notify_one();
+  }
+}
 
 }  // namespace stiv

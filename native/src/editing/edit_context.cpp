@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editing/problem.hpp"
+#include "editing/edit_context.hpp"
 
 #include <algorithm>
 
+#include "editing/effective_separation.hpp"
 #include "editing/validation.hpp"
 #include "position_rows.hpp"
 #include "stiv/coordinate_range.hpp"
-#include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {

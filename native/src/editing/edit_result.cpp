@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editing/report.hpp"
+#include "editing/edit_result.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editing/solve.hpp"
+#include "editing/sub_edit_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "editing/acceptance_search.hpp"
+#include "editing/control_interpolation.hpp"
 #include "editing/round_loop.hpp"
-#include "stiv/editing/goal.hpp"
 
 namespace stiv {
 

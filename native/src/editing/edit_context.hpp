@@ -9,12 +9,12 @@
 
 #include "detection/candidate_cache.hpp"
 #include "editing/depth_watch.hpp"
+#include "editing/effective_separation.hpp"
 #include "editing/excluded_pairs.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/editing/options.hpp"
-#include "stiv/editing/separation.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/surface.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editing/measurement.hpp"
+#include "editing/round_volumes.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "stiv/editing/goal.hpp"
+#include "editing/control_interpolation.hpp"
 
 using namespace stiv;
 

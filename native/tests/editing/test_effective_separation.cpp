@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "editing/effective_separation.hpp"
 #include "stiv/deformation/identity.hpp"
-#include "stiv/editing/separation.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;

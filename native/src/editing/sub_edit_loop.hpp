@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "editing/problem.hpp"
+#include "editing/edit_context.hpp"
 
 namespace stiv {
 
