@@ -31,7 +31,7 @@ from blend_fixtures.blender_objects import build_scene  # noqa: E402
 from blend_fixtures.scenes import colors  # noqa: E402
 from blend_fixtures.scenes.fixture import Fixture, Material, MeshObject, View  # noqa: E402
 from blend_fixtures.scenes.shape import Shape  # noqa: E402
-from stiv.command_line.quiet import quiet_blender  # noqa: E402
+from stiv.command_line.blender_module import quiet_blender  # noqa: E402
 
 Array = NDArray[np.float64]
 CLEAR = Material("Clear", (0.75, 0.9, 1.0, 0.16), 0.2)

@@ -23,9 +23,10 @@ from benchmarks.sessions.running import Report
 from benchmarks.sessions.scaling import scaling, scaling_text
 from benchmarks.sessions.table1 import KINDS, PUBLISHED, shares_text, table1, table_text
 from stiv import InputError
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.output_files import require_folder, write_json
 from stiv.command_line.program import Parser
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
+from stiv.output_files import require_folder
 
 SCHEMA, VERSION = "stiv-bench", 1
 

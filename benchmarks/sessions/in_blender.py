@@ -10,8 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from stiv.command_line.blender_module import addon_registered, require_blender
-from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.blender_module import addon_registered, quiet_blender, require_blender
 from stiv.edit_scripts import EditScript, read_edit_script
 
 PIXELS = 1000.0  # of the pointer's x for one repetition of a script

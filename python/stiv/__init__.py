@@ -17,11 +17,11 @@ from stiv.deformation import (
 )
 from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.distances import LeastDistance, least_distance
-from stiv.editing import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
+from stiv.edit_session import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
-from stiv.published_method import PAPER_DIFFERENCES
+from stiv.paper_preset import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface

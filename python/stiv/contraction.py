@@ -14,7 +14,7 @@ from stiv import _native
 from stiv._native import Deformation, InputError
 from stiv.arrays import Floats, as_count, as_floats, as_number
 from stiv.edit_options import EditOptions, StorageFrame, native_options
-from stiv.editing import CancelToken, EditResult, Progress, result_of
+from stiv.edit_session import CancelToken, EditResult, Progress, result_of
 from stiv.surface import Surface, as_surface
 
 

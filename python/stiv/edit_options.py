@@ -15,7 +15,7 @@ from stiv._native import InputError
 from stiv.arrays import Floats, as_indices
 from stiv.detection import BROAD_PHASES, NARROW_PHASES
 from stiv.intersections import find_intersections
-from stiv.published_method import PAPER_OPTIONS
+from stiv.paper_preset import PAPER_OPTIONS
 from stiv.surface import Surface
 
 CONSTRAINTS: Mapping[str, _native.ConstraintKind] = {

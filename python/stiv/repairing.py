@@ -13,7 +13,7 @@ from stiv._native import Deformation, InputError
 from stiv.arrays import Indices, as_floats, as_number
 from stiv.contraction import ContractionOptions, as_caged, as_marks, native_contraction
 from stiv.edit_options import EditOptions, native_options
-from stiv.editing import CancelToken, Progress
+from stiv.edit_session import CancelToken, Progress
 from stiv.surface import Surface
 from stiv.welding import Welded, weld
 

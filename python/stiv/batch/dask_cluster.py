@@ -33,10 +33,13 @@ def run_on_cluster(
     names: Sequence[str],
     commands: Sequence[Sequence[str]],
     on_done: Callable[[int, Record], None],
-    blender: str = "",
+    worker_command: Callable[[], Sequence[str]],
     time_limit: float = 0.0,
 ) -> None:
-    """Runs every command on the cluster whose scheduler is at `address`; as Pool.run otherwise."""
+    """Runs every command on the cluster whose scheduler is at `address`; otherwise as Pool.run.
+
+    worker_command: called on the cluster, gives the command that starts a worker there.
+    """
     from distributed import Client, as_completed
 
     try:
@@ -45,7 +48,7 @@ def run_on_cluster(
         raise InputError(f"--scheduler: {address} does not answer: {error}") from error
     with client:
         futures = {
-            client.submit(run_entry, name, list(command), blender, time_limit, pure=False): number
+            client.submit(run_entry, name, list(command), worker_command, time_limit, pure=False): number
             for number, (name, command) in enumerate(zip(names, commands, strict=True))
         }
         for future in as_completed(futures):
@@ -56,15 +59,17 @@ def run_on_cluster(
                 on_done(number, Record(names[number], None, f"lost by the cluster: {future.exception()}"))
 
 
-def run_entry(name: str, command: list[str], blender: str, time_limit: float) -> dict[str, Any]:
-    """One entry, on a worker of the cluster: its record."""
+def run_entry(
+    name: str, command: list[str], worker_command: Callable[[], Sequence[str]], time_limit: float
+) -> dict[str, Any]:
+    """Runs one entry on a worker of the cluster; its record."""
     found: list[Record] = []
-    pool = _pool(blender, time_limit)
+    pool = _pool(tuple(worker_command()), time_limit)
     pool.run([name], [command], lambda number, record: found.append(record), keep=True)
     return as_json(found[0])
 
 
-def _pool(blender: str, time_limit: float) -> Pool:
-    """The pool of one process that this thread keeps."""
-    pools: dict[tuple[str, float], Pool] = _of_thread.__dict__.setdefault("pools", {})
-    return pools.setdefault((blender, time_limit), Pool(1, blender, time_limit))
+def _pool(worker_command: tuple[str, ...], time_limit: float) -> Pool:
+    """The pool with one process that belongs to this thread."""
+    pools: dict[tuple[tuple[str, ...], float], Pool] = _of_thread.__dict__.setdefault("pools", {})
+    return pools.setdefault((worker_command, time_limit), Pool(1, worker_command, time_limit))

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
-from stiv.command_line.guard_option import CHOICES
+from stiv.choices import GUARDS
+from stiv.frame_ranges import parse_frames
 from stiv.json_files import read_json
 
 SCHEMA, VERSION = "stiv-batch", 1
@@ -162,8 +163,8 @@ def _flag(value: object, field: str, where: str) -> bool:
 
 
 def _guard(value: object, where: str) -> str:
-    if value not in CHOICES:
-        raise InputError(f'{where}: "guard" is {value!r}, none of {", ".join(CHOICES)}')
+    if value not in GUARDS:
+        raise InputError(f'{where}: "guard" is {value!r}, none of {", ".join(GUARDS)}')
     return str(value)
 
 
@@ -174,8 +175,6 @@ def _names(value: object, field: str, where: str) -> list[str]:
 
 
 def _frames(value: object, where: str) -> str:
-    from stiv.command_line.frame_ranges import parse_frames
-
     try:
         parse_frames(_text(value, "frames", where))
     except ValueError as error:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv.batch.records import Record
-from stiv.batch.worker_process import WorkerProcess, worker_command
+from stiv.batch.worker_process import WorkerProcess
 
 ATTEMPTS = 2
 STILLBORN = 3  # workers in a row that end before they are ready: then there is no use in starting more
@@ -28,15 +28,16 @@ class Pool:
     """Runs commands on `size` workers until all are done."""
 
     def __init__(
-        self, size: int, blender: str = "", time_limit: float = 0.0, log: Path | None = None, threads: int = 1
+        self, size: int, command: Sequence[str], time_limit: float = 0.0, log: Path | None = None, threads: int = 1
     ) -> None:
-        """Workers are started when there is work, and replaced when they die. `log` gets their standard error.
+        """Workers start when there is work, and are replaced when they die.
 
-        `threads`: of each worker, at most; STIV_THREADS in the environment goes before.
+        command: starts a worker. time_limit: seconds for an entry, 0 for none. log: receives their standard error.
+        threads: at most so many for each worker; STIV_THREADS in the environment takes precedence.
         """
         self._size = size
         self._threads = threads
-        self._command = worker_command(blender)
+        self._command = command
         self._limit = time_limit
         self._log = log
         self._messages: queue.Queue[Message] = queue.Queue()

@@ -14,9 +14,8 @@ from urllib.parse import quote
 import stiv._native
 from stiv import InputError
 from stiv.batch.job import Entry
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.output_files import write_json
-from stiv.json_files import read_json
+from stiv.exit_codes import ExitCode
+from stiv.json_files import read_json, write_json
 
 SCHEMA, VERSION = "stiv-batch-record", 1
 MAX_BYTES = 16 * 2**20

@@ -22,7 +22,7 @@ from stiv.batch.records import (
     with_outputs,
     write_record,
 )
-from stiv.command_line.exit_codes import ExitCode
+from stiv.exit_codes import ExitCode
 
 SCHEMA, VERSION = "stiv-batch-report", 1
 

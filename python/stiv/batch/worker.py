@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker: runs commands that come as lines of JSON on standard input, one Blender for all of them.
+"""A worker: runs commands that arrive as lines of JSON on standard input, in one process with one Blender.
 
-Replies are lines of JSON on standard output, each after MARK, since Blender writes there too. When standard input
-ends, whoever gave the work is gone, and the worker ends at once, in the middle of an entry too: outputs are whole or
-not there.
+Replies are lines of JSON on standard output, each after MARK, because Blender writes there too. When standard input
+ends, the process that gave the work is gone. The worker then exits at once, even during an entry: outputs are complete
+or absent.
 """
 
 from __future__ import annotations
@@ -16,30 +16,31 @@ import queue
 import sys
 import threading
 import time
+from collections.abc import Callable
 from typing import Any, TextIO
 
 MARK = "stiv-worker:"
-MESSAGE = 2000  # most characters kept of what a command said
+MESSAGE = 2000  # characters of a command's output that a record holds
+
+Run = Callable[[list[str]], int]  # runs `stiv` with these arguments and returns its exit code
 
 
-def main() -> None:
-    """Serves until standard input ends."""
+def serve(run: Run) -> None:
+    """Runs commands until standard input ends."""
     out = sys.stdout
     requests: queue.Queue[dict[str, Any]] = queue.Queue()
     threading.Thread(target=_read_requests, args=(sys.stdin, requests), daemon=True).start()
     _reply(out, {"ready": os.getpid()})
     while True:
         request = requests.get()
-        _reply(out, {"number": request["number"], **run_command(request["arguments"])})
+        _reply(out, {"number": request["number"], **run_command(run, request["arguments"])})
 
 
-def run_command(arguments: list[str]) -> dict[str, Any]:
-    """Runs `stiv` with these arguments in this process: exit code, what it said, seconds and peak memory."""
-    from stiv.command_line import program
-
+def run_command(run: Run, arguments: list[str]) -> dict[str, Any]:
+    """Runs one command: its exit code, output, seconds and peak memory."""
     said, begin = io.StringIO(), time.perf_counter()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        code = program.run(arguments)
+        code = run(arguments)
     return {
         "code": code,
         "message": shortened(said.getvalue().strip()),
@@ -74,7 +75,3 @@ def _peak_megabytes() -> float:
         return 0.0
     unit = 1 if sys.platform == "darwin" else 1024
     return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6, 1)
-
-
-if __name__ == "__main__":
-    main()

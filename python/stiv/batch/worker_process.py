@@ -6,25 +6,16 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from stiv.batch.worker import MARK
-from stiv.command_line.installed_blender import blender_command
 
 PACKAGES = Path(__file__).resolve().parents[2]
 
 Listener = Callable[["WorkerProcess", dict[str, Any] | None], None]
-
-
-def worker_command(blender: str = "") -> list[str]:
-    """How a worker is started: with this Python, or inside an installed Blender. Raises InputError."""
-    if blender:
-        return blender_command(blender, Path(__file__).with_name("inside_blender.py"), [])
-    return [sys.executable, "-m", "stiv.batch.worker"]
 
 
 class WorkerProcess:

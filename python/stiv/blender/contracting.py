@@ -17,7 +17,7 @@ from stiv.blender.repairing import carry_out
 from stiv.blender.reshaping import Reshaped, ReshapeReport, read_reshaped, writer_of
 from stiv.blender.settings import EditSettings
 from stiv.blender.verification import named_pairs, read_shown
-from stiv.editing import Progress
+from stiv.edit_session import Progress
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,9 @@ from typing import Literal
 
 from stiv import InputError
 from stiv.blender.exclusions import Exclusions
+from stiv.choices import BOUNDARIES, DEFORMATIONS, GUARDS, OBJECT_RESPONSES, OPERATORS, RESPONDERS, RESTS, ROLES
 
 Kind = Literal["move", "rotate", "scale"]
-
-KINDS = ("move", "rotate", "scale")
-RESPONDERS = ("selected", "unselected", "all")
-OBJECT_RESPONSES = ("rigid", "deform")
-ROLES = ("auto", "controls", "rigid", "obstacle", "ignored")
-DEFORMATIONS = ("auto", "vertices", "laplacian", "arap", "lattice", "rigid")
-RESTS = ("follows", "stays")
-GUARDS = ("auto", "viewport", "render", "both")
 
 
 @dataclass(frozen=True)
@@ -82,7 +75,7 @@ class LoopSurface:
 
     def __post_init__(self) -> None:
         """Refuse unknown choices."""
-        _require("boundary", self.boundary, ("all", "preserve_corners"))
+        _require("boundary", self.boundary, BOUNDARIES)
         if self.levels not in (1, 2, 3):
             raise InputError(f"levels: {self.levels!r} is none of 1, 2, 3")
 
@@ -190,7 +183,7 @@ class EditSettings:
 
 def check_kind(kind: str) -> None:
     """Refuse an unknown kind of edit. Raises InputError."""
-    _require("kind", kind, KINDS)
+    _require("kind", kind, OPERATORS)
 
 
 def _require(what: str, value: str, allowed: tuple[str, ...]) -> None:

@@ -7,8 +7,10 @@ import argparse
 import os
 import re
 import signal
+import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -18,9 +20,11 @@ from stiv.batch.job import Job, read_job
 from stiv.batch.pool import Pool, PoolError
 from stiv.batch.records import Record
 from stiv.batch.run import Choices, exit_code, report_of, run_job
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.output_files import require_folder, write_json
+from stiv.command_line.installed_blender import blender_command
 from stiv.command_line.progress import progress_bar
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
+from stiv.output_files import require_folder
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -112,16 +116,23 @@ def _runner(arguments: argparse.Namespace, job: Job, state: Path) -> Callable[..
         processors = _processors()
         size = arguments.workers or processors
         log = state / "workers.log"
-        pool = Pool(size, arguments.worker_blender, job.time_limit, log, threads=max(1, processors // size))
+        command = worker_command(arguments.worker_blender)
+        pool = Pool(size, command, job.time_limit, log, threads=max(1, processors // size))
         return pool.run
     require_distributed()
 
     def on_cluster(
         names: Sequence[str], commands: Sequence[Sequence[str]], on_done: Callable[[int, Record], None]
     ) -> None:
-        run_on_cluster(arguments.scheduler, names, commands, on_done, arguments.worker_blender, job.time_limit)
+        start = partial(worker_command, arguments.worker_blender)
+        run_on_cluster(arguments.scheduler, names, commands, on_done, start, job.time_limit)
 
     return on_cluster
+
+
+def worker_command(blender: str) -> list[str]:
+    """The command that starts a worker: with this Python, or inside an installed Blender. Raises InputError."""
+    return blender_command(blender, ["worker"]) if blender else [sys.executable, "-m", "stiv.command_line", "worker"]
 
 
 def _processors() -> int:

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from stiv import InputError
-from stiv.command_line.exit_codes import ExitCode
+from stiv.exit_codes import ExitCode
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loads what needs Blender only when a .blend is at hand, with a clear error where it is missing."""
+"""Blender as a Python module: imported only for a .blend, with a clear error where it is missing."""
 
 from __future__ import annotations
 
 import importlib
 import importlib.util
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -54,3 +56,24 @@ def stored_settings(context: Any, path: Path) -> Any:
         return require_blender("stiv.blender", path).EditSettings()
     with addon_registered(path):
         return require_blender("stiv_addon.scene.edit_settings", path).edit_settings(context.scene)
+
+
+@contextmanager
+def quiet_blender(*, errors: bool = False) -> Iterator[None]:
+    """Within, Blender prints nothing on standard output, where it writes beneath Python. Progress bars still show.
+
+    errors: nor on standard error, where renders complain of displays that they do not need.
+    """
+    sys.stdout.flush()
+    streams = (1, 2) if errors else (1,)
+    copies = [os.dup(stream) for stream in streams]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for stream in streams:
+            os.dup2(nowhere, stream)
+        yield
+    finally:
+        for stream, copy in zip(streams, copies, strict=True):
+            os.dup2(copy, stream)
+            os.close(copy)
+        os.close(nowhere)

@@ -16,14 +16,14 @@ from stiv.checks.findings import FileCheck
 from stiv.checks.junit import junit_xml
 from stiv.checks.pictures import require_matplotlib
 from stiv.checks.report import file_report, report_of, summary
-from stiv.command_line.exit_codes import ExitCode
+from stiv.choices import GUARDS
 from stiv.command_line.file_checking import Choices, check_path
-from stiv.command_line.frame_ranges import frame_range
-from stiv.command_line.guard_option import CHOICES
-from stiv.command_line.installed_blender import add_blender_option
-from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.options import add_blender_option, frame_range
 from stiv.command_line.progress import progress_bar
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
 from stiv.mesh_files import SUFFIXES
+from stiv.output_files import require_folder, written_atomically
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -62,7 +62,7 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument("--scene", default="all", metavar="NAME|all", help="test this scene of a .blend (all)")
     parser.add_argument("--render", action="store_true", help="test render levels however large they are")
     parser.add_argument(
-        "--guard", choices=CHOICES, default="auto",
+        "--guard", choices=GUARDS, default="auto",
         help="test the viewport, the render or both; auto is both unless the render is very large",
     )  # fmt: skip
     parser.add_argument("--hidden", action="store_true", help="test what is hidden or excluded too")

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
 from stiv.checks.report import summary as check_summary
-from stiv.command_line.blender_module import require_blender
-from stiv.command_line.exit_codes import ExitCode
+from stiv.command_line.blender_module import quiet_blender, require_blender
 from stiv.command_line.file_checking import check_path
-from stiv.command_line.installed_blender import add_blender_option
-from stiv.command_line.output_files import require_folder, write_json, written_atomically
-from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.options import add_blender_option
 from stiv.command_line.replay import render_scene, replay_report, run_script
 from stiv.edit_scripts import read_edit_script
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
+from stiv.output_files import require_folder, written_atomically
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

@@ -14,10 +14,9 @@ from stiv import InputError
 from stiv.checks.findings import FileCheck, Finding, LeftOut, Look, SeamPairs, merged_seams
 from stiv.checks.mesh_check import check_mesh
 from stiv.checks.pictures import write_picture
-from stiv.command_line.blender_module import require_blender
-from stiv.command_line.output_files import written_atomically
-from stiv.command_line.quiet import quiet_blender
+from stiv.command_line.blender_module import quiet_blender, require_blender
 from stiv.mesh_files import read_mesh
+from stiv.output_files import written_atomically
 
 FrameChoice = tuple[int, int, int] | str  # first, last and step; or "scene" for the scene's own range
 MAX_FRAMES = 1_000_000

@@ -6,7 +6,6 @@ Blender starts without user settings, and scripts in .blend files stay disabled.
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import subprocess
 import sys
@@ -20,23 +19,18 @@ BEGINS = "stiv begins"  # the line after which what Blender prints is ours
 _SCRIPT = Path(__file__).with_name("inside_blender.py")
 
 
-def add_blender_option(parser: argparse.ArgumentParser) -> None:
-    """Adds the option to a subcommand."""
-    parser.add_argument(OPTION, metavar="PATH", help="use this installed Blender (default: the Python module bpy)")
-
-
-def blender_command(blender: str, script: Path, arguments: Sequence[str]) -> list[str]:
-    """The command that runs a Python script inside an installed Blender. Raises InputError if there is none."""
+def blender_command(blender: str, arguments: Sequence[str]) -> list[str]:
+    """The command that runs `stiv` inside an installed Blender. Raises InputError if there is none."""
     found = shutil.which(blender)
     if found is None:
         raise InputError(f"{OPTION}: {blender} is not a program that can be run")
     options = ["-b", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3", "--python"]
-    return [found, *options, str(script), "--", *arguments]
+    return [found, *options, str(_SCRIPT), "--", *arguments]
 
 
 def run_inside(blender: str, arguments: Sequence[str]) -> int:
     """Runs the command with these arguments inside Blender, and returns its exit code."""
-    command = blender_command(blender, _SCRIPT, arguments)
+    command = blender_command(blender, arguments)
     with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
         assert process.stdout is not None
         began = False

@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from stiv import InputError
+from stiv.batch.worker import serve
 from stiv.command_line import batch, bench, check, demo, repair, replay, resolve
-from stiv.command_line.exit_codes import ExitCode
 from stiv.command_line.installed_blender import run_inside, without_option
+from stiv.exit_codes import ExitCode
 
 _SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench)
 
@@ -33,6 +34,8 @@ def parser() -> argparse.ArgumentParser:
     subcommands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
     for subcommand in _SUBCOMMANDS:
         subcommand.add_to(subcommands)
+    worker = subcommands.add_parser("worker")  # of `stiv batch`; the help does not list it
+    worker.set_defaults(run=lambda arguments: serve(run))
     return top
 
 

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.guard_option import add_guard_option
-from stiv.command_line.installed_blender import add_blender_option
-from stiv.command_line.output_files import require_folder, write_json
+from stiv.command_line.options import add_blender_option, add_guard_option
 from stiv.command_line.repair_blend import repair_blend
 from stiv.command_line.repair_mesh import repair_mesh
 from stiv.command_line.repair_report import SHOWN_PAIRS, RepairChoices, RepairOutcome
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
 from stiv.mesh_files import SUFFIXES, require_writer
+from stiv.output_files import require_folder
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

@@ -7,11 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stiv.command_line.blender_module import require_blender, stored_settings
-from stiv.command_line.output_files import written_atomically
+from stiv.command_line.blender_module import quiet_blender, require_blender, stored_settings
 from stiv.command_line.progress import share_bar
-from stiv.command_line.quiet import quiet_blender
 from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
+from stiv.output_files import written_atomically
 
 
 def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOutcome:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.command_line.output_files import written_atomically
 from stiv.command_line.progress import share_bar
 from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
 from stiv.mesh_files import Mesh, read_mesh, welded_mesh, write_mesh, write_repositioned
+from stiv.output_files import written_atomically
 
 Floats = NDArray[np.float64]
 Pairs = list[tuple[Element, Element]]

@@ -9,16 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiv import InputError
-from stiv.command_line.blender_module import addon_registered, require_blender
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.guard_option import add_guard_option
-from stiv.command_line.installed_blender import add_blender_option
-from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.blender_module import addon_registered, quiet_blender, require_blender
+from stiv.command_line.options import add_blender_option, add_guard_option
 from stiv.command_line.progress import progress_bar
-from stiv.command_line.quiet import quiet_blender
 from stiv.edit_scripts import EditScript, read_edit_script
-from stiv.mesh_editing import replay_on_mesh
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
 from stiv.mesh_files import read_mesh, require_writer, write_mesh
+from stiv.mesh_replay import replay_on_mesh
+from stiv.output_files import require_folder, written_atomically
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

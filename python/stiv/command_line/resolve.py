@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING, Any
 import stiv
 from stiv import InputError
 from stiv.checks.findings import Finding
-from stiv.command_line.blender_module import require_blender, stored_settings
-from stiv.command_line.exit_codes import ExitCode
-from stiv.command_line.frame_ranges import frame_range
-from stiv.command_line.guard_option import add_guard_option
-from stiv.command_line.installed_blender import add_blender_option
-from stiv.command_line.output_files import require_folder, write_json, written_atomically
+from stiv.command_line.blender_module import quiet_blender, require_blender, stored_settings
+from stiv.command_line.options import add_blender_option, add_guard_option, frame_range
 from stiv.command_line.progress import progress_bar
-from stiv.command_line.quiet import quiet_blender
+from stiv.exit_codes import ExitCode
+from stiv.json_files import write_json
+from stiv.output_files import require_folder, written_atomically
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

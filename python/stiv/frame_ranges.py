@@ -3,17 +3,7 @@
 
 from __future__ import annotations
 
-import argparse
-
-LIMIT = 2**20  # as Blender's own
-
-
-def frame_range(text: str) -> tuple[int, int, int] | str:
-    """The range as an argument of a command. Raises what argparse takes for wrong usage."""
-    try:
-        return parse_frames(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
+LIMIT = 2**20  # Blender's own
 
 
 def parse_frames(text: str) -> tuple[int, int, int] | str:
@@ -21,12 +11,12 @@ def parse_frames(text: str) -> tuple[int, int, int] | str:
     if text == "scene":
         return text
     try:
-        numbers = [int(part) for part in text.split(":")]
+        numbers = [int(number) for number in text.split(":")]
     except ValueError:
         numbers = []
     if len(numbers) not in (2, 3):
         raise ValueError(f"frames {text!r} are not of the form A:B, A:B:STEP or scene")
     first, last, step = (*numbers, 1)[:3]
     if not -LIMIT <= first <= last <= LIMIT or step < 1:
-        raise ValueError(f"frames {text!r} must ascend, by a step of 1 or more, within {LIMIT} of 0")
+        raise ValueError(f"frames {text!r} must ascend, by a step of 1 or more, between {-LIMIT} and {LIMIT}")
     return first, last, step

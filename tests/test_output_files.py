@@ -6,7 +6,8 @@ import os
 import pytest
 
 import stiv
-from stiv.command_line.output_files import write_json, written_atomically
+from stiv.json_files import write_json
+from stiv.output_files import written_atomically
 
 
 def test_an_output_replaces_what_was_there(tmp_path):

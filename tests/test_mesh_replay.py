@@ -10,9 +10,9 @@ from oracles import exact
 import stiv
 from stiv.command_line import program
 from stiv.edit_scripts import parse_edit_script
-from stiv.mesh_editing import replay_on_mesh
 from stiv.mesh_files import Mesh, read_mesh
 from stiv.mesh_files.mesh import checked_mesh
+from stiv.mesh_replay import replay_on_mesh
 
 SHEET = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
