@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""STIV: move, rotate and scale in Blender without surfaces going through each other.
+"""STIV: move, rotate and scale in Blender without intersections.
 
 operators: one a file over a shared adapter; modal: the state machine of a drag, without bpy; transform: from pointer
 and numbers to matrices; the rest is interface. Geometry is read, solved and written by the package `stiv`.

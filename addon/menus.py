@@ -33,16 +33,16 @@ def unregister() -> None:
 
 
 class STIV_MT_pie(bpy.types.Menu):
-    """Transforms on the left, right and below, checks above, switches in the corners."""
+    """Collision transforms, checks and switches"""
 
     bl_idname = "STIV_MT_pie"
-    bl_label = "Without Interference"
+    bl_label = "Collision Tools"
 
     def draw(self, context: bpy.types.Context) -> None:
         """In Blender's order: left, right, below, above, then the corners."""
         pie = self.layout.menu_pie()
         for operator in TRANSFORMS:
-            pie.operator(operator.bl_idname, text=operator.bl_label.partition(" ")[0])
+            pie.operator(operator.bl_idname, text=operator.bl_label.split()[-1])
         pie.operator(STIV_OT_check.bl_idname)
         pie.prop(context.scene.stiv, "live_guard")
         pie.prop(context.scene.stiv, "interference")

@@ -26,10 +26,10 @@ def problem() -> str:
 def _explanation(error: ImportError) -> str:
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] == "stiv":
-        what = f"The native module of STIV is missing for Python {version}, which this Blender runs."
+        what = f"STIV's native module for Python {version} is missing."
     else:
-        what = f"The native module of STIV cannot be loaded: {error}."
-    return f"{what}\nInstall the extension from a zip that holds a wheel for Python {version}, then restart Blender."
+        what = f"STIV's native module cannot be loaded: {error}."
+    return f"{what}\nInstall an extension zip with a wheel for Python {version}, then restart Blender."
 
 
 class NeedsNativeModule:

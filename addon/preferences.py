@@ -17,12 +17,10 @@ class StivPreferences(bpy.types.AddonPreferences):
 
     bl_idname = __package__
 
-    threads: IntProperty(
-        name="Threads", description="Threads that solve; 0 takes all of the machine", default=0, min=0, max=1024
-    )
+    threads: IntProperty(name="Threads", description="Solver threads (0 uses all cores)", default=0, min=0, max=1024)
     overlay: BoolProperty(
-        name="Overlay at the Start",
-        description="Draw contacts, intersecting faces, clearance and speed when Blender starts",
+        name="Show Overlay on Startup",
+        description="Show contacts, intersecting faces, clearance and speed when Blender starts",
         default=True,
     )
 

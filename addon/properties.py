@@ -16,50 +16,59 @@ from bpy.props import (
 from . import loop_updates
 from .operators.last_edit import note_written
 
+CHOSEN_SEPARATION = 0.001  # to begin with, where the user turns the automatic one off
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # may be chosen for a library override too
 
 ROLES = (
-    ("auto", "Automatic", "Controls where the object has some that are understood, otherwise rigid or an obstacle"),
-    ("controls", "Controls", "Gives way by its cage vertices or by the points of its lattice"),
-    ("rigid", "Rigid", "Gives way as a whole, by moving and turning"),
-    ("obstacle", "Obstacle", "Never gives way"),
-    ("ignored", "Ignored", "Does not take part: others go through it"),
+    ("auto", "Automatic", "Moves with its controls or as a rigid object if selected; otherwise an obstacle"),
+    ("controls", "Controls", "Yields with the vertices of its cage or the points of its lattice"),
+    ("rigid", "Rigid", "Yields as a rigid object by moving and rotating"),
+    ("obstacle", "Obstacle", "Never yields"),
+    ("ignored", "No Collision", "Other objects pass through it"),
 )
 DEFORMATIONS = (
-    ("auto", "Automatic", "As the scene's response says; in Edit Mode by its vertices or points"),
-    ("vertices", "Vertices", "By the vertices of its cage, or the points of a lattice"),
-    ("laplacian", "Soft", "By handles; the rest follows and keeps its details (Laplacian editing)"),
-    ("arap", "Soft, Turning", "By handles; the rest follows as rigidly as possible, and turns"),
-    ("lattice", "Lattice", "By the points of the lattice that deforms it"),
-    ("rigid", "Rigid", "As a whole, keeping its shape"),
+    ("auto", "Automatic", "Follows the scene's Response; moves vertices or points in Edit Mode"),
+    ("vertices", "Vertices", "Moves the vertices of the cage, or the points of a lattice"),
+    ("laplacian", "Soft: Laplacian", "Moves handles; the rest follows smoothly and preserves its details"),
+    ("arap", "As-Rigid-As-Possible", "Moves handles; the rest follows as rigidly as possible and rotates with them"),
+    ("lattice", "Lattice", "Moves the points of the lattice that deforms the object"),
+    ("rigid", "Rigid", "Preserves the object's shape"),
 )
 RESTS = (
-    ("follows", "Follows", "What is neither a handle nor anchored follows the handles"),
-    ("stays", "Stays", "Everything but the handles stays where it is"),
+    ("follows", "Follow", "Other vertices follow the handles unless anchored"),
+    ("stays", "Fixed", "Only handles move"),
 )
 BOUNDARIES = (
-    ("all", "All", "Corners are rounded"),
-    ("preserve_corners", "Keep Corners", "Corners stay where they are"),
+    ("all", "All", "Smooth boundaries, including corners"),
+    ("preserve_corners", "Keep Corners", "Smooth boundaries, but keep corners sharp"),
 )
 CONSTRAINTS = (
-    ("per_patch", "One a Patch", "Each region of contact gives way by itself"),
-    ("single", "One for All", "One constraint for all regions: less work a round, more rounds, a less even response"),
+    ("per_patch", "Per Region", "Each contact region responds separately"),
+    ("single", "Single", "One constraint for all contact regions; more rounds and a less even response"),
 )
 RESPONDERS = (
-    ("selected", "Selected", "What is selected gives way, everything else stays where it is"),
-    ("unselected", "Unselected", "What is selected goes where it is put, everything else that can gives way"),
-    ("all", "All", "Both sides give way"),
+    ("selected", "Selected", "The selection is deflected; everything else stays fixed"),
+    ("unselected", "Others", "The selection goes to its goal and pushes everything else aside"),
+    ("all", "Both", "Both sides move"),
 )
 GUARDS = (
-    ("auto", "Automatic", "Both where the render differs and the surface stays under 500K triangles"),
-    ("viewport", "Viewport", "What the viewport shows in Object Mode and Edit Mode"),
-    ("render", "Render", "What is rendered"),
-    ("both", "Both", "What the viewport shows and what is rendered"),
+    ("auto", "Automatic", "Both, if the render differs and the surface has fewer than 500K triangles"),
+    ("viewport", "Viewport", "Surfaces that the viewport shows in Object Mode and Edit Mode"),
+    ("render", "Render", "Surfaces that are rendered"),
+    ("both", "Both", "Surfaces of the viewport and of the render"),
 )
 OBJECT_RESPONSES = (
-    ("rigid", "Rigid", "In Object Mode a selected object keeps its shape"),
-    ("deform", "Deform", "In Object Mode a selected object gives way by its cage vertices or lattice points"),
+    ("rigid", "Rigid", "Selected objects preserve their shape"),
+    ("deform", "Deform", "Selected objects move the points of their cage or lattice"),
 )
+
+
+def _is_separation_automatic(settings: bpy.types.PropertyGroup) -> bool:
+    return bool(settings.separation == 0.0)
+
+
+def _set_separation_automatic(settings: bpy.types.PropertyGroup, automatic: bool) -> None:
+    settings.separation = 0.0 if automatic else CHOSEN_SEPARATION
 
 
 def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -81,46 +90,64 @@ def _loop_changed(loop: bpy.types.PropertyGroup, context: bpy.types.Context) -> 
 class StivPairSeparation(bpy.types.PropertyGroup):
     """Two objects, or one twice, that keep a distance of their own."""
 
-    first: PointerProperty(name="First", type=bpy.types.Object)
-    second: PointerProperty(name="Second", type=bpy.types.Object)
+    first: PointerProperty(name="First Object", type=bpy.types.Object)
+    second: PointerProperty(name="Second Object", type=bpy.types.Object)
     separation: FloatProperty(
-        name="Separation", description="Distance that the two keep", subtype="DISTANCE", default=0.01, min=1e-6,
-        soft_max=1.0, precision=4,
-    )  # fmt: skip
+        name="Minimum Distance",
+        description="Distance between the two objects",
+        subtype="DISTANCE",
+        default=0.01,
+        min=1e-6,
+        soft_max=1.0,
+        precision=4,
+    )
 
 
 class StivSceneSettings(bpy.types.PropertyGroup):
     """How edits of a scene respond to interference."""
 
     separation: FloatProperty(
-        name="Separation",
-        description="Distance that surfaces keep; 0 chooses a ten-thousandth of the size of what moves",
+        name="Minimum Distance",
+        description="Distance between surfaces; 0 chooses a ten-thousandth of the size of the selection",
         subtype="DISTANCE",
         default=0.0,
         min=0.0,
         soft_max=1.0,
         precision=4,
     )
-    pair_separations: CollectionProperty(type=StivPairSeparation, name="Separation of Pairs")
+    automatic_separation: BoolProperty(
+        name="Auto Distance",
+        description="Choose the minimum distance from the size of the selection",
+        get=_is_separation_automatic,
+        set=_set_separation_automatic,
+    )
+    pair_separations: CollectionProperty(type=StivPairSeparation, name="Pair Distances")
     interference: BoolProperty(
-        name="Interference",
-        description="Let surfaces give way; otherwise they may go through each other, and nothing is tested",
+        name="Collisions",
+        description="Prevent surfaces from passing through each other; if off, nothing is tested",
         default=True,
     )
     live_guard: BoolProperty(
         name="Live Guard",
-        description="Correct what any tool of Blender does, so that nothing goes through anything",
+        description="Correct the results of Blender's tools so that surfaces do not intersect",
         default=False,
         update=_guard_switched,
     )
-    responders: EnumProperty(name="Gives way", description="Who gives way", items=RESPONDERS, default="selected")
-    object_response: EnumProperty(
-        name="Response", description="How objects give way in Object Mode", items=OBJECT_RESPONSES, default="rigid"
+    responders: EnumProperty(
+        name="Yields", description="Which side moves out of the way", items=RESPONDERS, default="selected"
     )
-    guard: EnumProperty(name="Guard", description="What is kept free of intersections", items=GUARDS, default="auto")
+    object_response: EnumProperty(
+        name="Response",
+        description="How selected objects respond in Object Mode",
+        items=OBJECT_RESPONSES,
+        default="rigid",
+    )
+    guard: EnumProperty(
+        name="Guard", description="Evaluation that stays free of intersections", items=GUARDS, default="auto"
+    )
     smoothness: FloatProperty(
         name="Smoothness",
-        description="0.1 gives way smoothly, 0.01 tightly: nearer to the shape, less even",
+        description="Higher spreads the response smoothly, lower follows the goal more tightly",
         default=0.1,
         min=1e-4,
         max=10.0,
@@ -129,7 +156,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         precision=3,
     )
     constraints: EnumProperty(
-        name="Constraints", description="What a response is found by", items=CONSTRAINTS, default="per_patch"
+        name="Contacts", description="How contact regions respond", items=CONSTRAINTS, default="per_patch"
     )
     excluded: StringProperty(
         name="Excluded Pairs",
@@ -146,13 +173,13 @@ class StivHandleGroup(bpy.types.PropertyGroup):
 class StivLoop(bpy.types.PropertyGroup):
     """On a cage of triangles: the object that shows its Loop subdivision, none while there is none."""
 
-    object: PointerProperty(name="Refined object", type=bpy.types.Object, options={"HIDDEN"})
+    object: PointerProperty(name="Refined Object", type=bpy.types.Object, options={"HIDDEN"})
     levels: IntProperty(
-        name="Levels", description="Each cuts a triangle into four", default=2, min=1, max=3,
+        name="Levels", description="Number of subdivisions; each splits a triangle into 4", default=2, min=1, max=3,
         update=_loop_changed,
     )  # fmt: skip
     boundary: EnumProperty(
-        name="Boundary", description="Corners of the cage's boundary", items=BOUNDARIES, default="all",
+        name="Boundary Smooth", description="How open boundaries are smoothed", items=BOUNDARIES, default="all",
         update=_loop_changed,
     )  # fmt: skip
 
@@ -161,27 +188,31 @@ class StivObjectSettings(bpy.types.PropertyGroup):
     """How an object takes part."""
 
     role: EnumProperty(
-        name="Role", description="How the object takes part", items=ROLES, default="auto", override=OVERRIDABLE
+        name="Role",
+        description="How the object participates in collisions",
+        items=ROLES,
+        default="auto",
+        override=OVERRIDABLE,
     )
     deformation: EnumProperty(
-        name="Deformation", description="By what the object is moved and gives way", items=DEFORMATIONS, default="auto",
+        name="Deformation", description="How the object deforms on contact", items=DEFORMATIONS, default="auto",
         override=OVERRIDABLE,
     )  # fmt: skip
-    handles: CollectionProperty(type=StivHandleGroup, name="Handles", description="Vertex groups that are handles")
-    anchor: StringProperty(name="Anchor", description="Vertex group that stays where it is")
-    rest: EnumProperty(name="Rest", description="What is no handle", items=RESTS, default="follows")
+    handles: CollectionProperty(type=StivHandleGroup, name="Handles", description="Vertex groups that act as handles")
+    anchor: StringProperty(name="Anchor", description="Vertex group that stays fixed")
+    rest: EnumProperty(name="Unselected", description="Vertices that are not handles", items=RESTS, default="follows")
     pull: FloatProperty(
-        name="Pull",
-        description="How hard handles pull, times the weight in their group; 0 holds their vertices exactly",
+        name="Handle Stiffness",
+        description="Stiffness of the handles, multiplied by their weights; 0 places vertices exactly",
         default=0.0,
         min=0.0,
         soft_max=10.0,
     )
     weight_group: StringProperty(
         name="Weights",
-        description="Vertex group that says how far each vertex or point gives way; 0, or not in the group, pins it",
+        description="Vertex group that sets how far points yield; weight 0 and points outside are pinned",
     )
-    weight_invert: BoolProperty(name="Invert", description="Pin what is in the group instead")
+    weight_invert: BoolProperty(name="Invert", description="Invert vertex group influence")
     weight_axes: BoolVectorProperty(
         name="Weight Axes",
         description="Local axes of the object that the weights apply to",
@@ -189,14 +220,14 @@ class StivObjectSettings(bpy.types.PropertyGroup):
         size=3,
         subtype="XYZ",
     )
-    loop: PointerProperty(type=StivLoop)
+    loop: PointerProperty(name="Loop Subdivision", type=StivLoop)
 
 
 class StivCheckResult(bpy.types.PropertyGroup):
     """What the last check found; not saved."""
 
-    summary: StringProperty(name="Result of the last check", options={"SKIP_SAVE"})
-    left_out: StringProperty(name="Left out of the last edit", options={"SKIP_SAVE"})
+    summary: StringProperty(name="Check Result", options={"SKIP_SAVE"})
+    left_out: StringProperty(name="Unguarded Objects", options={"SKIP_SAVE"})
 
 
 CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)
@@ -208,7 +239,7 @@ def register() -> None:
     bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings, override=OVERRIDABLE)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
     bpy.types.WindowManager.stiv_last_edit = StringProperty(
-        name="Last edit, as JSON", options={"SKIP_SAVE", "HIDDEN"}, update=note_written
+        name="Last Edit", options={"SKIP_SAVE", "HIDDEN"}, update=note_written
     )
 
 

@@ -64,12 +64,12 @@ def correct(context: Any, accepted: Any) -> Outcome:
         return _tested_instead(context, str(error))
     found = Outcome()
     if followed.deformers:
-        found = _tested_instead(context, say("{} cannot be followed").format(listed(followed.deformers, say)))
+        found = _tested_instead(context, say("{} cannot be corrected").format(listed(followed.deformers, say)))
     if not followed.corrected:
         return found
     told = say("corrected {}").format(listed(followed.names, say))
     if followed.blocking:
-        told = say("corrected {}, in the way: {}").format(listed(followed.names, say), listed(followed.blocking, say))
+        told = say("corrected {}, blocked by {}").format(listed(followed.names, say), listed(followed.blocking, say))
     return Outcome(found.problem, wrote=True, text=told)
 
 

@@ -34,8 +34,10 @@ class Problem:
         if not self.pairs:
             return self.reason
         first = self.pairs[0]
-        told = say("{} intersect: {} face pairs, first {} and {}")
-        return told.format(listed(self.names, say), len(self.pairs), first.first.number, first.second.number)
+        names, numbers = listed(self.names, say), (first.first.number, first.second.number)
+        if len(self.pairs) == 1:
+            return say("{}: 1 intersecting face pair, {} and {}").format(names, *numbers)
+        return say("{}: {} intersecting face pairs, first {} and {}").format(names, len(self.pairs), *numbers)
 
     def pair_lines(self, say: Say = str) -> list[str]:
         """The first pairs, one a line, and how many more there are."""

@@ -20,7 +20,7 @@ def evaluate(text: str, units: Units) -> float:
     Raises ValueError, which says what is wrong.
     """
     if len(text) > MAX_LENGTH:
-        raise ValueError("this is too long")
+        raise ValueError(f"the expression is longer than {MAX_LENGTH} characters")
     reader = _Reader(_tokens(text), units)
     try:
         value = reader.all()
@@ -37,7 +37,7 @@ def _tokens(text: str) -> list[str]:
     while place < len(text):
         match = _TOKEN.match(text, place)
         if match is None:
-            raise ValueError(f"{text[place]!r} is not understood")
+            raise ValueError(f"unexpected {text[place]!r}")
         tokens.append(match.group().strip())
         place = match.end()
     return tokens
@@ -55,7 +55,7 @@ class _Reader:
     def all(self) -> float:
         value = self._sum()
         if self._next():
-            raise ValueError(f"{self._next()!r} is not expected here")
+            raise ValueError(f"unexpected {self._next()!r}")
         return value
 
     def _next(self) -> str:
@@ -98,7 +98,7 @@ class _Reader:
         if self._taken("("):
             value = self._sum()
             if not self._taken(")"):
-                raise ValueError("a parenthesis is open")
+                raise ValueError("missing )")
             return value
         if self._taken("pi"):
             return math.pi
@@ -116,14 +116,14 @@ class _Reader:
         """A number, and whether a unit follows it."""
         token = self._next()
         if not (token[:1].isdigit() or token.startswith(".")):
-            raise ValueError(f"a number is missing before {token!r}" if token else "a number is missing")
+            raise ValueError(f"missing number before {token!r}" if token else "missing number")
         self._place += 1
         unit = self._next()
         if not unit or unit[0].isdigit() or unit[0] in ".+-*/()^":
             return float(token), False
         factor = self._units(unit)
         if factor is None:
-            raise ValueError(f"{unit!r} is not a unit")
+            raise ValueError(f"unknown unit {unit!r}")
         self._place += 1
         self.has_units = True
         return float(token) * factor, True

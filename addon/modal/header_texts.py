@@ -12,14 +12,14 @@ Say = Callable[[str], str]
 
 _VERDICT_WORDS = {
     "reached": "clear",
-    "corrected": "gives way",
+    "corrected": "deflected",
     "blocked": "blocked",
-    "budget": "not settled yet",
+    "budget": "still solving",
     "cancelled": "cancelled",
     "unchanged": "",
-    "unguarded": "interference ignored",
+    "unguarded": "collisions off",
 }
-_RESPONDER_WORDS = {"unselected": "gives way: what is not selected", "all": "gives way: all"}
+_RESPONDER_WORDS = {"unselected": "yields: others", "all": "yields: both"}
 
 
 def header_text(
@@ -54,25 +54,25 @@ def _proportional_text(proportional: Proportional, say: Say) -> str:
 def _modes(state: State, say: Say) -> list[str]:
     """What is not as usual."""
     who = _RESPONDER_WORDS.get(state.request.responders, "")
-    return [say("precise") if state.precise else "", say("snap") if state.snapping else "", say(who) if who else ""]
+    return [say("precision") if state.precise else "", say("snap") if state.snapping else "", say(who) if who else ""]
 
 
 def status_text(state: State, say: Say = str) -> str:
     """The keys that do something now."""
     if state.typed.expression:
         keys = [say("Enter: confirm"), say("Esc: cancel"), say("+ - * / ( ) and units: expression")]
-        return "    ".join([*keys, say("Tab: next"), say("Backspace: delete")])
-    keys = [say("Enter, Space, Left Mouse: confirm"), say("Esc, Right Mouse: cancel"), say("G R S: kind")]
+        return "    ".join([*keys, say("Tab: next axis"), say("Backspace: delete")])
+    keys = [say("Enter, Space, Left Mouse: confirm"), say("Esc, Right Mouse: cancel"), say("G R S: transform")]
     keys += [say("X Y Z: axis"), say("Shift+X/Y/Z: plane")]
     if state.typed.active:
-        keys += [say("Tab: next"), say("=: expression"), say("Backspace: delete")]
+        keys += [say("Tab: next axis"), say("=: expression"), say("Backspace: delete")]
     else:
-        keys += [say("0-9 . - =: value"), say("Shift: precise"), say("Ctrl: snap")]
+        keys += [say("0-9 . - =: value"), say("Shift: precision"), say("Ctrl: snap")]
     if state.proportional.available:
         keys.append(say("O: proportional"))
     if state.proportional.active:
-        keys += [say("Wheel, Page: size"), say("Shift+O: falloff")]
-    return "    ".join([*keys, say("W: who gives way"), say("I: interference")])
+        keys += [say("Wheel, Page Up/Down: size"), say("Shift+O: falloff")]
+    return "    ".join([*keys, say("W: yields"), say("I: collisions")])
 
 
 def verdict_text(status: str, blocking: Sequence[str] = (), say: Say = str) -> str:

@@ -90,12 +90,14 @@ def texts_of(content: Content, chosen: Any, length_text: Any, say: Callable[[str
     texts = []
     if content.clearance is not None and chosen.clearance:
         between = f" ({', '.join(content.clearance.names)})" if content.clearance.names else ""
-        texts.append(say("Least distance {}").format(length_text(content.clearance.distance)) + between)
+        texts.append(say("Clearance {}").format(length_text(content.clearance.distance)) + between)
     if len(content.intersecting) and chosen.intersections:
-        texts.append(say("{} intersecting triangles").format(len(content.intersecting)))
+        count = len(content.intersecting)
+        texts.append(say("1 intersecting triangle" if count == 1 else "{} intersecting triangles").format(count))
     if content.contacts is not None and chosen.contacts:
-        texts.append(say("{} contacts").format(len(content.contacts[0])))
+        count = len(content.contacts[0])
+        texts.append(say("1 contact" if count == 1 else "{} contacts").format(count))
     if content.milliseconds is not None and chosen.speed:
-        rate = say(", {} frames a second").format(f"{content.frames:.0f}") if content.frames else ""
+        rate = f", {content.frames:.0f} fps" if content.frames else ""
         texts.append(f"{content.milliseconds:.0f} ms{rate}")
     return texts

@@ -42,42 +42,42 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
 
     show: BoolProperty(
         name="Overlay",
-        description="Draw contacts, intersecting faces, clearance and speed over the 3D view",
+        description="Show contacts, intersecting faces, clearance and speed in the 3D view",
         default=True,
         options={"SKIP_SAVE"},
         update=_redraw,
     )
     contacts: BoolProperty(
         name="Contacts",
-        description="Where an edit is held up, and in which directions",
+        description="Show contacts that block an edit, and the blocked directions",
         default=True,
         options={"SKIP_SAVE"},
         update=_redraw,
     )
     intersections: BoolProperty(
         name="Intersections",
-        description="Faces that the last check found to intersect",
+        description="Show intersecting faces that the last check found",
         default=True,
         options={"SKIP_SAVE"},
         update=_redraw,
     )
     clearance: BoolProperty(
         name="Clearance",
-        description="The nearest pair and its distance",
+        description="Show the closest pair of objects and its distance",
         default=True,
         options={"SKIP_SAVE"},
         update=_redraw,
     )
     while_dragging: BoolProperty(
-        name="Clearance while Dragging",
-        description="Measure the nearest pair at each step of a drag, which takes some time of it",
+        name="Clearance While Dragging",
+        description="Measure the closest pair at each step of a drag, which slows it down",
         default=False,
         options={"SKIP_SAVE"},
         update=_redraw,
     )
     speed: BoolProperty(
         name="Speed",
-        description="Milliseconds and frames a second of an edit",
+        description="Show the milliseconds and frames per second of an edit",
         default=True,
         options={"SKIP_SAVE"},
         update=_redraw,

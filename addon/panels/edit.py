@@ -11,14 +11,14 @@ from ..scene.edit_settings import edit_settings
 from ..translations import say
 from .base import SidebarPanel, draw_lines, draw_problem
 
-SETTINGS = ("interference", "separation", "responders", "object_response", "guard", "smoothness", "constraints")
+SETTINGS = ("interference", "responders", "object_response", "guard", "smoothness", "constraints")
 
 
 class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
     """Transforms and how they respond."""
 
     bl_idname = "STIV_PT_edit"
-    bl_label = "Edit without Interference"
+    bl_label = "Collision Transform"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Buttons and settings, or why there are none."""
@@ -27,13 +27,25 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
             return
         column = self.layout.column(align=True)
         for operator in TRANSFORMS:
-            column.operator(operator.bl_idname, text=operator.bl_label.partition(" ")[0])
+            column.operator(operator.bl_idname, text=operator.bl_label.split()[-1])
         self.layout.use_property_split = True
         settings = self.layout.column()
+        draw_separation(settings, context.scene.stiv)
         for name in SETTINGS:
             settings.prop(context.scene.stiv, name)
         draw_lines(settings, chosen_guard(context))
         draw_lines(self.layout, context.window_manager.stiv_check.left_out)
+
+
+def draw_separation(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """The minimum distance: a length, or a button "Auto" in its place."""
+    if settings.automatic_separation:
+        row = layout.row(heading="Minimum Distance")
+        row.prop(settings, "automatic_separation", text="Auto", toggle=True)
+    else:
+        row = layout.row(align=True)
+        row.prop(settings, "separation")
+        row.prop(settings, "automatic_separation", text="", icon="X", invert_checkbox=True)
 
 
 def chosen_guard(context: bpy.types.Context) -> str:
@@ -47,5 +59,5 @@ def chosen_guard(context: bpy.types.Context) -> str:
     except ValueError:  # settings that cannot be read are told by the operators
         return ""
     if guard.reason:
-        return say("Guard: Viewport, as the render has over 500K triangles")
+        return say("Guard: Viewport (render exceeds 500K triangles)")
     return say("Guard: {}").format(say(guard.choice.title()))

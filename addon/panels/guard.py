@@ -27,13 +27,13 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         """What it does, or why it cannot."""
         layout = self.layout
         if not context.scene.stiv.live_guard:
-            layout.label(text="Off: tools may go through surfaces")
+            layout.label(text="Off: results are not corrected")
         elif (problem := watcher.problem()) is not None:
             draw_alert(layout, problem)
         else:
             layout.label(text="The scene is clear", icon="CHECKMARK")
         if watcher.uncorrected():
-            layout.label(text=say("Results not corrected: {}").format(watcher.uncorrected()))
+            layout.label(text=say("Uncorrected results: {}").format(watcher.uncorrected()))
 
 
 def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:

@@ -12,6 +12,7 @@ from ..operators.setup.handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from ..operators.setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
 from ..operators.setup.pair_distances import STIV_OT_separation_add, STIV_OT_separation_remove
 from ..scene.edit_settings import refined_object
+from ..translations import say
 from .base import MOST_OBJECTS, SubPanel
 
 
@@ -68,9 +69,9 @@ class STIV_PT_roles(SubPanel, bpy.types.Panel):
             row.label(text=thing.name, icon=f"OUTLINER_OB_{thing.type}")
             row.prop(thing.stiv, "role", text="")
         if len(chosen) > MOST_OBJECTS:
-            self.layout.label(text=f"and {len(chosen) - MOST_OBJECTS} more")
+            self.layout.label(text=say("and {} more").format(len(chosen) - MOST_OBJECTS))
         if not chosen:
-            self.layout.label(text="Select objects to see their roles")
+            self.layout.label(text="Select objects to set their roles")
 
 
 class STIV_PT_loop(SubPanel, bpy.types.Panel):
@@ -102,7 +103,7 @@ class STIV_PT_separation(SubPanel, bpy.types.Panel):
     """Distances that pairs of objects keep."""
 
     bl_idname = "STIV_PT_separation"
-    bl_label = "Separation of Pairs"
+    bl_label = "Pair Distances"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a set)
 
     def draw(self, context: bpy.types.Context) -> None:

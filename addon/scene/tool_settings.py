@@ -65,15 +65,15 @@ def unsupported_settings(context: Any) -> list[str]:
     found = []
     chosen = orientation_names(context)[0]
     if not is_followed(context, chosen):
-        found.append(say("orientation {} is not supported here: global axes").format(say(chosen.title())))
+        found.append(say("orientation {} is not supported; using Global").format(say(chosen.title())))
     tools = context.scene.tool_settings
     if context.mode == "OBJECT" and tools.use_proportional_edit_objects:
         found.append(say("proportional editing of objects is not supported"))
     if context.mode != "OBJECT" and tools.use_proportional_edit:
         if tools.use_proportional_projected:
-            found.append(say("proportional editing from view is not supported: by distance in space"))
+            found.append(say("projected proportional editing is not supported; using distance in space"))
         if tools.transform_pivot_point == "INDIVIDUAL_ORIGINS":
-            found.append(say("proportional editing about individual origins is not supported: about their median"))
+            found.append(say("Individual Origins are not supported with proportional editing; using the median"))
     return found + _unsupported_snapping(context.scene)
 
 

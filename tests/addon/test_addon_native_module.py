@@ -18,8 +18,8 @@ def problem_with(monkeypatch: pytest.MonkeyPatch, error: ImportError) -> str:
 
 def test_a_missing_module_names_the_version_and_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     text = problem_with(monkeypatch, ModuleNotFoundError("No module named 'stiv._native'", name="stiv._native"))
-    assert f"missing for Python {sys.version_info.major}.{sys.version_info.minor}" in text
-    assert "Install the extension" in text
+    assert f"Python {sys.version_info.major}.{sys.version_info.minor} is missing" in text
+    assert "Install an extension" in text
 
 
 def test_a_module_that_does_not_load_says_why(monkeypatch: pytest.MonkeyPatch) -> None:

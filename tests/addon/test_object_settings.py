@@ -57,7 +57,7 @@ def test_rows_without_a_group_are_no_handles(bar: Any) -> None:
     for _ in range(2):
         bpy.ops.stiv.handle_add()
     assert [row.name for row in bar.stiv.handles] == ["Right", ""]
-    with pytest.raises(RuntimeError, match="there is no row 5"):
+    with pytest.raises(RuntimeError, match="Handle 5 does not exist"):
         bpy.ops.stiv.handle_remove(index=5)
     bpy.ops.stiv.handle_remove(index=0)
     with pytest.raises(RuntimeError, match='object "Bar": its settings name no vertex group as a handle'):
@@ -109,6 +109,16 @@ def test_without_interference_objects_go_through_each_other(bar: Any) -> None:
     bpy.context.scene.stiv.interference = True
     with pytest.raises(RuntimeError, match="intersect"):
         bpy.ops.stiv.move(value=(0.0, 0.0, 3.0))
+
+
+def test_the_minimum_distance_is_automatic_until_one_is_chosen() -> None:
+    settings = bpy.context.scene.stiv
+    settings.separation = 0.0
+    assert settings.automatic_separation
+    settings.automatic_separation = False
+    assert settings.separation > 0.0 and not settings.automatic_separation
+    settings.automatic_separation = True
+    assert settings.separation == 0.0
 
 
 def test_the_panel_draws_what_there_is(bar: Any) -> None:

@@ -56,6 +56,35 @@ def test_what_blender_registered_is_what_the_sources_say() -> None:
             assert not prop.description or prop.description in known, (cls, prop.identifier)
 
 
+def labels() -> Iterator[str]:
+    """Every label of an operator, a panel, a menu, a property and a choice of a property."""
+    for cls in CLASSES:
+        yield getattr(cls, "bl_label", "")
+        owner = getattr(bpy.ops.stiv, cls.bl_idname.partition(".")[2]).get_rna_type() if is_operator(cls) else cls.bl_rna
+        for prop in owner.properties:
+            if not prop.identifier.startswith("bl_") and prop.identifier not in cls.bl_rna.base.properties:
+                yield prop.name
+                yield from (choice.name for choice in getattr(prop, "enum_items", ()))
+
+
+def is_operator(cls: Any) -> bool:
+    return issubclass(cls, bpy.types.Operator)
+
+
+def test_labels_are_short_titles_without_articles() -> None:
+    for label in filter(None, labels()):
+        words = label.split()
+        assert len(words) <= 3 or label == "Show Overlay on Startup", label
+        assert not {"a", "an", "the"} & {word.lower() for word in words}, label
+        assert all(word[0].isupper() or word in {"for", "in", "on"} for word in words if word[0].isalpha()), label
+
+
+def test_no_text_ends_with_a_full_stop_and_none_is_longer_than_a_line() -> None:
+    for text in interface_messages.messages():
+        assert not text.endswith("."), text
+        assert len(text) <= 90, text
+
+
 @pytest.mark.parametrize(("code", "expected"), [("de_DE", "Verformung"), ("ja_JP", "変形方法")])
 def test_blender_shows_the_language_that_is_chosen(language: Any, code: str, expected: str) -> None:
     try:
@@ -66,4 +95,4 @@ def test_blender_shows_the_language_that_is_chosen(language: Any, code: str, exp
     if bpy.app.translations.pgettext_iface("Object") == "Object":
         pytest.skip("this Blender module was built without translations")
     assert bpy.app.translations.pgettext_iface("Deformation") == expected
-    assert bpy.app.translations.pgettext_iface("Move without Interference", "Operator") != "Move without Interference"
+    assert bpy.app.translations.pgettext_iface("Collision Move", "Operator") != "Collision Move"

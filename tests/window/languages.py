@@ -9,7 +9,7 @@ import scenes
 from playing import INTO_WALL, click, prepared, start
 from simulation import Steps, Window
 
-SAYS = {"de_DE": "Umschalt: genau", "ja_JP": "Shift: 精密"}  # for "Shift: precise"
+SAYS = {"de_DE": "Umschalt: Präzision", "ja_JP": "Shift: 精密"}  # for "Shift: precision"
 
 
 def in_language(code: str) -> object:
@@ -20,7 +20,7 @@ def in_language(code: str) -> object:
         before = view.language
         view.language, view.use_translate_interface = code, True
         try:
-            assert extension.module("translations").say("Shift: precise") == SAYS[code]
+            assert extension.module("translations").say("Shift: precision") == SAYS[code]
             yield from prepared(window, scenes.add_box, "Box")
             yield from start(window)
             yield from window.glide(window.pixel(INTO_WALL))

@@ -17,7 +17,7 @@ MOST = 5  # pairs of objects that the summary lists
 
 
 class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
-    """Find intersections of all visible surfaces by the exact test, and select the faces and objects that meet."""
+    """Find intersections of all visible surfaces with an exact test, and select them"""
 
     bl_idname = "stiv.check"
     bl_label = "Check for Intersections"
@@ -49,14 +49,14 @@ def summary(pairs: Counter[tuple[str, str]], triangle_pairs: int, chosen: Mappin
     """How many pairs of faces and of triangles meet, in which objects, and how many faces are selected."""
     if not pairs:
         return "No intersections"
-    faces = f", {sum(chosen.values())} faces selected" if chosen else ""
-    triangles = f" ({triangle_pairs} of triangles)" if triangle_pairs != pairs.total() else ""
-    objects = len({name for pair in pairs for name in pair})
-    lines = [f"{pairs.total()} intersecting pairs of faces{triangles} in {objects} objects{faces}"]
+    faces = f", {counted(sum(chosen.values()), 'face')} selected" if chosen else ""
+    triangles = f" ({counted(triangle_pairs, 'triangle pair')})" if triangle_pairs != pairs.total() else ""
+    objects = counted(len({name for pair in pairs for name in pair}), "object")
+    lines = [f"{counted(pairs.total(), 'intersecting face pair')}{triangles} in {objects}{faces}"]
     for (first, second), count in pairs.most_common(MOST):
-        lines.append(f"{first}: {count}, with itself" if first == second else f"{first}, {second}: {count}")
+        lines.append(f"{first}: {count} with itself" if first == second else f"{first}, {second}: {count}")
     if len(pairs) > MOST:
-        lines.append(f"and {len(pairs) - MOST} more pairs of objects")
+        lines.append(f"and {counted(len(pairs) - MOST, 'more object pair')}")
     return "\n".join(lines)
 
 
@@ -65,8 +65,13 @@ def tested(found: Any) -> str:
     from stiv.checks.findings import left_out_text  # the add-on registers without the native module
 
     left_out = f"; not tested, {left_out_text(found.left_out)}" if found.left_out else ""
-    seams = f"; pairs of faces on seams: {found.seams:,}" if found.seams else ""
-    return f"Objects: {found.objects}, triangles: {found.triangles:,}{seams}{left_out}"
+    seams = f"; {counted(found.seams, 'face pair')} on seams" if found.seams else ""
+    return f"Tested {counted(found.objects, 'object')}, {counted(found.triangles, 'triangle')}{seams}{left_out}"
+
+
+def counted(count: int, noun: str) -> str:
+    """A number and its noun: "1 object", "1,200 objects"."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def read_out(context: bpy.types.Context) -> str:
@@ -77,7 +82,12 @@ def read_out(context: bpy.types.Context) -> str:
     display.show_clearance(least)
     if least is None:
         return ""
-    return f"\nLeast distance {least.distance:.6g} between {' and '.join(least.bodies)}"
+    return "\n" + clearance_text(least)
+
+
+def clearance_text(least: Any) -> str:
+    """A `stiv.LeastDistance` as a line."""
+    return f"{' and '.join(least.bodies)}: clearance {least.distance:.6g}"
 
 
 def select(context: bpy.types.Context, names: Any) -> None:

@@ -8,10 +8,11 @@ import bpy
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
+from .check import clearance_text
 
 
 class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
-    """Find the two visible objects that are nearest to each other, and show their distance over the view."""
+    """Find the two closest visible objects, and show their distance in the 3D view"""
 
     bl_idname = "stiv.measure"
     bl_label = "Measure Clearance"
@@ -27,8 +28,8 @@ class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         if found is None:
-            self.report({"WARNING"}, "There are no two objects to be measured")
+            self.report({"WARNING"}, "No two visible objects to measure")
             return {"CANCELLED"}
         display.show_clearance(found)
-        self.report({"INFO"}, f"Least distance {found.distance:.6g} between {' and '.join(found.bodies)}")
+        self.report({"INFO"}, clearance_text(found))
         return {"FINISHED"}

@@ -12,25 +12,34 @@ from .reshape import ReshapeOperator
 
 
 class STIV_OT_contract(ReshapeOperator, bpy.types.Operator):
-    """Shrink the selected meshes toward their skeletons, thin parts first; Expand brings the shape back."""
+    """Shrink the selected meshes toward their skeletons; Expand restores the shape"""
 
     bl_idname = "stiv.contract"
     bl_label = "Contract"
 
     steps: IntProperty(
-        name="Steps", description="Each is twice as strong as the one before", default=1, min=1, soft_max=16, max=64
+        name="Steps",
+        description="Number of steps; each is twice as strong as the previous one",
+        default=1,
+        min=1,
+        soft_max=16,
+        max=64,
     )
     smoothing: FloatProperty(
-        name="Strength", description="Of the first step, the same for any size", default=1.0, min=1e-6, soft_max=16.0
+        name="Strength",
+        description="Strength of the first step, independent of the object's size",
+        default=1.0,
+        min=1e-6,
+        soft_max=16.0,
     )
     until_free: BoolProperty(
-        name="Until Free",
-        description="End as soon as nothing intersects, after so many steps at most, at the best of them",
+        name="Stop When Clear",
+        description="Stop when nothing intersects, or use the best of these steps",
         default=False,
     )
     new_original: BoolProperty(
-        name="New Original",
-        description="Keep the present shape as the one that Expand goes back to, in place of the one kept already",
+        name="Reset Rest Shape",
+        description="Store the current shape as the rest shape that Expand restores",
         default=False,
     )
 

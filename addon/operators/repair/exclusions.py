@@ -10,6 +10,7 @@ import bpy
 
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
+from ..check.check import counted
 
 
 class ExclusionOperator(NeedsNativeModule):
@@ -19,7 +20,7 @@ class ExclusionOperator(NeedsNativeModule):
 
 
 class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
-    """Let what intersects now do so: edits go on, it may not get worse, and everything else stays guarded."""
+    """Allow the current intersections, but no more of them; all other pairs stay guarded"""
 
     bl_idname = "stiv.exclude_intersections"
     bl_label = "Exclude Intersections"
@@ -34,19 +35,15 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         context.scene.stiv.excluded = excluded.to_json()
+        self.report({"INFO"}, f"Excluded {counted(len(excluded.pairs), 'face pair')}")
         if others:
-            self.report(
-                {"WARNING"},
-                f"Excluded pairs of faces: {len(excluded.pairs)}; {len(others)} with loose edges, vertices or hair "
-                f'cannot be, the first in object "{others[0].first.object}": delete those or ignore the object',
-            )
-        else:
-            self.report({"INFO"}, f"Excluded pairs of faces: {len(excluded.pairs)}")
+            name, pairs = others[0].first.object, counted(len(others), "pair")
+            self.report({"WARNING"}, f"{name}: {pairs} of edges, vertices or hair left. Set its role to No Collision")
         return {"FINISHED"}
 
 
 class STIV_OT_clear_exclusions(ExclusionOperator, bpy.types.Operator):
-    """Guard all pairs of faces again; a scene that intersects is then refused again."""
+    """Guard all pairs of faces again"""
 
     bl_idname = "stiv.clear_exclusions"
     bl_label = "Clear Exclusions"
@@ -66,7 +63,7 @@ def excluded_count(kept: str) -> str:
         count = len(Exclusions.from_json(kept).pairs)
     except ValueError as error:
         return str(error)
-    return f"Excluded pairs of faces: {count}" if count else ""
+    return counted(count, "excluded face pair") if count else ""
 
 
 def _settings(context: bpy.types.Context) -> Any:

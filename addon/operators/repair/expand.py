@@ -12,18 +12,17 @@ from .reshape import ReshapeOperator
 
 
 class STIV_OT_expand(ReshapeOperator, bpy.types.Operator):
-    """Take the selected meshes back toward the shape before Contract or Repair, going through nothing."""
+    """Expand the selected meshes toward their rest shape without intersections"""
 
     bl_idname = "stiv.expand"
     bl_label = "Expand"
 
     target: StringProperty(
         name="Target",
-        description="Mesh object with the same vertices, whose shape in its own frame is gone toward; "
-        "empty: the shape kept with each mesh",
+        description="Mesh object with the same vertices whose local shape is the goal; the rest shape if empty",
     )
     amount: FloatProperty(
-        name="Amount", description="How much of the way", default=1.0, min=0.0, max=1.0, subtype="FACTOR"
+        name="Amount", description="Fraction of the way", default=1.0, min=0.0, max=1.0, subtype="FACTOR"
     )
 
     def begin(self, context: bpy.types.Context) -> Any:

@@ -12,10 +12,10 @@ from ...translations import say
 
 
 class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
-    """Put objects, vertices, poses and shape keys back to the last state without intersections"""
+    """Restore objects, vertices, poses and shape keys to the last state without intersections"""
 
     bl_idname = "stiv.guard_revert"
-    bl_label = "Back to Last Clear State"
+    bl_label = "Restore Clear State"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
@@ -41,7 +41,7 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
             correction.take_strokes(context)
         left = correction.test(context).problem
         if left is not None:
-            self.report({"WARNING"}, say("{}; use Undo for what else changed").format(left.headline(say)))
+            self.report({"WARNING"}, say("{}; use Undo for other changes").format(left.headline(say)))
             return {"FINISHED"} if names else {"CANCELLED"}
         restored = say("Restored {}").format(listed(names, say)) if names else say("Restored frame {}").format(frame)
         self.report({"INFO"}, restored)

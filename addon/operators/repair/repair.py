@@ -12,14 +12,14 @@ from .reshape import ReshapeOperator
 
 
 class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
-    """Remove the intersections of the selected meshes: contract them until there are none, expand them back."""
+    """Contract the selected meshes until nothing intersects, then expand them again"""
 
     bl_idname = "stiv.repair"
     bl_label = "Repair Intersections"
 
     max_deviation: FloatProperty(
-        name="Most Deviation",
-        description="What ends farther from its shape is refused: mean distance in parts of the size of what moves",
+        name="Max Deviation",
+        description="Reject results whose mean distance from the shape is larger, relative to its size",
         default=0.05,
         min=0.0,
         soft_max=0.2,
@@ -27,7 +27,7 @@ class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
     )
     weld: BoolProperty(
         name="Weld",
-        description="Make vertices of a mesh one that lie in exactly the same place, before: open seams of imports",
+        description="Merge coincident vertices first",
         default=False,
     )
 

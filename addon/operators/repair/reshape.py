@@ -105,7 +105,7 @@ class ReshapeOperator(NeedsNativeModule):
             self._worker.token.cancel()
             self._leave(context)
             self._put_back()
-            self.report({"INFO"}, say("cancelled, nothing is changed"))
+            self.report({"INFO"}, say("cancelled, nothing changed"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
@@ -171,13 +171,12 @@ class ReshapeOperator(NeedsNativeModule):
 
 _OUTCOME_WORDS = {
     "already_free": "nothing intersects",
-    "repaired": "repaired",
-    "refused": "not repaired, nothing is changed",
-    "budget": "the time was used up, nothing is changed",
-    "cancelled": "cancelled, nothing is changed",
+    "refused": "not repaired, nothing changed",
+    "budget": "time limit reached, nothing changed",
+    "cancelled": "cancelled, nothing changed",
     "contracted": "contracted",
-    "reached": "the shape is reached",
-    "corrected": "as near as the surfaces let it",
+    "reached": "shape reached",
+    "corrected": "as close as contact allows",
     "blocked": "blocked",
     "unchanged": "nothing left to do",
 }
@@ -187,13 +186,24 @@ def outcome(report: Any) -> str:
     """What became of it, what is left, and where the first of it is: one line."""
     text = say(_OUTCOME_WORDS.get(report.status, report.status))
     if report.status == "repaired":
-        figures = say("{} intersecting pairs are gone, {} off in the mean")
-        text += ": " + figures.format(report.pairs_before, f"{report.deviation:.2%}")
+        text = _repaired(report.pairs_before, f"{report.deviation:.2%}")
     parts = [text, report.message] if report.message and report.status != "cancelled" else [text]
     if report.pairs:
         named = _named(report.pairs[:TOLD]) + " ..." * (len(report.pairs) > TOLD)
-        parts.append(say("{} pairs meet: {}").format(len(report.pairs), named))
+        parts.append(_intersecting(len(report.pairs), named))
     return "; ".join(parts)
+
+
+def _intersecting(count: int, named: str) -> str:
+    return (
+        say("1 pair intersects: {}").format(named) if count == 1 else say("{} pairs intersect: {}").format(count, named)
+    )
+
+
+def _repaired(count: int, deviation: str) -> str:
+    if count == 1:
+        return say("Resolved 1 intersection, mean deviation {}").format(deviation)
+    return say("Resolved {} intersections, mean deviation {}").format(count, deviation)
 
 
 def describe(report: Any) -> str:

@@ -13,15 +13,15 @@ from .reshape import ReshapeOperator
 
 
 class STIV_OT_settle(ReshapeOperator, bpy.types.Operator):
-    """Solve again and again toward the shape before Contract or Repair, while that brings the meshes nearer to it."""
+    """Solve again toward the rest shape, as long as the meshes get closer"""
 
     bl_idname = "stiv.settle"
     bl_label = "Settle"
 
-    rounds: IntProperty(name="Rounds", description="At most so many", default=4, min=1, soft_max=16, max=64)
+    rounds: IntProperty(name="Rounds", description="Maximum number of rounds", default=4, min=1, soft_max=16, max=64)
     smoothness: FloatProperty(
         name="Smoothness",
-        description="0.1 gives way smoothly, 0.01 tightly: nearer to the shape, less even",
+        description="Higher spreads the response smoothly, lower follows the goal more tightly",
         default=0.01,
         min=1e-4,
         max=10.0,

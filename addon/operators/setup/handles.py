@@ -21,7 +21,7 @@ class _HandleOperator(NeedsNativeModule):
 
 
 class STIV_OT_handle_add(_HandleOperator, bpy.types.Operator):
-    """Make the active vertex group a handle; without one, add a row to choose one in."""
+    """Make the active vertex group a handle, or add an empty row to choose one"""
 
     bl_idname = "stiv.handle_add"
     bl_label = "Add Handle"
@@ -37,18 +37,18 @@ class STIV_OT_handle_add(_HandleOperator, bpy.types.Operator):
 
 
 class STIV_OT_handle_remove(_HandleOperator, bpy.types.Operator):
-    """Take a vertex group from the handles; the group itself stays."""
+    """Remove the vertex group from the handles; the group itself stays"""
 
     bl_idname = "stiv.handle_remove"
     bl_label = "Remove Handle"
 
-    index: IntProperty(name="Row", min=0)
+    index: IntProperty(name="Index", min=0)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove the row."""
         rows = context.active_object.stiv.handles
         if self.index >= len(rows):
-            self.report({"ERROR"}, f"there are {len(rows)} handles; there is no row {self.index}")
+            self.report({"ERROR"}, f"Handle {self.index} does not exist: the list has {len(rows)}")
             return {"CANCELLED"}
         rows.remove(self.index)
         return {"FINISHED"}

@@ -29,14 +29,16 @@ class _LoopOperator(NeedsNativeModule):
 
 
 class STIV_OT_loop_add(_LoopOperator, bpy.types.Operator):
-    """Show the Loop subdivision of the active cage of triangles, live, in an object beside it that takes its part."""
+    """Show the active triangle cage as a smooth surface, which edits then use"""
 
     bl_idname = "stiv.loop_add"
     bl_label = "Add Loop Subdivision"
     needs_refined = False
 
-    levels: IntProperty(name="Levels", description="Each cuts a triangle into four", default=2, min=1, max=3)
-    boundary: EnumProperty(name="Boundary", items=BOUNDARIES, default="all")
+    levels: IntProperty(
+        name="Levels", description="Number of subdivisions; each splits a triangle into 4", default=2, min=1, max=3
+    )
+    boundary: EnumProperty(name="Boundary Smooth", items=BOUNDARIES, default="all")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make the object; the cage is drawn as wires and not rendered."""
@@ -57,7 +59,7 @@ class STIV_OT_loop_add(_LoopOperator, bpy.types.Operator):
 
 
 class STIV_OT_loop_refresh(_LoopOperator, bpy.types.Operator):
-    """Compute the Loop subdivision of the active cage anew."""
+    """Update the Loop subdivision of the active cage"""
 
     bl_idname = "stiv.loop_refresh"
     bl_label = "Refresh Loop Subdivision"
@@ -78,7 +80,7 @@ class STIV_OT_loop_refresh(_LoopOperator, bpy.types.Operator):
 
 
 class STIV_OT_loop_remove(_LoopOperator, bpy.types.Operator):
-    """Delete the object that shows the Loop subdivision of the active cage; the cage shows itself again."""
+    """Delete the Loop subdivision of the active cage and show the cage again"""
 
     bl_idname = "stiv.loop_remove"
     bl_label = "Remove Loop Subdivision"

@@ -59,7 +59,7 @@ class Dragging:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the drag: a file is loaded, the window closes."""
-        self._drag.abort(DragEnded("the drag was ended by Blender"))
+        self._drag.abort(DragEnded("Blender ended the drag"))
         self._leave(context)
 
     def _start(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
@@ -160,10 +160,10 @@ class Dragging:
 
 
 class STIV_OT_drag(Dragging, bpy.types.Operator):
-    """Drag what is selected; surfaces give way instead of going through each other."""
+    """Transform the selection with the mouse; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.drag"
-    bl_label = "Drag without Interference"
+    bl_label = "Collision Drag"
     bl_options = {"INTERNAL", "BLOCKING", "GRAB_CURSOR"}  # noqa: RUF012 (Blender reads a set)
 
     kind: EnumProperty(items=[(kind, kind.title(), "") for kind in OPERATORS], options={"SKIP_SAVE"})

@@ -14,13 +14,15 @@ from .transform_operator import TransformOperator
 
 
 class STIV_OT_move(TransformOperator, bpy.types.Operator):
-    """Move what is selected; surfaces give way instead of going through each other."""
+    """Move the selection; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.move"
-    bl_label = "Move without Interference"
+    bl_label = "Collision Move"
     kind = "move"
 
-    value: FloatVectorProperty(name="Move", description="In world space", subtype="TRANSLATION", unit="LENGTH")
+    value: FloatVectorProperty(
+        name="Move", description="Translation in world space", subtype="TRANSLATION", unit="LENGTH"
+    )
 
     def given(self) -> Translation:
         """The transform of the properties."""

@@ -12,16 +12,16 @@ from ...modal.proportional import FALLOFFS, Proportional
 
 AS_SCENE = "SCENE"
 RESPONDERS = (
-    (AS_SCENE, "As in Scene", "Who gives way as the scene says"),
-    ("selected", "Selected", "What is selected gives way"),
-    ("unselected", "Unselected", "Everything else gives way"),
-    ("all", "All", "Both sides give way"),
+    ("SCENE", "Scene Setting", "Use the setting of the scene"),
+    ("selected", "Selected", "The selection is deflected"),
+    ("unselected", "Others", "Everything else is pushed aside"),
+    ("all", "Both", "Both sides move"),
 )
 
 INTERFERENCE = (
-    (AS_SCENE, "As in Scene", "As the scene says"),
-    ("ON", "On", "Surfaces give way"),
-    ("OFF", "Off", "Surfaces go through each other"),
+    ("SCENE", "Scene Setting", "Use the setting of the scene"),
+    ("ON", "On", "Surfaces collide"),
+    ("OFF", "Off", "Surfaces pass through each other"),
 )
 
 
@@ -29,15 +29,25 @@ class Choices:
     """Mixed into the operators."""
 
     proportional: BoolProperty(
-        name="Proportional Editing", description="Points near the selection follow, in Edit Mode"
+        name="Proportional Editing", description="Move points near the selection with it, in Edit Mode"
     )
-    proportional_size: FloatProperty(name="Proportional Size", subtype="DISTANCE", default=1.0, min=1e-6)
+    proportional_size: FloatProperty(
+        name="Proportional Size",
+        description="Radius of proportional editing",
+        subtype="DISTANCE",
+        default=1.0,
+        min=1e-6,
+    )
     proportional_falloff: EnumProperty(
-        name="Falloff", items=[(name, name.replace("_", " ").title(), "") for name in FALLOFFS], default="SMOOTH"
+        name="Proportional Falloff",
+        items=[(name, name.replace("_", " ").title(), "") for name in FALLOFFS],
+        default="SMOOTH",
     )
-    proportional_connected: BoolProperty(name="Connected Only", description="Measured along the edges of the cage")
-    responders: EnumProperty(name="Gives way", items=RESPONDERS, default=AS_SCENE, options={"SKIP_SAVE"})
-    interference: EnumProperty(name="Interference", items=INTERFERENCE, default=AS_SCENE, options={"SKIP_SAVE"})
+    proportional_connected: BoolProperty(
+        name="Connected Only", description="Measure distances along the edges of the cage"
+    )
+    responders: EnumProperty(name="Yields", items=RESPONDERS, default=AS_SCENE, options={"SKIP_SAVE"})
+    interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=AS_SCENE, options={"SKIP_SAVE"})
     outcome: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def influence(self) -> Any:

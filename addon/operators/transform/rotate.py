@@ -14,21 +14,23 @@ from .transform_operator import TransformOperator
 
 
 class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
-    """Rotate what is selected; surfaces give way instead of going through each other."""
+    """Rotate the selection; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.rotate"
-    bl_label = "Rotate without Interference"
+    bl_label = "Collision Rotate"
     kind = "rotate"
 
-    angle: FloatProperty(name="Angle", subtype="ANGLE", description="Counter-clockwise about the axis")
-    axis: FloatVectorProperty(name="Axis", subtype="DIRECTION", default=(0.0, 0.0, 1.0), description="In world space")
+    angle: FloatProperty(name="Angle", subtype="ANGLE", description="Counterclockwise rotation about the axis")
+    axis: FloatVectorProperty(
+        name="Axis", subtype="DIRECTION", default=(0.0, 0.0, 1.0), description="Rotation axis in world space"
+    )
 
     def given(self) -> Rotation:
         """The transform of the properties. ValueError for an axis without direction."""
         axis = np.array(self.axis)
         length = np.linalg.norm(axis)
         if not length > 0.0:
-            raise ValueError("the axis of rotation is (0, 0, 0): give it a direction")
+            raise ValueError("The rotation axis is (0, 0, 0): set a direction")
         return Rotation(self.angle, axis / length)
 
     def own_values(self) -> tuple[Any, ...]:

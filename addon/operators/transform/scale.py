@@ -14,21 +14,21 @@ from ...transform.scaling import Scaling
 from .transform_operator import TransformOperator
 
 ORIENTATIONS = (
-    ("GLOBAL", "Global", "Along the axes of the world"),
-    ("LOCAL", "Local", "Along the axes of the active object"),
-    ("DRAGGED", "As Dragged", "Along the axes that the drag used"),
+    ("GLOBAL", "Global", "Axes of the world"),
+    ("LOCAL", "Local", "Axes of the active object"),
+    ("DRAGGED", "As Dragged", "Axes that the drag used"),
 )
 
 
 class STIV_OT_scale(TransformOperator, bpy.types.Operator):
-    """Scale what is selected; surfaces give way instead of going through each other."""
+    """Scale the selection; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.scale"
-    bl_label = "Scale without Interference"
+    bl_label = "Collision Scale"
     kind = "scale"
 
-    value: FloatVectorProperty(name="Scale", description="Factors", default=(1.0, 1.0, 1.0), subtype="XYZ")
-    orientation: EnumProperty(name="Orientation", description="Axes of the factors", items=ORIENTATIONS)
+    value: FloatVectorProperty(name="Scale", description="Scale factors", default=(1.0, 1.0, 1.0), subtype="XYZ")
+    orientation: EnumProperty(name="Orientation", description="Axes of the scale factors", items=ORIENTATIONS)
     axes: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
 
     def given(self) -> Scaling:

@@ -84,7 +84,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change:
     labels, buttons, is_red = shown_in_status_bar()
     assert is_red and buttons == ["stiv.guard_revert"]
     first = problem.pairs[0]
-    expected = f"Box, Wall intersect: {len(problem.pairs)} face pairs"
+    expected = f"Box, Wall: {len(problem.pairs)} intersecting face pairs"
     assert labels == [f"Live guard: {expected}, first {first.first.number} and {first.second.number}"]
     assert display.content().alert[0].startswith(expected) and len(display.content().intersecting)
     move(0.1)
@@ -98,7 +98,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change:
     expect_free()
     assert watcher.problem() is None and watcher.uncorrected() == 2
     assert not display.content().alert and not alerts._alert
-    assert names_of_steps() == [*steps, "Move", "Move", "Back to Last Clear State"]
+    assert names_of_steps() == [*steps, "Move", "Move", "Restore Clear State"]
     bpy.ops.ed.undo()
     look()
     assert np.array_equal(positions(), moved)
@@ -118,7 +118,7 @@ def test_a_rig_that_is_moved_is_no_reason_to_take_the_scene_for_clear() -> None:
     bpy.data.objects["Rig"].location.x = -1.5
     bpy.ops.ed.undo_push(message="rig")
     look()
-    assert watcher.problem().names == ["Box", "Wall"] and "Rig cannot be followed" in watcher.problem().reason
+    assert watcher.problem().names == ["Box", "Wall"] and "Rig cannot be corrected" in watcher.problem().reason
     assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
     look()
     assert watcher.problem() is None and bpy.data.objects["Rig"].location.x == 0.0

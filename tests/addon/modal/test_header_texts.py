@@ -31,7 +31,7 @@ def test_the_header_names_what_is_not_as_usual() -> None:
     )  # fmt: skip
     told = header_text(state, "Move", "", ["a note"], ("GLOBAL", "LOCAL"))
     assert told == (
-        "Move  along Global X  proportional 1.5 Inverse Square connected  precise  snap  gives way: all  |  a note"
+        "Move  along Global X  proportional 1.5 Inverse Square connected  precision  snap  yields: both  |  a note"
     )
 
 
@@ -40,7 +40,7 @@ def test_every_word_of_a_header_is_translated_and_names_of_objects_are_not() -> 
     verdict = verdict_text("blocked", ["Vase", "wall"], shout)
     value = Translation((1.0, 0.0, 0.0)).text(shout)
     assert header_text(state, value, verdict, say=shout) == (
-        "MOVE X 1  Y 0  Z 0  (DISTANCE 1)  PRECISE  GIVES WAY: WHAT IS NOT SELECTED  |  BLOCKED BY Vase, wall"
+        "MOVE X 1  Y 0  Z 0  (DISTANCE 1)  PRECISION  YIELDS: OTHERS  |  BLOCKED BY Vase, wall"
     )
 
 

@@ -130,7 +130,7 @@ def test_a_refusal_is_reported_and_changes_nothing(scene: Any, failure: Exceptio
 
 def test_an_axis_without_direction_is_refused_before_anything_begins() -> None:
     RecordingEdit.begun = None
-    with pytest.raises(RuntimeError, match="axis of rotation"):
+    with pytest.raises(RuntimeError, match="rotation axis"):
         bpy.ops.stiv.rotate(angle=1.0, axis=(0.0, 0.0, 0.0))
     assert RecordingEdit.begun is None
 

@@ -69,7 +69,7 @@ def test_repair_is_one_undo_step_and_reports() -> None:
 def test_what_is_refused_raises_with_the_pairs_named() -> None:
     ball = icosphere(1)
     one, two = add("One", ball.vertices, ball.faces), add("Two", ball.vertices, ball.faces)
-    with pytest.raises(RuntimeError, match=r'exactly on others.*pairs meet: "One" face 0 and "Two" face 0'):
+    with pytest.raises(RuntimeError, match=r'exactly on others.*pairs intersect: "One" face 0 and "Two" face 0'):
         bpy.ops.stiv.repair()
     assert np.array_equal(positions(one), positions(two))
     assert last()["status"] == "refused" and last()["pairs"][0] == [["One", "face", 0], ["Two", "face", 0]]
@@ -247,7 +247,7 @@ def test_excluded_intersections_let_edits_go_on_until_they_are_cleared() -> None
         bpy.ops.stiv.move(value=(0, 0, 0.01))
     assert bpy.ops.stiv.exclude_intersections() == {"FINISHED"}
     before = check_scene(bpy.context).pairs
-    assert excluded_count(bpy.context.scene.stiv.excluded) == "Excluded pairs of faces: 1"
+    assert excluded_count(bpy.context.scene.stiv.excluded) == "1 excluded face pair"
     assert bpy.ops.stiv.move(value=(0, 0, 0.01)) == {"FINISHED"}
     assert spike.location.z == pytest.approx(0.01)
     assert len(check_scene(bpy.context).pairs) <= len(before)
@@ -275,8 +275,8 @@ def test_check_reads_out_the_least_distance() -> None:
     add("Apart", *SPIKE, location=(0, 0, 1.25))
     assert bpy.ops.stiv.check() == {"FINISHED"}
     told = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert told[:2] == ["No intersections", "Least distance 0.25 between Grid and Apart"]
+    assert told[:2] == ["No intersections", "Grid and Apart: clearance 0.25"]
     bpy.data.objects.remove(bpy.data.objects["Apart"])
     assert bpy.ops.stiv.check() == {"FINISHED"}
     told = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert told[0] == "No intersections" and told[1].startswith("Objects: 1, triangles: ")
+    assert told[0] == "No intersections" and told[1].startswith("Tested 1 object, ")

@@ -182,7 +182,7 @@ def test_the_check_finds_and_selects_what_intersects() -> None:
     assert bpy.ops.stiv.check() == {"FINISHED"}
     assert {thing.name for thing in bpy.context.selected_objects} == {"Wall", "Box"}
     summary = bpy.context.window_manager.stiv_check.summary
-    assert "intersecting pairs" in summary and "Wall" in summary and "Far" not in summary
+    assert "4 intersecting face pairs" in summary and "Wall" in summary and "Far" not in summary
 
 
 def test_the_check_says_what_took_part(wall: Any) -> None:
@@ -191,7 +191,7 @@ def test_the_check_says_what_took_part(wall: Any) -> None:
     bpy.ops.stiv.check()
     told = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
     triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
-    assert told == f'Objects: 2, triangles: {triangles}; not tested, hidden: 1 ("Hidden")'
+    assert told == f'Tested 2 objects, {triangles} triangles; not tested, hidden: 1 ("Hidden")'
 
 
 @pytest.mark.parametrize("constraints", ["per_patch", "single"])

@@ -34,10 +34,10 @@ def test_switches_leave_things_out() -> None:
 
 def test_texts_give_distance_counts_and_speed() -> None:
     assert texts_of(full(), ALL, lambda length: f"{length} m") == [
-        "Least distance 5.0 m (Box, Wall)",
+        "Clearance 5.0 m (Box, Wall)",
         "3 intersecting triangles",
         "2 contacts",
-        "12 ms, 40 frames a second",
+        "12 ms, 40 fps",
     ]
 
 
