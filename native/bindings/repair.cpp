@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/editing/repair.hpp"
+#include "stiv/repair/repair.hpp"
 
 #include "calls.hpp"
 #include "module.hpp"
-#include "stiv/editing/expansion.hpp"
+#include "stiv/repair/expansion.hpp"
 
 namespace stiv::bindings {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "deformation/weight_rows.hpp"
+#include "deformation/linear/weight_rows.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {

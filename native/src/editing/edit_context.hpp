@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "detection/candidate_cache.hpp"
-#include "editing/depth_watch.hpp"
 #include "editing/effective_separation.hpp"
 #include "editing/excluded_pairs.hpp"
+#include "penetration/depth_watch.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/detection/detector.hpp"

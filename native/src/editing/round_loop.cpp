@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "editing/round_volumes.hpp"
 #include "editing/control_interpolation.hpp"
+#include "editing/round_volumes.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/volumes/stiv.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "editing/pull.hpp"
-#include "editing/edit_result.hpp"
 #include "editing/control_interpolation.hpp"
+#include "editing/edit_result.hpp"
+#include "editing/pull.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/options.hpp"
-#include "stiv/editing/static_pairs.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv {

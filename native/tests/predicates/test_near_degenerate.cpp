@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "acceptance/expansion.hpp"
+#include "acceptance/intersection/expansion_arithmetic.hpp"
+#include "acceptance/intersection/predicates.hpp"
 #include "predicates/wide_integer.hpp"
-#include "stiv/acceptance/predicates.hpp"
 #include "stiv/coordinate_range.hpp"
 
 using namespace stiv;

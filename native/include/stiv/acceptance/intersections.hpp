@@ -19,6 +19,16 @@ bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Ind
 /// Pairs of indices, sorted.
 using IndexPairs = std::vector<std::pair<Index, Index>>;
 
+/// All that intersects in a surface at rest.
+struct StaticPairs {
+  IndexPairs faces;           ///< pairs of triangles
+  IndexPairs loose_edges;     ///< (loose edge, triangle)
+  IndexPairs loose_vertices;  ///< (vertex of no edge, triangle)
+
+  Index count() const { return static_cast<Index>(faces.size() + loose_edges.size() + loose_vertices.size()); }
+  bool empty() const { return count() == 0; }
+};
+
 /// Exact static test of a whole surface; keeps its trees between calls. Pairs of bodies that do not meet are left out.
 /// Positions are finite. Results do not depend on the number of threads.
 class IntersectionTest {
@@ -45,5 +55,9 @@ class IntersectionTest {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+inline StaticPairs find_static_pairs(IntersectionTest& test, const Positions& q, Execution& execution) {
+  return {test.find(q, execution), test.find_loose_edges(q, execution), test.find_loose_vertices(q, execution)};
+}
 
 }  // namespace stiv

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/acceptance/least_distance.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+#include "acceptance/clearance/triangle_distance.hpp"
+#include "acceptance/intersection/primitives.hpp"
+#include "stiv/acceptance/intersections.hpp"
+
+namespace stiv {
+
+namespace {
+
+std::size_t place(Index k) { return static_cast<std::size_t>(k); }
+
+double squared_gap(const PackedBox& a, const PackedBox& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double one = double(a.values[k]) + double(b.values[k + 3]);
+    const double other = double(b.values[k]) + double(a.values[k + 3]);
+    const double gap = std::max({0.0, one, other});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// A node of the tree, or at level -1 a primitive: a place in the blocks.
+struct Part {
+  Index level = 0, node = 0;
+  PackedBox box;
+  Index group = 0;
+};
+
+/// Up to eight parts.
+struct Parts {
+  std::array<Part, Bvh::width> parts;
+  std::size_t count = 0;
+};
+
+/// Branch and bound over pairs of nodes, nearest first.
+class Search {
+ public:
+  Search(const Surface& surface, const Primitives& triangles, const PositionsView& q, bool within)
+      : surface_(surface), triangles_(triangles), tree_(triangles.tree()), q_(q), within_(within) {}
+
+  std::optional<NearestTriangles> run() {
+    const auto top = static_cast<Index>(tree_.levels().size()) - 1;
+    const Part root{top, 0, tree_.levels().back().boxes[0], tree_.levels().back().groups[0]};
+    visit(root, root);
+    return best_;
+  }
+
+ private:
+  struct Pair {
+    double bound = 0;
+    std::uint8_t a = 0, b = 0;
+  };
+
+  void visit(const Part& a, const Part& b) {
+    const bool alike = a.level == b.level && a.node == b.node;
+    const Parts first = a.level >= b.level ? children(a) : itself(a);
+    const Parts second = b.level >= a.level ? children(b) : itself(b);
+    std::array<Pair, Bvh::width * Bvh::width> pairs;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < first.count; ++i)
+      for (std::size_t j = alike ? i : 0; j < second.count; ++j) {
+        const Part &x = first.parts[i], &y = second.parts[j];
+        if ((alike && i == j && x.level < 0) || !may_count(x.group, y.group)) continue;
+        const double bound = squared_gap(x.box, y.box);
+        if (bound < squared_best_) pairs[count++] = {bound, std::uint8_t(i), std::uint8_t(j)};
+      }
+    std::sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(count),
+              [](const Pair& x, const Pair& y) { return std::tie(x.bound, x.a, x.b) < std::tie(y.bound, y.a, y.b); });
+    for (std::size_t k = 0; k < count && pairs[k].bound < squared_best_; ++k) {
+      const Part &x = first.parts[pairs[k].a], &y = second.parts[pairs[k].b];
+      if (x.level < 0 && y.level < 0)
+        examine(tree_.order()[place(x.node)], tree_.order()[place(y.node)], pairs[k].bound == 0);
+      else
+        visit(x, y);
+    }
+  }
+
+  static Parts itself(const Part& part) {
+    Parts parts;
+    parts.parts[parts.count++] = part;
+    return parts;
+  }
+
+  Parts children(const Part& part) const {
+    const Bvh::Level& level = tree_.levels()[place(part.level)];
+    const Bvh::Node& node = level.nodes[place(part.node)];
+    const Index below = part.level > 0 ? static_cast<Index>(tree_.levels()[place(part.level - 1)].nodes.size())
+                                       : static_cast<Index>(tree_.order().size());
+    Parts parts;
+    for (Index lane = 0; lane < std::min(Bvh::width, below - part.node * Bvh::width); ++lane) {
+      const Index child = part.node * Bvh::width + lane;
+      if (part.level == 0 && tree_.order()[place(child)] < 0) continue;
+      Part& next = parts.parts[parts.count++];
+      next.level = part.level - 1;
+      next.node = child;
+      for (std::size_t k = 0; k < 7; ++k) next.box.values[k] = node.planes[k][lane];
+      next.group = part.level > 0 ? tree_.levels()[place(part.level - 1)].groups[place(child)] : part.group;
+    }
+    return parts;
+  }
+
+  bool may_count(Index a, Index b) const {
+    if (a == Bvh::mixed || b == Bvh::mixed) return true;
+    return (within_ || a != b) && surface_.bodies_meet(a, b);
+  }
+
+  void examine(Index a, Index b, bool boxes_meet) {
+    if (a > b) std::swap(a, b);
+    const std::array<Index, 3>&first = triangles_.corners(a), &second = triangles_.corners(b);
+    for (const Index corner : first)
+      if (std::find(second.begin(), second.end(), corner) != second.end()) return;
+    if (best_ && least_triangle_distance(first, second, q_) >= best_->distance) return;
+    NearestTriangles nearest = triangle_distance(first, second, q_);
+    if (boxes_meet && triangles_intersect(first, second, q_)) nearest.distance = 0;
+    if (best_ && nearest.distance >= best_->distance) return;
+    nearest.triangles = {a, b};
+    best_ = nearest;
+    squared_best_ = nearest.distance * nearest.distance;
+  }
+
+  const Surface& surface_;
+  const Primitives& triangles_;
+  const Bvh& tree_;
+  PositionsView q_;
+  bool within_;
+  std::optional<NearestTriangles> best_;
+  double squared_best_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+class LeastDistance::Implementation {
+ public:
+  explicit Implementation(std::shared_ptr<const Surface> surface)
+      : surface_(std::move(surface)), triangles_(*surface_, triangle_corners(*surface_)) {}
+
+  std::optional<NearestTriangles> find(const PositionsView& q, bool within) {
+    surface_->check_positions(q);
+    if (triangles_.empty()) return std::nullopt;
+    const Execution execution(1);
+    triangles_.update(vertex_boxes(q, {}, execution), execution);
+    return Search(*surface_, triangles_, q, within).run();
+  }
+
+ private:
+  std::shared_ptr<const Surface> surface_;
+  Primitives triangles_;
+};
+
+LeastDistance::LeastDistance(std::shared_ptr<const Surface> surface)
+    : implementation_(std::make_unique<Implementation>(std::move(surface))) {}
+LeastDistance::~LeastDistance() = default;
+LeastDistance::LeastDistance(LeastDistance&&) noexcept = default;
+LeastDistance& LeastDistance::operator=(LeastDistance&&) noexcept = default;
+
+std::optional<NearestTriangles> LeastDistance::find(const PositionsView& q, bool within) {
+  const FloatingPointScope floating_point;
+  return implementation_->find(q, within);
+}
+
+}  // namespace stiv

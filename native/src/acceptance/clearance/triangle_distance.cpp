@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "acceptance/clearance/triangle_distance.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "stiv/detection/distance.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+Corners seen_from(const Vector3& origin, const std::array<Index, 3>& triangle, const PositionsView& q) {
+  Corners corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = q.row(triangle[k]).transpose() - origin;
+  return corners;
+}
+
+/// By how much the second lies beyond the first along a direction, over its length.
+double gap_along(const Vector3& direction, const Corners& a, const Corners& b) {
+  const double length = direction.norm();
+  if (!(length > 0)) return 0;
+  double high = -std::numeric_limits<double>::infinity(), low = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    high = std::max(high, direction.dot(a[k]));
+    low = std::min(low, direction.dot(b[k]));
+  }
+  return (low - high) / length;
+}
+
+}  // namespace
+
+double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                               const PositionsView& q) {
+  const Vector3 origin = q.row(first[0]);
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  const Vector3 centres = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
+  double gap = gap_along(centres, a, b);
+  for (const Corners& triangle : {a, b}) {
+    const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    gap = std::max(gap, gap_along(normal.dot(centres) < 0 ? Vector3(-normal) : normal, a, b));
+  }
+  return gap * (1 - 0x1p-40);
+}
+
+NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                                   const PositionsView& q) {
+  const Vector3 origin = q.row(first[0]);  // differences are exact to the size of the pair, not of the scene
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  NearestTriangles nearest;
+  nearest.distance = std::numeric_limits<double>::infinity();
+  const auto take = [&](double distance, const Vector3& on_first, const Vector3& on_second) {
+    if (distance >= nearest.distance) return;
+    nearest.distance = distance;
+    nearest.points = {origin + on_first, origin + on_second};
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Witness from_first = point_triangle<double>({a[i], b[0], b[1], b[2]});
+    take(from_first.distance, a[i], a[i] - from_first.separation);
+    const Witness from_second = point_triangle<double>({b[i], a[0], a[1], a[2]});
+    take(from_second.distance, b[i] - from_second.separation, b[i]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t next_i = (i + 1) % 3, next_j = (j + 1) % 3;
+      const Witness edges = segment_segment<double>({a[i], a[next_i], b[j], b[next_j]});
+      const Vector3 on_first = edges.weights[0] * a[i] + edges.weights[1] * a[next_i];
+      take(edges.distance, on_first, on_first - edges.separation);
+    }
+  }
+  return nearest;
+}
+
+}  // namespace stiv

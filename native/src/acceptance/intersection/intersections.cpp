@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/acceptance/intersections.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#include "acceptance/intersection/pair_examination.hpp"
+#include "acceptance/intersection/point_rows.hpp"
+#include "acceptance/intersection/stars.hpp"
+
+namespace stiv {
+
+namespace {
+
+GroupTable meeting_bodies(const Surface& surface) {
+  const auto count = static_cast<Index>(surface.bodies().size());
+  std::vector<unsigned char> meets;
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b < count; ++b) meets.push_back(surface.bodies_meet(a, b));
+  return {count, std::move(meets)};
+}
+
+/// Pairs of two kinds of primitives, or of one with itself, that intersect.
+class Search {
+ public:
+  Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
+         const PositionsView& q, const PointRows& points)
+      : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q), points_(points) {
+    if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
+  }
+
+  IndexPairs all(const Execution& execution) const {
+    std::vector<IndexPairs> found(tasks_.size());
+    execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
+      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair& pair) {
+        found[static_cast<std::size_t>(task)].emplace_back(pair.first, pair.second);
+        return true;
+      });
+    });
+    return sorted(found);
+  }
+
+  bool any(const Execution& execution) const {
+    std::atomic<bool> found{false};
+    execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
+      if (found.load(std::memory_order_relaxed)) return;
+      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair&) {
+        found.store(true, std::memory_order_relaxed);
+        return false;
+      });
+    });
+    return found;
+  }
+
+ private:
+  /// Calls `report(pair)` for what intersects, until it returns false.
+  template <class Report>
+  void scan(const Bvh::Task& task, const Report& report) const {
+    PairExamination examination(surface_, first_, second_, q_, points_, report);
+    PairBuffer candidates;
+    bool more = true;
+    candidates.limit = 4096;
+    candidates.full = [&](PairBuffer& found) {
+      for (std::size_t k = 0; k < found.count && more; ++k) more = examination.take(found[k]);
+      found.count = 0;
+      return more;
+    };
+    first_.tree().overlaps(task, second_.tree(), bodies_, candidates);
+    if (candidates.full(candidates)) examination.finish();
+  }
+
+  IndexPairs sorted(const std::vector<IndexPairs>& parts) const {
+    IndexPairs pairs;
+    for (const IndexPairs& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+    if (&first_ == &second_)
+      for (auto& [a, b] : pairs)
+        if (b < a) std::swap(a, b);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  }
+
+  const Surface& surface_;
+  const Primitives &first_, &second_;
+  const GroupTable& bodies_;
+  PositionsView q_;
+  const PointRows& points_;
+  std::vector<Bvh::Task> tasks_;
+};
+
+}  // namespace
+
+class IntersectionTest::Implementation {
+ public:
+  explicit Implementation(std::shared_ptr<const Surface> surface)
+      : surface_(std::move(surface)),
+        triangles_(*surface_, triangle_corners(*surface_)),
+        loose_edges_(*surface_, loose_edge_corners(*surface_)),
+        loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
+        stars_(triangles_.all_corners(), surface_->vertex_count()),
+        bodies_(meeting_bodies(*surface_)) {}
+
+  IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
+  IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
+    return find(loose_edges_, q, execution);
+  }
+  IndexPairs find_loose_vertices(const PositionsView& q, const Execution& execution) {
+    IndexPairs pairs = find(loose_vertices_, q, execution);
+    for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
+    return pairs;
+  }
+
+  bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
+    update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
+    for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
+      if (Search(*surface_, *first, triangles_, bodies_, q, points_).any(execution)) return false;
+    return true;
+  }
+
+ private:
+  IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
+    update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
+    return Search(*surface_, first, triangles_, bodies_, q, points_).all(execution);
+  }
+
+  using Kinds = std::vector<Primitives*>;
+
+  void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
+              const Execution& execution) {
+    surface_->check_positions(q);
+    points_ = point_rows(q, execution);
+    const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
+    for (Primitives* kind : kinds) kind->update(boxes, execution);
+    triangles_.leave_out_neighbours(stars_.find_free(points_, moved, execution), execution);
+  }
+
+  std::shared_ptr<const Surface> surface_;
+  Primitives triangles_, loose_edges_, loose_vertices_;
+  Stars stars_;
+  GroupTable bodies_;
+  PointRows points_;  ///< of the update
+};
+
+IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
+    : implementation_(std::make_unique<Implementation>(std::move(surface))) {}
+IntersectionTest::~IntersectionTest() = default;
+IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
+IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
+
+IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find(q, execution);
+}
+
+IndexPairs IntersectionTest::find_loose_edges(const PositionsView& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_loose_edges(q, execution);
+}
+
+IndexPairs IntersectionTest::find_loose_vertices(const PositionsView& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_loose_vertices(q, execution);
+}
+
+bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->is_free(q, moved, execution);
+}
+
+}  // namespace stiv

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "deformation/handles/rotation_fit.hpp"
+#include "deformation/metric/sparse_factor.hpp"
+
+namespace stiv {
+
+/// The cells of as-rigid-as-possible editing: each vertex with its edges, at rest and turned. [Sorkine and Alexa 2007]
+class RigidCells {
+ public:
+  /// @param weights of the edges, (n, n)
+  RigidCells(SymmetricMatrix weights, Positions rest);
+
+  /// The local step: the rotation of each cell from rest to positions rest + u.
+  std::vector<RotationFit> fit(const Positions& u) const;
+  /// The same to rounding, from the rotations at positions nearby.
+  std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby) const;
+
+  /// 1/4 sum_i sum_j w_ij |(u_i - u_j) - (R_i - 1)(rest_i - rest_j)|^2.
+  double energy(const Positions& u, const std::vector<RotationFit>& fits) const;
+
+  /// The right side of the global step: minus the gradient of the energy at u = 0 with these rotations.
+  Positions load(const std::vector<RotationFit>& fits) const;
+
+  /// How the load answers a change du of the positions, by way of the rotations; symmetric in du.
+  Positions load_change(const std::vector<RotationFit>& fits, const Positions& du) const;
+
+  /// The same as a matrix, (3 n, 3 n): C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij,
+  /// the turn that cell i is asked for. Row 3 i + axis stands for an axis of vertex i.
+  SymmetricMatrix load_matrix(const std::vector<RotationFit>& fits) const;
+
+ private:
+  /// sum_j w_ij (q_i - q_j) (rest_i - rest_j)', q = rest + u.
+  Eigen::Matrix3d spread(const Positions& u, Index vertex) const;
+  Positions load_of(const std::vector<Eigen::Matrix3d>& change) const;
+
+  SymmetricMatrix weights_;
+  Positions rest_;
+};
+
+}  // namespace stiv

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deformation/linear/linear_metric.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <utility>
+
+#include "deformation/metric/axis_metric.hpp"
+#include "deformation/metric/gram_metric.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+Eigen::VectorXd squared_lengths(const WeightColumns& matrix) {
+  Eigen::VectorXd lengths(matrix.cols());
+  for (Index control = 0; control < matrix.cols(); ++control) lengths[control] = matrix.col(control).squaredNorm();
+  return lengths;
+}
+
+WeightColumns selected_columns(const WeightColumns& matrix, const std::vector<Index>& columns) {
+  WeightColumns selected(matrix.rows(), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    selected.startVec(static_cast<Index>(k));
+    for (WeightColumns::InnerIterator entry(matrix, columns[k]); entry; ++entry)
+      selected.insertBack(entry.row(), static_cast<Index>(k)) = entry.value();
+  }
+  selected.finalize();
+  return selected;
+}
+
+/// M'M summed vertex by vertex into a dense matrix: a lattice's 64 weights a vertex fill it, whatever the order.
+Eigen::MatrixXd dense_gram(const WeightColumns& matrix) {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor, Index> rows = matrix;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(matrix.cols(), matrix.cols());
+  using Entry = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>::InnerIterator;
+  for (Index row = 0; row < rows.rows(); ++row)
+    for (Entry a(rows, row); a; ++a)
+      for (Entry b(rows, row); b && b.col() <= a.col(); ++b) gram(a.col(), b.col()) += a.value() * b.value();
+  return gram.selfadjointView<Eigen::Lower>();
+}
+
+class SparseLinearMetric final : public Metric {
+ public:
+  SparseLinearMetric(const WeightColumns& matrix, double smoothness, ActiveControls active)
+      : active_(std::move(active)) {
+    WeightColumns damped = WeightColumns(matrix.transpose()) * matrix;
+    const double damping = smoothness * damped.diagonal().mean();
+    for (Index k = 0; k < damped.cols(); ++k) damped.coeffRef(k, k) += damping;
+    factor_.compute(damped);
+    if (factor_.info() != Eigen::Success)
+      throw InputError("the metric of the controls cannot be factored: weights are too large or too small");
+  }
+
+  SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
+    const ActiveVector right = restrict_to(active_, g);
+    if (right.place.empty()) return {};
+    return extend_from(active_, factor_.solve(dense_columns(active_, right)));
+  }
+
+ private:
+  ActiveControls active_;
+  Eigen::SimplicialLDLT<WeightColumns> factor_;
+};
+
+std::unique_ptr<Metric> metric_of_active(const WeightColumns& matrix, double smoothness, ActiveControls active) {
+  const WeightColumns selected = selected_columns(matrix, active.control);
+  if (selected.cols() <= full_inverse_limit)
+    return make_gram_metric(dense_gram(selected), smoothness, std::move(active));
+  return std::make_unique<SparseLinearMetric>(selected, smoothness, std::move(active));
+}
+
+}  // namespace
+
+std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options) {
+  const Eigen::VectorXd lengths = squared_lengths(matrix);
+  const auto of_weights = [&](const Eigen::VectorXd& weights) {
+    return metric_of_active(matrix, options.smoothness, active_controls(lengths, weights));
+  };
+  return make_axis_metric(checked_weights(options, static_cast<Index>(matrix.cols())), of_weights);
+}
+
+}  // namespace stiv

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "deformation/metric/active_controls.hpp"
+
+namespace stiv {
+
+/// A matrix some columns of which are added up again and again.
+class SummedColumns {
+ public:
+  explicit SummedColumns(const Eigen::MatrixXd& matrix);
+
+  /// sum_k column[k] value[k]', (rows, 3), in the order given, none fused: the same bits whatever the width of vectors.
+  ActiveColumns sum(const std::vector<Index>& columns, const std::vector<Vector3>& values) const;
+
+ private:
+  Eigen::Index rows_;
+  Eigen::MatrixXd padded_;  ///< with rows of zeros up to a whole number of tiles
+};
+
+}  // namespace stiv

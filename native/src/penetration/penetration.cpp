@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "penetration/penetration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "penetration/mean_windings.hpp"
+
+namespace stiv {
+
+namespace {
+
+/// A side's part of the volume, and of the area that moves.
+void add_side(const Crossings& crossings, std::size_t side, double rounding, Penetration& sum) {
+  const PlacedBody& body = crossings.body(side);
+  const Vector3 origin = crossings.body(0).point(0);
+  const std::vector<double> means = mean_windings(crossings, side);
+  for (Index k = 0; k < body.triangle_count(); ++k) {
+    const double mean = means[static_cast<std::size_t>(k)];
+    if (mean == 0) continue;
+    const Vector3 area = body.area_vector(k);
+    sum.amount += mean * area.dot(body.point(body.corners(k)[0]) - origin) / 6;
+    sum.uncertainty += rounding * std::abs(mean) * area.norm() / 2;
+  }
+}
+
+Vector3 point_at(const Triangle& t, const Eigen::Vector2d& weights) {
+  return t[0] + weights[0] * (t[1] - t[0]) + weights[1] * (t[2] - t[0]);
+}
+
+/// The part of the first triangle over which its cut goes when the second moves by `rounding`: the flatter they meet,
+/// the more.
+double part_passed(const Crossings& crossings, const Cut& cut, double rounding) {
+  const Triangle triangle = crossings.body(0).triangle(cut.triangles[0]);
+  const double length = (point_at(triangle, cut.ends[0][1]) - point_at(triangle, cut.ends[0][0])).norm();
+  const Vector3 area = crossings.body(0).area_vector(cut.triangles[0]),
+                other = crossings.body(1).area_vector(cut.triangles[1]);
+  const double passed = 2 * rounding * length * other.norm(), whole = area.cross(other).norm();
+  return passed < whole ? passed / whole : 1;
+}
+
+Penetration nudged_area_inside(const Crossings& crossings, const std::vector<double>& areas, double rounding) {
+  Penetration sum;
+  const std::vector<double> means = mean_windings(crossings, 0);
+  for (std::size_t k = 0; k < areas.size(); ++k) sum.amount += areas[k] * means[k];
+  std::vector<double> passed(areas.size(), 0);
+  for (const Cut& cut : crossings.cuts())
+    passed[static_cast<std::size_t>(cut.triangles[0])] += part_passed(crossings, cut, rounding);
+  for (std::size_t k = 0; k < areas.size(); ++k) sum.uncertainty += areas[k] * std::min(passed[k], 1.0);
+  return sum;
+}
+
+}  // namespace
+
+Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& meeting, double rounding) {
+  const Crossings crossings(a, b, meeting, 1);  // a volume does not depend on the nudge
+  Penetration sum;
+  add_side(crossings, 0, rounding, sum);
+  add_side(crossings, 1, rounding, sum);
+  return sum;
+}
+
+Penetration area_inside(const PlacedBody& open, const std::vector<double>& start_areas, const PlacedBody& closed,
+                        const IndexPairs& meeting, double rounding) {
+  const Crossings one_way(open, closed, meeting, 1);
+  const Penetration first = nudged_area_inside(one_way, start_areas, rounding);
+  if (!one_way.touching()) return first;
+  const Penetration second = nudged_area_inside(Crossings(open, closed, meeting, -1), start_areas, rounding);
+  return {(first.amount + second.amount) / 2, (first.uncertainty + second.uncertainty) / 2};
+}
+
+}  // namespace stiv

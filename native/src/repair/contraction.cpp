@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/repair/contraction.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "stiv/acceptance/intersections.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+using Entries = std::vector<Eigen::Triplet<double, Index>>;
+
+constexpr double least_weight = 1e-3, greatest_weight = 20;
+constexpr double greatest_ratio = 1e6;  // of areas: a vertex shrunk further holds as if by that
+
+/// Cotangent of the angle at a, kept within bounds; a corner whose edges have no length weighs as one of 45 degrees.
+double safe_cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 u = b - a, v = c - a;
+  const double sine = u.cross(v).norm(), cosine = u.dot(v);
+  if (sine == 0 && cosine == 0) return 1;
+  if (cosine >= greatest_weight * sine) return greatest_weight;
+  return std::max(cosine / sine, least_weight);
+}
+
+void add_edge(Entries& entries, Index a, Index b, double weight) {
+  if (a == b) return;
+  entries.emplace_back(a, b, weight);
+  entries.emplace_back(b, a, weight);
+  entries.emplace_back(a, a, -weight);
+  entries.emplace_back(b, b, -weight);
+}
+
+Matrix cotangent_laplacian(const Surface& surface, const Positions& q) {
+  const Triangles& triangles = surface.triangles();
+  Entries entries;
+  entries.reserve(12 * static_cast<std::size_t>(triangles.rows()));
+  for (Index row = 0; row < triangles.rows(); ++row)
+    for (Index corner = 0; corner < 3; ++corner) {
+      const Index a = triangles(row, corner), b = triangles(row, (corner + 1) % 3),
+                  c = triangles(row, (corner + 2) % 3);
+      add_edge(entries, b, c, 0.5 * safe_cotangent(q.row(a), q.row(b), q.row(c)));
+    }
+  for (Index row = 0; row < surface.loose_edges().rows(); ++row)
+    add_edge(entries, surface.loose_edges()(row, 0), surface.loose_edges()(row, 1), 1);
+  Matrix laplacian(surface.vertex_count(), surface.vertex_count());
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  return laplacian;
+}
+
+/// (N, moving) The columns of the vertices that move.
+Matrix moving_columns(const ContractionSystem& system) {
+  Entries entries;
+  for (std::size_t k = 0; k < system.moving.size(); ++k)
+    for (Matrix::InnerIterator entry(system.laplacian, system.moving[k]); entry; ++entry)
+      entries.emplace_back(entry.row(), static_cast<Index>(k), entry.value());
+  Matrix columns(system.laplacian.rows(), static_cast<Index>(system.moving.size()));
+  columns.setFromTriplets(entries.begin(), entries.end());
+  return columns;
+}
+
+/// Squares of the weights that hold the moving vertices: the more its area shrank, the more a vertex stays.
+Eigen::VectorXd holding_weights(const ContractionSystem& system, const Eigen::VectorXd& areas) {
+  Eigen::VectorXd weights(static_cast<Index>(system.moving.size()));
+  for (std::size_t k = 0; k < system.moving.size(); ++k) {
+    const double start = system.areas[system.moving[k]], now = areas[system.moving[k]];
+    weights[static_cast<Index>(k)] = start >= greatest_ratio * now && start > 0 ? greatest_ratio
+                                     : start > 0                                ? start / now
+                                                                                : 1;
+  }
+  return weights;
+}
+
+void check(const ContractionOptions& options) {
+  if (!(options.smoothing > 0) || !std::isfinite(options.smoothing))
+    throw InputError("smoothing must be positive and finite");
+  if (!(options.growth > 1) || !std::isfinite(options.growth)) throw InputError("growth must be above 1 and finite");
+  if (!(options.tolerance >= 1)) throw InputError("tolerance must be at least 1");
+  if (options.max_steps < 0) throw InputError("max_steps must not be negative");
+}
+
+}  // namespace
+
+ContractionSystem contraction_system(const Surface& surface, const Positions& q,
+                                     const std::vector<unsigned char>& moves) {
+  surface.check_positions(q);
+  if (!moves.empty() && moves.size() != static_cast<std::size_t>(surface.vertex_count()))
+    throw InputError("the marks of what moves have " + std::to_string(moves.size()) + " entries, the surface has " +
+                     std::to_string(surface.vertex_count()) + " vertices");
+  ContractionSystem system{cotangent_laplacian(surface, q), surface.vertex_areas(q), {}};
+  for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
+    if (moves.empty() || moves[static_cast<std::size_t>(vertex)] != 0) system.moving.push_back(vertex);
+  return system;
+}
+
+Positions contraction_step(const Surface& surface, const ContractionSystem& system, const Positions& q,
+                           double smoothing) {
+  if (system.moving.empty()) return q;
+  const FloatingPointScope floating_point;
+  const Matrix columns = moving_columns(system), transposed = columns.transpose();
+  const double factor = smoothing * smoothing;
+  Matrix normal = factor * (transposed * columns);
+  const Eigen::VectorXd holding = holding_weights(system, surface.vertex_areas(q));
+  for (Index k = 0; k < normal.cols(); ++k) normal.coeffRef(k, k) += holding[k];
+  // For the displacement rather than the position: what needs no smoothing then stays to the last bit.
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> bending =
+      system.laplacian * Eigen::Matrix<double, Eigen::Dynamic, 3>(q);
+  const Eigen::SimplicialLDLT<Matrix> solver(normal);
+  if (solver.info() != Eigen::Success) throw InputError("the contraction cannot be solved: smoothing is too large");
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> displacement = solver.solve(-factor * (transposed * bending));
+  Positions contracted = q;
+  for (std::size_t k = 0; k < system.moving.size(); ++k)
+    contracted.row(system.moving[k]) += displacement.row(static_cast<Index>(k));
+  return contracted;
+}
+
+ContractionResult contract(const CagedSurface& caged, const Controls& p, const std::vector<unsigned char>& moves,
+                           const ContractionOptions& options, Execution& execution) {
+  check(options);
+  check_caged(caged, p);
+  const FloatingPointScope floating_point;
+  const ContractionSystem system = contraction_system(*caged.cage, p, moves);
+  IntersectionTest test(caged.surface);
+  const auto pairs_at = [&](const Controls& at) {
+    return find_static_pairs(test, caged.deformation->surface_in_range(at), execution).count();
+  };
+  Controls now = as_stored(p, options.storage);
+  ContractionResult result{now, false, {pairs_at(now)}};
+  Index fewest = result.pairs.front();
+  double smoothing = options.smoothing;
+  for (int step = 0; step < options.max_steps && fewest > 0; ++step) {
+    execution.check();
+    execution.report("contraction", static_cast<double>(step) / options.max_steps);
+    now = as_stored(contraction_step(*caged.cage, system, now, smoothing), options.storage);
+    smoothing *= options.growth;
+    const Index pairs = pairs_at(now);
+    result.pairs.push_back(pairs);
+    if (pairs > options.tolerance * fewest) break;
+    if (pairs >= fewest) continue;
+    fewest = pairs;
+    result.positions = now;
+  }
+  result.free = fewest == 0;
+  return result;
+}
+
+}  // namespace stiv

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/deformation/arap.hpp"
+
+#include <Eigen/Geometry>
+
+#include "deformation/handle_scenes.hpp"
+#include "deformation/handles/handle_map.hpp"
+#include "deformation/handles/mesh_laplacian.hpp"
+#include "stiv/deformation/composition.hpp"
+
+using namespace stiv;
+using namespace stiv::testing;
+
+namespace {
+
+void for_all_kinds(const std::function<void(const HandleDefinition&)>& check) {
+  for (const bool hard : {false, true})
+    for (const EdgeWeights weights : {EdgeWeights::uniform, EdgeWeights::cotangent})
+      check(sheet_with_handles(6, hard, weights));
+}
+
+/// J d against differences, and J' as the transpose of J. A surface is known to about 1e-9, so differences to 1e-5.
+void check_linearisation(const Deformation& deformation, const Controls& p) {
+  constexpr double step = 1e-4;
+  for (unsigned seed = 1; seed < 4; ++seed) {
+    const Controls d = random_positions(static_cast<Index>(p.rows()), seed);
+    const Positions velocity = (deformation.surface(p + step * d) - deformation.surface(p - step * d)) / (2 * step);
+    const Positions found = deformation.push_forward(p, d);
+    CHECK((found - velocity).norm() < 1e-4 * velocity.norm());
+    const SparseField g = random_field(deformation.vertex_count(), 2, seed + 10);
+    const double expected = dense(g, deformation.vertex_count()).cwiseProduct(found).sum();
+    const Positions pulled = dense(deformation.pull_back(p, g), deformation.control_count());
+    CHECK(pulled.cwiseProduct(d).sum() == doctest::Approx(expected).epsilon(1e-6));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("arap: the linearisation, at rest and far from it") {
+  for_all_kinds([](const HandleDefinition& definition) {
+    const auto arap = make_arap(definition);
+    for (const double amount : {0.0, 0.1, 0.7}) check_linearisation(*arap, moved_handles(definition, amount));
+  });
+}
+
+TEST_CASE("arap: many covectors at once, by a factor of H, are pulled back as each alone, with any number of threads") {
+  for_all_kinds([](const HandleDefinition& definition) {
+    const auto arap = make_arap(definition);
+    const Index n = arap->vertex_count(), m = arap->control_count();
+    std::vector<SparseField> fields;
+    for (unsigned seed = 0; seed < 20; ++seed)
+      fields.push_back(random_field(n, 1 + static_cast<Index>(seed % 7), seed));
+    for (const double amount : {0.0, 0.1, 0.7}) {
+      const Controls p = moved_handles(definition, amount);
+      const auto one = arap->pull_back_all(p, fields, Execution(1)), two = arap->pull_back_all(p, fields, Execution(2));
+      for (std::size_t k = 0; k < fields.size(); ++k) {
+        const Positions expected = dense(arap->pull_back(p, fields[k]), m);
+        CHECK((dense(one[k], m) - expected).norm() < 1e-7 * expected.norm());
+        CHECK(one[k].value == two[k].value);
+      }
+    }
+  });
+}
+
+TEST_CASE("arap: rotations that do not answer would not do: the global step alone is far from J") {
+  const HandleDefinition definition = sheet_with_handles(6, true, EdgeWeights::cotangent);
+  const Surface mesh = checked_mesh(definition);
+  const HandleMap frozen(definition, mesh, mesh_laplacian(edge_weights(mesh, definition.rest, EdgeWeights::cotangent)));
+  const Controls p = moved_handles(definition, 0), d = random_positions(static_cast<Index>(p.rows()), 1);
+  const Positions found = make_arap(definition)->push_forward(p, d);
+  CHECK((frozen.follow(d) - found).norm() > 0.05 * found.norm());
+}
+
+TEST_CASE("arap: nothing moves at rest, and what is held never does") {
+  for_all_kinds([](const HandleDefinition& definition) {
+    const auto arap = make_arap(definition);
+    CHECK(arap->surface(moved_handles(definition, 0)) == definition.rest);
+    const Controls p = moved_handles(definition, 1);
+    const Positions q = arap->surface(p);
+    for (const Index vertex : definition.fixed) CHECK(q.row(vertex) == definition.rest.row(vertex));
+    for (Index vertex = 36; vertex < 39; ++vertex) CHECK(q.row(vertex) == definition.rest.row(vertex));
+    if (definition.pull.size() > 0) return;
+    for (Index k = 0; k < p.rows(); ++k) CHECK(q.row(definition.handles[static_cast<std::size_t>(k)]) == p.row(k));
+  });
+}
+
+TEST_CASE("arap: a rigid motion of all handles is one of the mesh") {
+  for_all_kinds([](HandleDefinition definition) {
+    definition.fixed.clear();
+    const auto arap = make_arap(definition);
+    for (const double angle : {0.3, 1.5, 2.9}) {
+      const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vector3(1, 2, -0.5).normalized()).matrix();
+      const auto moved = [&](const Positions& q) {
+        return Positions((q * turn.transpose()).rowwise() + Eigen::RowVector3d(3, -1, 2));
+      };
+      const Positions q = arap->surface(moved(moved_handles(definition, 0)));
+      CHECK((q - moved(definition.rest)).topRows(36).cwiseAbs().maxCoeff() < 1e-6);
+    }
+  });
+}
+
+TEST_CASE("arap: what came before does not matter") {
+  const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
+  const auto one = make_arap(definition), other = make_arap(definition);
+  const Controls p = moved_handles(definition, 0.5);
+  other->surface(moved_handles(definition, 0.9));
+  CHECK(one->surface(p) == other->surface(p));
+}
+
+TEST_CASE("arap: scale does not matter") {
+  for_all_kinds([](const HandleDefinition& definition) {
+    const Positions q = make_arap(definition)->surface(moved_handles(definition, 0.5));
+    HandleDefinition small = definition;
+    small.rest *= 1e-7;
+    const Controls p = 1e-7 * moved_handles(definition, 0.5);
+    CHECK((1e7 * make_arap(small)->surface(p) - q).cwiseAbs().maxCoeff() < 1e-6);
+  });
+}
+
+TEST_CASE("arap: a linear deformation after it") {
+  const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
+  const auto count = static_cast<Index>(definition.rest.rows());
+  WeightMatrix weights(count, count);
+  for (Index row = 0; row < count; ++row) {
+    weights.insert(row, row) = 0.75;
+    weights.coeffRef(row, (row + 1) % count) += 0.25;
+  }
+  check_linearisation(*make_composition(make_linear(weights), make_arap(definition)), moved_handles(definition, 0.4));
+}
