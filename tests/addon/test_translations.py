@@ -60,9 +60,13 @@ def labels() -> Iterator[str]:
     """Every label of an operator, a panel, a menu, a property and a choice of a property."""
     for cls in CLASSES:
         yield getattr(cls, "bl_label", "")
-        owner = getattr(bpy.ops.stiv, cls.bl_idname.partition(".")[2]).get_rna_type() if is_operator(cls) else cls.bl_rna
+        owner = (
+            getattr(bpy.ops.stiv, cls.bl_idname.partition(".")[2]).get_rna_type() if is_operator(cls) else cls.bl_rna
+        )
         for prop in owner.properties:
-            if not prop.identifier.startswith("bl_") and prop.identifier not in cls.bl_rna.base.properties:
+            if not (
+                prop.is_hidden or prop.identifier.startswith("bl_") or prop.identifier in cls.bl_rna.base.properties
+            ):
                 yield prop.name
                 yield from (choice.name for choice in getattr(prop, "enum_items", ()))
 

@@ -166,4 +166,4 @@ class STIV_OT_drag(Dragging, bpy.types.Operator):
     bl_label = "Collision Drag"
     bl_options = {"INTERNAL", "BLOCKING", "GRAB_CURSOR"}  # noqa: RUF012 (Blender reads a set)
 
-    kind: EnumProperty(items=[(kind, kind.title(), "") for kind in OPERATORS], options={"SKIP_SAVE"})
+    kind: EnumProperty(name="Transform", items=[(kind, kind.title(), "") for kind in OPERATORS], options={"SKIP_SAVE"})
