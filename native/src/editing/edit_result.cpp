@@ -5,6 +5,9 @@
 
 namespace stiv {
 
+namespace {
+
+/// Ascending, each once.
 std::vector<Index> bodies_in_contact(const Surface& surface, const Events& events) {
   std::vector<Index> bodies;
   for (const Event& event : events)
@@ -14,25 +17,29 @@ std::vector<Index> bodies_in_contact(const Surface& surface, const Events& event
   return bodies;
 }
 
-EditStatus status_of(const Problem& problem, const State& before, const State& accepted, const Controls& goal,
-                     const SolveReport& report) {
-  if (accepted.controls == goal || accepted.controls == problem.stored(goal))
-    return accepted.controls == before.controls ? EditStatus::unchanged : EditStatus::reached;
+}  // namespace
+
+EditStatus status_of(const EditContext& context, const Controls& before, const Controls& accepted, const Controls& goal,
+                     const EditReport& report) {
+  if (accepted == goal || accepted == context.stored(goal))
+    return accepted == before ? EditStatus::unchanged : EditStatus::reached;
   return report.blocked ? EditStatus::blocked : EditStatus::corrected;
 }
 
-EditResult make_result(const Problem& problem, const State& accepted, const Positions& goal_surface, SolveReport report,
-                       EditStatus status) {
+EditResult make_result(const EditContext& context, const State& accepted, const Positions& goal_surface,
+                       EditReport report, EditStatus status, const Execution& execution) {
   EditResult result;
   result.status = status;
   result.controls = accepted.controls;
   result.surface = accepted.surface;
   result.energy = energy(accepted.surface, goal_surface);
   result.fraction = report.fraction;
-  if (status == EditStatus::blocked) result.blocking = bodies_in_contact(problem.surface(), report.events);
+  if (status == EditStatus::blocked) result.blocking = bodies_in_contact(context.surface(), report.events);
   result.events = std::move(report.events);
   result.patches = report.patches;
   result.path = std::move(report.path);
+  result.counters = execution.counters;
+  result.timings = execution.timings;
   return result;
 }
 

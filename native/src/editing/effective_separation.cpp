@@ -78,7 +78,7 @@ double least_separation(const MovingExtent& extent, const Controls& p, const std
   return least_units * unit;
 }
 
-double separation_in_force(double asked, const MovingExtent& extent, double least) {
+double effective_separation(double asked, const MovingExtent& extent, double least) {
   if (asked == 0) return std::max(automatic_fraction * extent.diagonal, least);
   check_can_be_kept(asked, extent, least);
   return asked;

@@ -25,10 +25,10 @@ double least_separation(const MovingExtent& extent, const Controls& p, const std
 
 /// The separation in force: the one asked for, or 1e-4 of the diagonal raised to the least possible.
 /// @throws InputError if the one asked for is negative, not finite or below the least possible, which it says
-double separation_in_force(double asked, const MovingExtent& extent, double least);
+double effective_separation(double asked, const MovingExtent& extent, double least);
 
 /// The separations of all pairs of bodies: `separation` but where others are asked for.
-/// @throws InputError if there is no such body, or as separation_in_force; 0 is not automatic here but too small
+/// @throws InputError if there is no such body, or as effective_separation; 0 is not automatic here but too small
 BodySeparations body_separations(const Surface& surface, const std::vector<BodyPairSeparation>& asked,
                                  double separation, const MovingExtent& extent, double least);
 

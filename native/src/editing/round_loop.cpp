@@ -13,136 +13,153 @@ namespace stiv {
 
 namespace {
 
-/// Where even this part of the way has too many pairs near each other, it is not the motion that makes them.
-constexpr double shortest_part = 0x1p-16;
+/// Where even this fraction of the way exceeds the pair limit, the start has too many close pairs, not the motion.
+constexpr double smallest_fraction = 0x1p-16;
 
-/// Rounds between two questions whether to give up, for which a candidate is placed whole.
+/// `is_diverging` needs the whole surface of a candidate, so it is asked only this often.
 constexpr int rounds_before_giving_up = 6;
 
-/// Those that the time budget ended, if they are of the same sub-edit; new ones else.
-RoundProgress& rounds_toward(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
-  if (!has_begun_rounds(problem, accepted, goal, projection))
-    problem.unfinished_rounds() =
-        RoundProgress{accepted.controls, goal, projection, {}, goal, projection == Projection::from_goal};
-  return *problem.unfinished_rounds();
+/// The rounds to resume, or new ones.
+RoundProgress& progress_toward(EditCall& call, const Controls& goal, Projection projection) {
+  std::optional<RoundProgress>& progress = call.progress;
+  if (!progress || !progress->belongs_to(call.accepted.controls, goal, projection))
+    progress = RoundProgress{call.accepted.controls, goal, projection, {}, goal, projection == Projection::from_goal};
+  return *progress;
 }
 
-/// The part of a way, of those that are tried from `part` on, whose rounds the time budget ended; else `part`.
-double begun_part(Problem& problem, const State& accepted, Projection projection, double part,
-                  const std::function<Controls(double)>& aim_at) {
-  const std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
-  if (!rounds || rounds->projection != projection || rounds->accepted != accepted.controls) return part;
-  for (double begun = part; begun >= shortest_part; begun /= 2)
-    if (rounds->goal == aim_at(begun)) return begun;
-  return part;
-}
-
-/// Adds the constraints of the events to those kept; false if nothing that is free to move can help.
-bool constrain(Problem& problem, const State& accepted, const Eigen::VectorXd& areas, const Events& events,
-               RoundOutcome& outcome, RoundProgress& progress, Execution& execution) {
-  const EditOptions& options = problem.options();
-  ConstraintSet& kept = progress.kept;
-  ++execution.counters.rounds;
-  if (kept.size() > most_constraints(problem) / 4) kept.drop_inactive();
-  const Measurement measured = measure(problem, {events, accepted.surface, outcome.candidate.surface, areas},
-                                       progress.round, kept.size(), execution);
-  outcome.patches = measured.patches;
-  const ScopedTimer timer(execution.timings.response);
-  std::vector<ControlConstraint> rows =
-      control_constraints(measured.stivs, problem.deformation(), outcome.candidate.controls, problem.metric(),
-                          accepted.controls, &execution);
-  if (rows.empty()) return false;
-  progress.accumulate = progress.accumulate && options.solver == ConstraintSolver::lcp &&
-                        (progress.round < options.accumulated_rounds || measured.each_contact);
-  if (!progress.accumulate) kept = ConstraintSet();
-  kept.add(std::move(rows));
-  return true;
-}
-
-/// Events on the path to the candidate: among cached candidates or, if none of these interferes, of all pairs. The
-/// surface is up to date at the events, and everywhere if there is none. Nothing if the path exceeds the pair limit.
-std::optional<Events> find_some(Problem& problem, const State& accepted, RoundOutcome& outcome, RoundProgress& progress,
-                                Execution& execution) {
-  State& candidate = outcome.candidate;
-  const bool begins = !progress.begun;
-  if (begins) {
-    candidate.surface = problem.surface_at(candidate.controls, execution);
-    problem.prune_cached_candidates(accepted.surface, candidate.surface, execution);
-    progress.begun = true;
-  }
-  Events events = problem.find_cached_events(accepted.surface, candidate, execution);
-  if (!events.empty()) return events;
-  if (!begins) candidate.surface = problem.surface_at(candidate.controls, execution);
-  return problem.find_events(accepted.surface, candidate.surface, outcome.pair_limit, execution);
+/// The fraction whose rounds the time budget ended, among those tried from `fraction` on; else `fraction`.
+double fraction_to_resume(const EditCall& call, Projection projection, double fraction,
+                          const std::function<Controls(double)>& goal_at) {
+  const std::optional<RoundProgress>& progress = call.progress;
+  if (!progress || progress->projection != projection || progress->accepted != call.accepted.controls) return fraction;
+  for (double begun = fraction; begun >= smallest_fraction; begun /= 2)
+    if (progress->goal == goal_at(begun)) return begun;
+  return fraction;
 }
 
 }  // namespace
 
-bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection) {
-  const std::optional<RoundProgress>& rounds = problem.unfinished_rounds();
-  return rounds && rounds->accepted == accepted.controls && rounds->goal == goal && rounds->projection == projection;
+RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection, PairLimit pair_limit,
+                     const StatePredicate& is_diverging)
+    : call_(call),
+      options_(call.context.options()),
+      is_diverging_(is_diverging),
+      progress_(progress_toward(call, goal, projection)),
+      areas_(region_areas(call.context.surface(), call.accepted.surface)) {
+  outcome_.pair_limit = pair_limit;
+  outcome_.candidate.surface = call.accepted.surface;
 }
 
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
-                        PairLimit pair_limit, const StatePredicate& is_diverging, Execution& execution) {
-  const EditOptions& options = problem.options();
-  const bool is_lcp = options.solver == ConstraintSolver::lcp;
-  const Eigen::VectorXd areas = region_areas(problem.surface(), accepted.surface);
-  RoundOutcome outcome;
-  outcome.pair_limit = pair_limit;
-  outcome.candidate.surface = accepted.surface;
-  RoundProgress& progress = rounds_toward(problem, accepted, goal, projection);
-  auto& [from, to, kind, kept, p, accumulate, round, begun, found, constrained] = progress;
-  for (;; ++round) {
-    execution.check();
-    execution.report("rounds", static_cast<double>(round) / options.max_rounds);
-    outcome.candidate.controls = problem.stored(p);
-    const bool last = round == options.max_rounds;
-    const bool asks = is_diverging && accumulate && round > 0 && round % rounds_before_giving_up == 0;
-    if (last || asks || found) outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-    outcome.given_up = !last && asks && is_diverging(outcome.candidate);
-    if (last || outcome.given_up) return outcome;
-    if (!found) {
-      std::optional<Events> events = find_some(problem, accepted, outcome, progress, execution);
-      outcome.too_far = !events;
-      if (outcome.too_far) return outcome;
-      found = std::move(events);  // only now: a search that is interrupted has found nothing out
-      execution.note_gain();      // kept with the problem, see RoundProgress
-    }
-    outcome.clear = found->empty();
-    if (outcome.clear) return outcome;
-    if (!constrained && !constrain(problem, accepted, areas, *found, outcome, progress, execution)) {
-      outcome.events = *found;  // a call that takes these rounds up again asks for them once more
-      outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
-      return outcome;
-    }
-    constrained = true;  // what ends here is not to add them twice
-    const ScopedTimer timer(execution.timings.response);
-    const Controls& from = accumulate ? goal : outcome.candidate.controls;
-    p = is_lcp ? kept.project(from, execution) : kept.project_as_equations(from, execution);
-    constrained = false;
-    outcome.events = std::move(*found);
-    found.reset();
-    execution.note_gain();
+RoundOutcome RoundLoop::run() {
+  for (; candidate() && search() && constrain(); ++progress_.round) project();
+  return std::move(outcome_);
+}
+
+/// The candidate of the next round; false if it is the last or the rounds diverge.
+bool RoundLoop::candidate() {
+  call_.execution.check();
+  call_.execution.report("rounds", static_cast<double>(progress_.round) / options_.max_rounds);
+  outcome_.candidate.controls = call_.context.stored(progress_.p);
+  const bool is_last = progress_.round == options_.max_rounds;
+  const bool asks =
+      is_diverging_ && progress_.accumulates && progress_.round > 0 && progress_.round % rounds_before_giving_up == 0;
+  if (is_last || asks || progress_.events) place_surface();
+  outcome_.given_up = !is_last && asks && is_diverging_(outcome_.candidate);
+  return !is_last && !outcome_.given_up;
+}
+
+/// Finds events on the step to the candidate; false if there are none or the step is too far.
+bool RoundLoop::search() {
+  if (!progress_.events) {
+    std::optional<Events> events = find_events();
+    outcome_.too_far = !events;
+    if (outcome_.too_far) return false;
+    progress_.events = std::move(events);
+    call_.execution.note_gain();
   }
+  outcome_.clear = progress_.events->empty();
+  return !outcome_.clear;
 }
 
-RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
-                                     Projection projection, double& part, const StatePredicate& is_diverging,
-                                     Execution& execution) {
-  const auto aim_at = [&](double share) {
-    return interpolate(accepted.controls, goal, share, problem.rotation_rows());
+/// Adds the constraints of the events; false if no free control can change any of their volumes.
+bool RoundLoop::constrain() {
+  if (progress_.events_are_constrained) return true;
+  ConstraintSet& constraints = progress_.constraints;
+  ++call_.execution.counters.rounds;
+  if (constraints.size() > max_constraints(call_.context) / 4) constraints.drop_inactive();
+  const RoundVolumes volumes =
+      volumes_of_round(call_.context, {*progress_.events, call_.accepted.surface, outcome_.candidate.surface, areas_},
+                       progress_.round, constraints.size(), call_.execution);
+  outcome_.patches = volumes.patches;
+  std::vector<ControlConstraint> rows = linearised(volumes.stivs);
+  if (rows.empty()) {
+    outcome_.events = *progress_.events;  // a call that resumes these rounds needs them again
+    place_surface();
+    return false;
+  }
+  progress_.accumulates = progress_.accumulates && options_.solver == ConstraintSolver::lcp &&
+                          (progress_.round < options_.accumulated_rounds || volumes.each_contact);
+  if (!progress_.accumulates) constraints = ConstraintSet();
+  constraints.add(std::move(rows));
+  progress_.events_are_constrained = true;  // a projection that is interrupted must not add them twice
+  return true;
+}
+
+std::vector<ControlConstraint> RoundLoop::linearised(const std::vector<Stiv>& stivs) const {
+  const ScopedTimer timer(call_.execution.timings.response);
+  return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, call_.context.metric(),
+                             call_.accepted.controls, &call_.execution);
+}
+
+/// Projects to the next candidate.
+void RoundLoop::project() {
+  const ScopedTimer timer(call_.execution.timings.response);
+  const Controls& from = progress_.accumulates ? progress_.goal : outcome_.candidate.controls;
+  ConstraintSet& constraints = progress_.constraints;
+  progress_.p = options_.solver == ConstraintSolver::lcp ? constraints.project(from, call_.execution)
+                                                         : constraints.project_as_equations(from, call_.execution);
+  progress_.events_are_constrained = false;
+  outcome_.events = std::move(*progress_.events);
+  progress_.events.reset();
+  call_.execution.note_gain();
+}
+
+/// Events among the cached candidates or, if there are none, among all pairs. The candidate's surface is up to date at
+/// their vertices; everywhere if there are no events. Nothing if the step exceeds the pair limit.
+std::optional<Events> RoundLoop::find_events() {
+  const Positions& start = call_.accepted.surface;
+  const bool is_placed = !progress_.cache_is_pruned;
+  if (is_placed) {
+    place_surface();
+    call_.queries.prune_cache(start, outcome_.candidate.surface, call_.execution);
+    progress_.cache_is_pruned = true;
+  }
+  Events cached = call_.queries.find_cached(start, outcome_.candidate, call_.execution);
+  if (!cached.empty()) return cached;
+  if (!is_placed) place_surface();
+  return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);
+}
+
+void RoundLoop::place_surface() {
+  outcome_.candidate.surface = call_.context.surface_at(outcome_.candidate.controls, call_.execution);
+}
+
+RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Projection projection, double& fraction,
+                                     const StatePredicate& is_diverging) {
+  const auto goal_at = [&](double part) {
+    return interpolate(call.accepted.controls, goal, part, call.context.rotation_rows());
   };
-  for (part = begun_part(problem, accepted, projection, std::min(1.0, 2 * part), aim_at); part >= shortest_part;
-       part /= 2) {
-    const Controls aim = aim_at(part);
-    RoundOutcome outcome =
-        run_rounds(problem, accepted, aim, projection, PairLimit::respected, is_diverging, execution);
+  const auto run = [&](PairLimit limit) {
+    return RoundLoop(call, goal_at(fraction), projection, limit, is_diverging).run();
+  };
+  for (fraction = fraction_to_resume(call, projection, std::min(1.0, 2 * fraction), goal_at);
+       fraction >= smallest_fraction; fraction /= 2) {
+    RoundOutcome outcome = run(PairLimit::respected);
     if (!outcome.too_far) return outcome;
-    rounds_toward(problem, accepted, aim_at(part / 2), projection);
-    execution.note_gain();  // a call that ends here is taken up with the half
+    progress_toward(call, goal_at(fraction / 2), projection);
+    call.execution.note_gain();  // a call that ends here is resumed with the half
   }
-  return run_rounds(problem, accepted, aim_at(part), projection, PairLimit::ignored, is_diverging, execution);
+  return run(PairLimit::ignored);
 }
 
 }  // namespace stiv

@@ -3,42 +3,56 @@
 
 #include <functional>
 
-#include "editing/edit_context.hpp"
+#include "editing/edit_call.hpp"
 
 namespace stiv {
 
 using StatePredicate = std::function<bool(const State&)>;
 
-/// What the rounds of one sub-edit came to.
+/// The result of the rounds of one sub-edit.
 struct RoundOutcome {
   State candidate;       ///< controls as stored, and their surface
-  bool clear = false;    ///< the step from the accepted state to the candidate was detected to be without events
-  bool too_far = false;  ///< the step to the candidate was too far to be looked at: no round took place
+  bool clear = false;    ///< detection found no event on the step from the accepted state to the candidate
+  bool too_far = false;  ///< the step exceeds the pair limit: no round was made
   PairLimit pair_limit = PairLimit::respected;  ///< of the searches of these rounds
   bool given_up = false;                        ///< `is_diverging` was true
   Events events;                                ///< of the last round that had any
   Index patches = 0;
 };
 
-/// Rounds of detection and response from the goal on, until the step from the accepted state is without events: first
-/// with all constraints kept and projecting from the goal again, one a patch at first and one a contact where few are
-/// left (or from the start, where the metric is local), then Algorithm 1 from where that came to; or that alone, see
-/// Projection.
-/// Cached candidates, those of earlier edits too, are searched first, and all pairs only if no cached pair interferes:
-/// so a few whole searches serve many rounds, and the last search covers all pairs. Candidates
-/// are rounded as they will be stored *before* they are looked at, so that the round without events is itself the check
-/// of the path of the state to be accepted. [P3.2, Algorithm 1; mathematics.md, "The loop"]
-/// `is_diverging`, if given, is asked of some candidates; where it is true the rounds end.
-RoundOutcome run_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection,
-                        PairLimit pair_limit, const StatePredicate& is_diverging, Execution& execution);
+/// The inner loop of an edit: rounds of detection and response, until the step from the accepted state is without
+/// events. Candidates are rounded as they will be stored *before* detection, so that the last round checks the path of
+/// the very state to be accepted. [P3.2, Algorithm 1; mathematics.md, "The loop"]
+class RoundLoop {
+ public:
+  /// Resumes the rounds toward this goal, if the time budget ended them.
+  /// @param is_diverging if given, asked about every sixth candidate while constraints accumulate; true ends the rounds
+  RoundLoop(EditCall& call, const Controls& goal, Projection projection, PairLimit pair_limit,
+            const StatePredicate& is_diverging);
 
-/// The same toward `part` of the way to the goal: of twice the part given, or of half, a quarter and so on of that, the
-/// farthest that detection can look at in bounded time and memory, so that no motion, however far, exceeds them.
-RoundOutcome run_rounds_within_reach(Problem& problem, const State& accepted, const Controls& goal,
-                                     Projection projection, double& part, const StatePredicate& is_diverging,
-                                     Execution& execution);
+  RoundOutcome run();
 
-/// Did a call that the time budget ended begin these rounds?
-bool has_begun_rounds(Problem& problem, const State& accepted, const Controls& goal, Projection projection);
+ private:
+  bool candidate();
+  bool search();
+  bool constrain();
+  void project();
+
+  std::optional<Events> find_events();
+  std::vector<ControlConstraint> linearised(const std::vector<Stiv>& stivs) const;
+  void place_surface();
+
+  EditCall& call_;
+  const EditOptions& options_;
+  const StatePredicate& is_diverging_;
+  RoundProgress& progress_;
+  Eigen::VectorXd areas_;
+  RoundOutcome outcome_;
+};
+
+/// Rounds toward a fraction of the way to the goal: twice the one given, or half, a quarter and so on of that, until
+/// the step respects the pair limit. So time and memory are bounded for any motion. Updates `fraction`.
+RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Projection projection, double& fraction,
+                                     const StatePredicate& is_diverging);
 
 }  // namespace stiv

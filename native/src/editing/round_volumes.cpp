@@ -9,69 +9,69 @@ namespace stiv {
 
 namespace {
 
-/// A sum over a patch can vanish while contacts in it remain, round after round. What a few rounds with patches leave
-/// are few contacts; each of them as a constraint of its own then ends the rounds, as long as the constraints kept
-/// stay few enough to solve for at once.
+/// A patch's sum can vanish while contacts in it remain. From this round on few contacts are left, and each becomes a
+/// constraint of its own.
 constexpr int rounds_with_patches = 2;
-constexpr std::size_t most_coupled_constraints = 512;
+constexpr std::size_t max_coupled_constraints = 512;
 
-/// Where each control moves its own part of the surface alone, constraints touch few controls, so that thousands can be
-/// met together, and do not stiffen what lies between them: there each contact is one from the first round on.
-constexpr std::size_t most_local_constraints = 8192;
+/// Where the metric does not couple controls, constraints touch few of them, so thousands can be solved together and
+/// do not stiffen what lies between them. Each contact is a constraint from the first round on.
+constexpr std::size_t max_local_constraints = 8192;
 
-bool may_constrain_each_contact(const Problem& problem, int round) {
-  const EditOptions& options = problem.options();
+bool may_constrain_each_contact(const EditContext& context, int round) {
+  const EditOptions& options = context.options();
   if (options.constraints != ConstraintKind::per_patch || options.solver != ConstraintSolver::lcp) return false;
-  return round >= rounds_with_patches || problem.metric().is_local();
+  return round >= rounds_with_patches || context.metric().is_local();
 }
 
 Index patch_count(const std::vector<Index>& labels) {
   return labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
 }
 
-Measurement measure_as_published(const Problem& problem, const InterferingStep& step, PublishedGradient gradient) {
-  Measurement measured;
-  measured.stivs = published_volumes(problem.surface(), step.events, step.start, step.end, step.areas,
-                                     problem.options().constraints, gradient);
-  measured.patches = static_cast<Index>(measured.stivs.size());
-  return measured;
+RoundVolumes volumes_as_published(const EditContext& context, const InterferingStep& step, PublishedGradient gradient) {
+  RoundVolumes volumes;
+  volumes.stivs = published_volumes(context.surface(), step.events, step.start, step.end, step.areas,
+                                    context.options().constraints, gradient);
+  volumes.patches = static_cast<Index>(volumes.stivs.size());
+  return volumes;
 }
 
-Measurement measure_relative(const Problem& problem, const InterferingStep& step, int round, std::size_t kept) {
-  const Surface& surface = problem.surface();
-  const std::size_t most = most_constraints(problem), room = most - std::min(kept, most);
+RoundVolumes relative_volumes(const EditContext& context, const InterferingStep& step, int round,
+                              std::size_t accumulated) {
+  const Surface& surface = context.surface();
+  const std::size_t most = max_constraints(context), room = most - std::min(accumulated, most);
   std::vector<Region> regions = earliest_regions(surface, step.events, step.start, step.end);
-  std::vector<Index> labels = patch_labels(surface, regions, problem.options().constraints);
-  Measurement measured;
-  measured.patches = patch_count(labels);
-  measured.each_contact = may_constrain_each_contact(problem, round) && regions.size() <= room;
-  if (measured.each_contact) {
-    if (problem.metric().is_local() && step.events.size() <= room)
+  std::vector<Index> labels = patch_labels(surface, regions, context.options().constraints);
+  RoundVolumes volumes;
+  volumes.patches = patch_count(labels);
+  volumes.each_contact = may_constrain_each_contact(context, round) && regions.size() <= room;
+  if (volumes.each_contact) {
+    if (context.metric().is_local() && step.events.size() <= room)
       regions = contact_regions(surface, step.events, step.start, step.end);
     labels = patch_labels(surface, regions, ConstraintKind::per_contact);
   }
-  measured.stivs = interference_volumes(step.events, regions, labels, step.end, step.areas);
-  return measured;
+  volumes.stivs = interference_volumes(step.events, regions, labels, step.end, step.areas);
+  return volumes;
 }
 
 }  // namespace
 
-std::size_t most_constraints(const Problem& problem) {
-  return problem.metric().is_local() ? most_local_constraints : most_coupled_constraints;
+std::size_t max_constraints(const EditContext& context) {
+  return context.metric().is_local() ? max_local_constraints : max_coupled_constraints;
 }
 
-Measurement measure(const Problem& problem, const InterferingStep& step, int round, std::size_t kept,
-                    Execution& execution) {
+RoundVolumes volumes_of_round(const EditContext& context, const InterferingStep& step, int round,
+                              std::size_t accumulated, Execution& execution) {
   const ScopedTimer timer(execution.timings.volumes);
-  switch (problem.options().volumes) {
+  switch (context.options().volumes) {
     case VolumeKind::published:
-      return measure_as_published(problem, step, PublishedGradient::whole);
+      return volumes_as_published(context, step, PublishedGradient::whole);
     case VolumeKind::published_frozen:
-      return measure_as_published(problem, step, PublishedGradient::frozen);
+      return volumes_as_published(context, step, PublishedGradient::frozen);
     case VolumeKind::relative:
       break;
   }
-  return measure_relative(problem, step, round, kept);
+  return relative_volumes(context, step, round, accumulated);
 }
 
 }  // namespace stiv

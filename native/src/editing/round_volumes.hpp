@@ -8,27 +8,27 @@
 
 namespace stiv {
 
-/// A step with interference.
+/// A step with its events.
 struct InterferingStep {
   const Events& events;
   const Positions& start;
   const Positions& end;
-  const Eigen::VectorXd& areas;  ///< of regions, (N)
+  const Eigen::VectorXd& areas;  ///< of vertices, for regions, (N)
 };
 
-/// What the response answers.
-struct Measurement {
-  std::vector<Stiv> stivs;    ///< none if no event tells a way out
+/// The interference volumes of a round.
+struct RoundVolumes {
+  std::vector<Stiv> stivs;    ///< none if no event has a normal
   Index patches = 0;          ///< also where each contact is a STIV of its own
-  bool each_contact = false;  ///< is it?
+  bool each_contact = false;  ///< each contact is a STIV of its own
 };
 
-/// The volumes of a step in a round of a sub-edit, as the options have them.
-/// @param kept constraints kept from the rounds before
-Measurement measure(const Problem& problem, const InterferingStep& step, int round, std::size_t kept,
-                    Execution& execution);
+/// The volumes of a step as the options define them. (mathematics.md, "The loop")
+/// @param accumulated number of constraints from earlier rounds
+RoundVolumes volumes_of_round(const EditContext& context, const InterferingStep& step, int round,
+                              std::size_t accumulated, Execution& execution);
 
-/// So many constraints can be solved for at once.
-std::size_t most_constraints(const Problem& problem);
+/// The most constraints that are solved for at once.
+std::size_t max_constraints(const EditContext& context);
 
 }  // namespace stiv

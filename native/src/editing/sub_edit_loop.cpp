@@ -12,41 +12,29 @@ namespace stiv {
 
 namespace {
 
-constexpr int most_cuts = 256;        // parts of a motion that is too far to be looked at in one piece
-constexpr double least_gain = 1e-3;   // relative fall of E that makes another sub-edit worth while
-constexpr double largest_turn = 0.3;  // radians a step; the chord of an arc then leaves it by 1.1 % of the radius
+constexpr int max_cuts = 256;               // fractions of a motion that is too far for one search
+constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
+constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
-void record(SolveReport& report, RoundOutcome& outcome, const Acceptance& acceptance) {
-  if (!outcome.events.empty()) {
-    report.events = std::move(outcome.events);
-    report.patches = outcome.patches;
-  }
-  if (acceptance.held) report.fraction = std::min(report.fraction, acceptance.fraction);
-  report.blocked = !outcome.clear || acceptance.held;
-}
-
-/// The goal itself, as if rounds had come to it: of an answer that leads nowhere not even a part may be free, or lower
-/// the energy, while some of the straight way is and does.
-RoundOutcome straight_way(const Problem& problem, const Aim& aim, PairLimit pair_limit, Execution& execution) {
+/// The goal itself as a candidate, for when no fraction toward the first answer is accepted.
+RoundOutcome goal_as_outcome(const EditCall& call, const Aim& aim, PairLimit pair_limit) {
   RoundOutcome outcome;
-  outcome.candidate.controls = problem.stored(aim.controls);
-  outcome.candidate.surface = problem.surface_at(outcome.candidate.controls, execution);
+  outcome.candidate.controls = call.context.stored(aim.controls);
+  outcome.candidate.surface = call.context.surface_at(outcome.candidate.controls, call.execution);
   outcome.pair_limit = pair_limit;
   return outcome;
 }
 
-/// The displacement of a control along the axes of its weights. A trifle of it is the rounding of turned axes.
+/// The displacement of a control along its weight axes. Components of the size of rounding are 0.
 Vector3 along_weight_axes(const EditOptions& options, Index control, const Vector3& displacement) {
   constexpr double rounding = 1e-12;
   if (options.weight_axes.empty()) return displacement;
-  const Vector3 along = options.weight_axes[static_cast<std::size_t>(control)].transpose() * displacement;
+  const Vector3 along = options.weight_axes[control].transpose() * displacement;
   return (along.array().abs() > rounding * displacement.norm()).select(along, 0);
 }
 
-/// Does the goal move controls along axes in which they do not respond? What they hit must give way, which may raise
-/// the energy.
-bool moves_pinned_controls(const Problem& problem, const Controls& from, const Controls& to) {
-  const EditOptions& options = problem.options();
+/// Does the goal move controls along pinned axes? What they hit must move aside, which may raise the energy.
+bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to) {
   if (options.weights.size() == 0) return false;
   const Index values = static_cast<Index>(options.weights.size() / from.rows());
   for (Index k = 0; k < from.rows(); ++k) {
@@ -59,86 +47,118 @@ bool moves_pinned_controls(const Problem& problem, const Controls& from, const C
   return false;
 }
 
-/// The first answer of an edit. Constraints that are kept were linearised at other candidates, and may together lead
-/// far away, where the surface folds a lot on the way to the goal: one that raises the energy though nothing pinned
-/// pushes is compared with that of Algorithm 1, which keeps none. The better one is taken. More constraints raise it
-/// further, so that such rounds are given up early, and taken to their end only if the others stray as well.
-RoundOutcome first_answer(Problem& problem, const State& accepted, const Aim& aim, double& part, Execution& execution) {
-  const auto energy_of = [&](const RoundOutcome& outcome) { return energy(outcome.candidate.surface, aim.surface); };
-  const auto rounds = [&](Projection projection, const StatePredicate& is_diverging = {}) {
-    return run_rounds_within_reach(problem, accepted, aim.controls, projection, part, is_diverging, execution);
-  };
-  if (has_begun_rounds(problem, accepted, aim.controls, Projection::from_last_round))
+class SubEditLoop {
+ public:
+  SubEditLoop(EditCall& call, const Aim& aim)
+      : call_(call), aim_(aim), energy_before_(energy(call.accepted.surface, aim.surface)) {}
+
+  void run();
+
+ private:
+  double energy_of(const State& state) const { return energy(state.surface, aim_.surface); }
+  RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
+  RoundOutcome first_answer();
+  Acceptance accept(const RoundOutcome& outcome, bool is_first);
+  void report(RoundOutcome& outcome, const Acceptance& acceptance);
+
+  EditCall& call_;
+  const Aim& aim_;
+  double energy_before_;  ///< of the accepted state, before the current sub-edit
+  double fraction_ = 1;   ///< of the way to the goal, within reach of one search
+};
+
+RoundOutcome SubEditLoop::rounds(Projection projection, const StatePredicate& is_diverging) {
+  return run_rounds_within_reach(call_, aim_.controls, projection, fraction_, is_diverging);
+}
+
+/// The first answer of an edit. Accumulated constraints were linearised at different candidates and may overshoot
+/// together. If the energy grows though no pinned control pushes, Algorithm 1 is run as well, and the better answer is
+/// taken. Accumulating only raises the energy further, so diverging rounds are given up early, and completed only if
+/// Algorithm 1 overshoots too. (mathematics.md, "Guarantee")
+RoundOutcome SubEditLoop::first_answer() {
+  const Controls& from = call_.accepted.controls;
+  if (call_.progress && call_.progress->belongs_to(from, aim_.controls, Projection::from_last_round))
     return rounds(Projection::from_last_round);
-  const bool may_stray =
-      problem.options().accumulated_rounds > 0 && !moves_pinned_controls(problem, accepted.controls, aim.controls);
-  if (!may_stray) return rounds(Projection::from_goal);
-  const double before = energy(accepted.surface, aim.surface);
-  const auto strays = [&](const State& state) { return part == 1 && energy(state.surface, aim.surface) > before; };
-  RoundOutcome outcome = rounds(Projection::from_goal, strays);
-  const bool strayed = outcome.given_up || (outcome.clear && strays(outcome.candidate));
-  if (!strayed) return outcome;
+  const EditOptions& options = call_.context.options();
+  if (options.accumulated_rounds == 0 || moves_pinned_controls(options, from, aim_.controls))
+    return rounds(Projection::from_goal);
+  const auto overshoots = [&](const State& state) { return fraction_ == 1 && energy_of(state) > energy_before_; };
+  RoundOutcome accumulated = rounds(Projection::from_goal, overshoots);
+  const bool overshot = accumulated.given_up || (accumulated.clear && overshoots(accumulated.candidate));
+  if (!overshot) return accumulated;
   RoundOutcome other = rounds(Projection::from_last_round);
-  if (other.clear && !strays(other.candidate)) return other;
-  if (outcome.given_up) outcome = rounds(Projection::from_goal);
-  return other.clear && energy_of(other) < energy_of(outcome) ? other : outcome;
+  if (other.clear && !overshoots(other.candidate)) return other;
+  if (accumulated.given_up) accumulated = rounds(Projection::from_goal);
+  return other.clear && energy_of(other.candidate) < energy_of(accumulated.candidate) ? other : accumulated;
+}
+
+/// Accepts a fraction of the step to the outcome or, if there is none at first, of the straight way to the goal.
+Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
+  // A first answer that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
+  const bool may_raise_energy = is_first && outcome.clear && !aim_.must_improve;
+  const auto is_agreeable = [&](const State& state) { return may_raise_energy || energy_of(state) < energy_before_; };
+  Acceptance acceptance = accept_largest_fraction(call_, outcome, is_agreeable);
+  const bool cannot_improve = outcome.clear && aim_.must_improve;
+  if (acceptance.fraction > 0 || !is_first || cannot_improve) return acceptance;
+  acceptance = accept_largest_fraction(call_, goal_as_outcome(call_, aim_, outcome.pair_limit), is_agreeable);
+  acceptance.truncated = true;
+  return acceptance;
+}
+
+void SubEditLoop::report(RoundOutcome& outcome, const Acceptance& acceptance) {
+  EditReport& report = call_.report;
+  if (!outcome.events.empty()) {
+    report.events = std::move(outcome.events);
+    report.patches = outcome.patches;
+  }
+  if (acceptance.truncated) report.fraction = std::min(report.fraction, acceptance.fraction);
+  report.blocked = !outcome.clear || acceptance.truncated;
+}
+
+void SubEditLoop::run() {
+  EditReport& edit = call_.report;
+  const int most = aim_.must_improve ? 1 : call_.context.options().max_sub_edits;  // pulls repeat by themselves
+  for (int sub_edit = 0, cuts = 0; sub_edit < most; ++sub_edit) {
+    const bool is_first = sub_edit == 0;
+    ++call_.execution.counters.sub_edits;
+    RoundOutcome outcome = is_first && !aim_.must_improve ? first_answer() : rounds(Projection::from_goal);
+    Acceptance acceptance = accept(outcome, is_first);
+    report(outcome, acceptance);
+    if (acceptance.fraction == 0) return;
+    call_.accepted = std::move(acceptance.state);
+    call_.execution.note_gain();
+    edit.path.push_back(call_.accepted.controls);
+    const double energy_after = energy_of(call_.accepted);
+    if (fraction_ == 1 && !edit.blocked) return;
+    if (fraction_ < 1 && !edit.blocked && energy_after < energy_before_ && cuts < max_cuts) {
+      ++cuts;
+      --sub_edit;  // settled within reach of a search: no sub-edit toward the whole goal yet
+    } else if (energy_after > (1 - least_energy_drop) * energy_before_) {
+      break;
+    }
+    energy_before_ = energy_after;
+  }
+  edit.blocked = true;  // ended before it settled
 }
 
 }  // namespace
 
-void solve(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
-  const int most = aim.must_improve ? 1 : problem.options().max_sub_edits;  // pulls go on by themselves
-  double before = energy(accepted.surface, aim.surface), part = 1;
-  for (int sub_edit = 0, cuts = 0; sub_edit < most; ++sub_edit) {
-    ++execution.counters.sub_edits;
-    RoundOutcome outcome =
-        sub_edit == 0 && !aim.must_improve
-            ? first_answer(problem, accepted, aim, part, execution)
-            : run_rounds_within_reach(problem, accepted, aim.controls, Projection::from_goal, part, {}, execution);
-    // A first answer that settled is taken even if E grows: a pinned object may push a larger one out of its way.
-    const bool taken_anyway = sub_edit == 0 && outcome.clear && !aim.must_improve;
-    const auto agreeable = [&](const State& state) {
-      return taken_anyway || energy(state.surface, aim.surface) < before;
-    };
-    Acceptance acceptance = accept_largest(problem, accepted, outcome, agreeable, execution);
-    const bool nothing_to_gain = outcome.clear && aim.must_improve;
-    if (acceptance.fraction == 0 && sub_edit == 0 && !nothing_to_gain) {
-      const RoundOutcome straight = straight_way(problem, aim, outcome.pair_limit, execution);
-      acceptance = accept_largest(problem, accepted, straight, agreeable, execution);
-      acceptance.held = true;
-    }
-    record(report, outcome, acceptance);
-    if (acceptance.fraction == 0) return;
-    accepted = std::move(acceptance.state);
-    execution.note_gain();
-    report.path.push_back(accepted.controls);
-    const double after = energy(accepted.surface, aim.surface);
-    if (part == 1 && !report.blocked) return;
-    if (part < 1 && !report.blocked && after < before && cuts < most_cuts) {
-      ++cuts;
-      --sub_edit;  // settled as far as was looked: no try at the whole goal yet
-    } else if (after > (1 - least_gain) * before) {
-      break;
-    }
-    before = after;
-  }
-  report.blocked = true;  // short of the goal, and not for having settled
-}
+void run_sub_edits(EditCall& call, const Aim& aim) { SubEditLoop(call, aim).run(); }
 
-void solve_in_turns(Problem& problem, State& accepted, const Aim& aim, SolveReport& report, Execution& execution) {
-  const std::vector<Index>& rows = problem.rotation_rows();
-  const std::vector<Index> turning = problem.deformation().rotation_rows();
-  const auto turn = [&] { return largest_rotation(accepted.controls, aim.controls, turning); };
+void run_sub_edits_by_rotation_steps(EditCall& call, const Aim& aim) {
+  const std::vector<Index>& rows = call.context.rotation_rows();
+  const std::vector<Index> turning = call.context.deformation().rotation_rows();
+  const auto turn = [&] { return largest_rotation(call.accepted.controls, aim.controls, turning); };
+  const auto next_goal = [&] {
+    return interpolate(call.accepted.controls, aim.controls, std::min(1.0, largest_turn / turn()), rows);
+  };
   const int steps = static_cast<int>(std::ceil(turn() / largest_turn));
   for (int step = 1; step < steps; ++step) {
-    const double fraction = std::min(1.0, largest_turn / turn());
-    const Controls before = accepted.controls;
-    const Aim part{interpolate(before, aim.controls, fraction, rows), aim.surface, aim.must_improve};
-    solve(problem, accepted, part, report, execution);
-    if (accepted.controls == before) return;
+    const Controls before = call.accepted.controls;
+    run_sub_edits(call, {next_goal(), aim.surface, aim.must_improve});
+    if (call.accepted.controls == before) return;
   }
-  const Controls last = interpolate(accepted.controls, aim.controls, std::min(1.0, largest_turn / turn()), rows);
-  solve(problem, accepted, {last, aim.surface, aim.must_improve}, report, execution);
+  run_sub_edits(call, {next_goal(), aim.surface, aim.must_improve});
 }
 
 }  // namespace stiv

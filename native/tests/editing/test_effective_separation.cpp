@@ -17,8 +17,8 @@ double unit32(float x) { return std::nextafter(x, std::numeric_limits<float>::in
 }  // namespace
 
 TEST_CASE("separation: automatic is 1e-4 of the diagonal, raised to what single precision holds") {
-  CHECK(separation_in_force(0, {10, 5}, 1e-6) == doctest::Approx(1e-3));
-  CHECK(separation_in_force(0, {10, 5}, 2e-3) == 2e-3);
+  CHECK(effective_separation(0, {10, 5}, 1e-6) == doctest::Approx(1e-3));
+  CHECK(effective_separation(0, {10, 5}, 2e-3) == 2e-3);
 }
 
 TEST_CASE("separation: the least one is four units in the last place, in the world and in the controls' frames") {
@@ -34,10 +34,10 @@ TEST_CASE("separation: the least one is four units in the last place, in the wor
 }
 
 TEST_CASE("separation: one that cannot be kept is refused with the least possible") {
-  CHECK(separation_in_force(1e-3, {10, 5}, 1e-6) == 1e-3);
-  CHECK_THROWS_WITH_AS(separation_in_force(1e-7, {10, 5}, 2.5e-6), doctest::Contains("2.5e-06"), InputError);
-  CHECK_THROWS_AS(separation_in_force(-1, {10, 5}, 1e-6), InputError);
-  CHECK_THROWS_AS(separation_in_force(std::nan(""), {10, 5}, 1e-6), InputError);
+  CHECK(effective_separation(1e-3, {10, 5}, 1e-6) == 1e-3);
+  CHECK_THROWS_WITH_AS(effective_separation(1e-7, {10, 5}, 2.5e-6), doctest::Contains("2.5e-06"), InputError);
+  CHECK_THROWS_AS(effective_separation(-1, {10, 5}, 1e-6), InputError);
+  CHECK_THROWS_AS(effective_separation(std::nan(""), {10, 5}, 1e-6), InputError);
 }
 
 TEST_CASE("separation: only what may move counts for the extent") {

@@ -47,12 +47,16 @@ struct Run {
 Run run(const Scene& scene, const StatePredicate& is_diverging) {
   EditOptions options;
   options.max_rounds = 40;
-  Problem problem(scene.surface, scene.deformation, scene.controls, options);
+  const EditContext context(scene.surface, scene.deformation, scene.controls, options);
+  CollisionQueries queries(context);
   Execution execution(1);
-  const State accepted{scene.controls, problem.surface_at(scene.controls, execution)};
-  problem.check_start(accepted.surface, execution);
+  State accepted{scene.controls, context.surface_at(scene.controls, execution)};
+  queries.check_start(accepted.surface, execution);
+  std::optional<RoundProgress> progress;
+  EditReport report;
+  EditCall call{context, queries, accepted, progress, report, execution};
   const Controls goal = moved(scene.controls, static_cast<Index>(scene.controls.rows()), Vector3(0.05, 0, -0.45));
-  return {run_rounds(problem, accepted, goal, Projection::from_goal, PairLimit::respected, is_diverging, execution),
+  return {RoundLoop(call, goal, Projection::from_goal, PairLimit::respected, is_diverging).run(),
           execution.counters.rounds};
 }
 

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/drag.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editing/control_interpolation.hpp"
+#include "editing/sub_edit_loop.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr int max_pulls_of_drag = 12;
+constexpr double shortest_stride = 0.25;           // in pull distances
+constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round of a pull; below it no further pull
+
+/// The accepted controls, moved as the goal moved since it was followed; the goal itself if it was reached then.
+Controls incremented(const EditCall& call, const Controls& followed, const Controls& goal) {
+  if (call.accepted.controls == call.context.stored(followed)) return goal;
+  return moved_alike(call.accepted.controls, followed, goal, call.context.rotation_rows());
+}
+
+void pull(EditCall& call, const Aim& aim, double distance) {
+  const double missing = std::sqrt((aim.surface - call.accepted.surface).rowwise().squaredNorm().maxCoeff());
+  const double fraction = missing > distance ? distance / missing : 1;
+  const Controls goal = interpolate(call.accepted.controls, aim.controls, fraction, call.context.rotation_rows());
+  if (call.context.stored(goal) == call.accepted.controls) return;
+  run_sub_edits_by_rotation_steps(call, {goal, aim.surface, true});
+}
+
+}  // namespace
+
+double farthest_way(const Positions& from, const Positions& to) { return (to - from).rowwise().norm().maxCoeff(); }
+
+// A stride that took several calls is halved for the next one, any other is doubled.
+void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
+  for (bool arrives = false; !arrives;) {
+    const double way = farthest_way(drag.followed.surface, aim.surface);
+    arrives = way <= drag.stride || !call.execution.has_time_budget();
+    State next{aim.controls, aim.surface};
+    if (!arrives) {
+      next.controls =
+          interpolate(drag.followed.controls, aim.controls, drag.stride / way, call.context.rotation_rows());
+      next.surface = call.context.surface_at(next.controls, call.execution);
+    }
+    const std::size_t accepted_before = call.report.path.size();
+    try {
+      const Controls increment = incremented(call, drag.followed.controls, next.controls);
+      if (call.context.stored(increment) != call.accepted.controls)
+        run_sub_edits_by_rotation_steps(call, {increment, aim.surface, false});
+    } catch (const Interrupted&) {
+      if (call.report.path.size() > accepted_before) drag.followed = next;  // else the next call begins with its rest
+      drag.stride_took_several_calls = true;
+      throw;
+    }
+    drag.followed = next;
+    drag.stride = drag.stride_took_several_calls
+                      ? std::max(std::min(drag.stride, way) / 2, shortest_stride * call.context.pull_distance())
+                      : 2 * drag.stride;
+    drag.stride_took_several_calls = false;
+  }
+}
+
+PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim) {
+  const double increment = farthest_way(drag.followed.surface, aim.surface);
+  const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
+  return {.distance = context.pull_distance(), .pulls = static_cast<int>(pulls)};
+}
+
+void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits) {
+  const Counters& counters = call.execution.counters;
+  for (int k = 0; k < limits.pulls && counters.rounds < limits.rounds; ++k) {
+    const std::int64_t rounds_before = counters.rounds;
+    const double before = energy(call.accepted.surface, aim.surface);
+    pull(call, aim, limits.distance);
+    const double after = energy(call.accepted.surface, aim.surface);
+    const auto rounds = static_cast<double>(std::max<std::int64_t>(counters.rounds - rounds_before, 1));
+    if (!(after < (1 - least_energy_drop_rate * rounds) * before)) return;
+  }
+}
+
+}  // namespace stiv

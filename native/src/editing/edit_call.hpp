@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "editing/collision_queries.hpp"
+#include "editing/edit_context.hpp"
+#include "stiv/response/resolver.hpp"
+
+namespace stiv {
+
+/// The controls from which a round projects. [P3.2; mathematics.md, "The loop"]
+enum class Projection {
+  from_goal,       ///< the goal, with accumulated constraints; after `accumulated_rounds` as below
+  from_last_round  ///< the last candidate, with the constraints of the round alone: Algorithm 1
+};
+
+/// The rounds of a sub-edit, which the next call resumes if the time budget ended this one.
+struct RoundProgress {
+  Controls accepted, goal;  ///< of the sub-edit
+  Projection projection = Projection::from_goal;
+  ConstraintSet constraints;
+  Controls p;  ///< next candidate, before it is rounded
+  bool accumulates = true;
+  int round = 0;
+  bool cache_is_pruned = false;                 ///< to the step to this goal
+  std::optional<Events> events = std::nullopt;  ///< of the step to the candidate, if a search has ended
+  bool events_are_constrained = false;          ///< their rows are among `constraints`
+
+  bool belongs_to(const Controls& from, const Controls& to, Projection kind) const {
+    return accepted == from && goal == to && projection == kind;
+  }
+};
+
+/// The outcome of a call so far, summed over its sub-edits.
+struct EditReport {
+  bool blocked = false;  ///< the last sub-edit ended before the response settled
+  double fraction = 1;   ///< least fraction of a step that was accepted
+  Events events;         ///< of the last round that had any
+  Index patches = 0;
+  std::vector<Controls> path;  ///< accepted controls, in order
+};
+
+/// What one call of a session works on. `accepted` changes at each acceptance and only then, so it is valid even when
+/// Interrupted is thrown.
+struct EditCall {
+  const EditContext& context;
+  CollisionQueries& queries;
+  State& accepted;
+  std::optional<RoundProgress>& progress;
+  EditReport& report;
+  Execution& execution;
+};
+
+/// The goal of a sub-edit.
+struct Aim {
+  Controls controls;
+  Positions surface;  ///< from which the energy is measured: the surface of the final goal
+  bool must_improve;  ///< accept only states of less energy
+};
+
+}  // namespace stiv
