@@ -52,6 +52,6 @@ def unregister() -> None:
 def forget() -> None:
     """Give back what is kept from one drag to the next."""
     drag_results.clear()
-    remembering = sys.modules.get("stiv.blender.remembering")  # there only if the native module was
-    if remembering is not None:
-        remembering.forget_all()
+    cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # there only if the native module was
+    if cache is not None:
+        cache.forget_all()

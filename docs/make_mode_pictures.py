@@ -17,7 +17,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from stiv.blender.blend_files import open_blend, render_picture
+from stiv.blender.scripts.blend_files import open_blend, render_picture
 from stiv.command_line.blender_module import quiet_blender
 from stiv.command_line.replay import run_script
 from stiv.edit_scripts import read_edit_script

@@ -87,7 +87,7 @@ def _unsupported_snapping(scene: Any) -> list[str]:
 
 
 def _look(context: Any, view: View | None, pixel: Pixel, moving: frozenset[str]) -> Seen | None:
-    from stiv.blender.sight import first_seen  # the add-on registers without the native module
+    from stiv.blender.scene.ray_casting import first_seen  # the add-on registers without the native module
 
     if view is None:
         return None

@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from stiv.blender.arrays import Floats, Indices, read_collection
-from stiv.blender.mesh_reading import evaluated_mesh
+from stiv.blender.scene.arrays import Floats, Indices, read_collection
+from stiv.blender.scene.mesh_reading import evaluated_mesh
 
 QUALITY, COLLISION_QUALITY = 10, 5  # steps a frame, twice Blender's defaults and more: it shall do its best
 

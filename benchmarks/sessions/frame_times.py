@@ -18,9 +18,9 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.arrays import Floats
-from stiv.blender.nearby import begin_nearby
-from stiv.blender.replaying import prepare, run_edit
+from stiv.blender.edit.culled_edit import begin_nearby
+from stiv.blender.scene.arrays import Floats
+from stiv.blender.scripts.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings
 from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
 

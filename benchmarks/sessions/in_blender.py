@@ -106,5 +106,5 @@ def _modal(path: Path) -> dict[str, ModuleType]:
 def _opened(path: Path) -> Iterator[EditScript]:
     """A .blend open, with the add-on's operators; the script beside it."""
     with quiet_blender(), addon_registered(path):
-        require_blender("stiv.blender.blend_files", path).open_blend(path)
+        require_blender("stiv.blender.scripts.blend_files", path).open_blend(path)
         yield read_edit_script(path.with_suffix(".edits.json"))

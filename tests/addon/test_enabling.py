@@ -10,7 +10,7 @@ pytest.importorskip("stiv._native")
 
 import stiv  # noqa: E402
 from stiv.blender import enable  # noqa: E402
-from stiv.blender.enabling import is_enabled  # noqa: E402
+from stiv.blender.scripts.enabling import is_enabled  # noqa: E402
 
 
 def test_a_missing_addon_is_said_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -86,7 +86,7 @@ def test_weight_axes_of_the_panel_pin_single_coordinates(bar: Any) -> None:
 
 
 def test_weights_and_their_axes_come_from_an_edit_script(bar: Any, tmp_path: Path) -> None:
-    from stiv.blender.replaying import replay
+    from stiv.blender.scripts.replaying import replay
     from stiv.edit_scripts import read_edit_script
 
     chosen = {"deformation": "vertices", "weight_group": "Right", "weight_axes": [True, False, False]}

@@ -12,7 +12,7 @@ import bpy
 import pytest
 
 from stiv.blender import read_surface
-from stiv.blender.blend_files import open_blend
+from stiv.blender.scripts.blend_files import open_blend
 from stiv.command_line import program
 
 FOLDER = Path(__file__).resolve().parents[2] / "blend_fixtures"

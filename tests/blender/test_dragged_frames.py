@@ -10,8 +10,8 @@ import pytest
 import stiv
 from benchmarks.sessions.dragged_profile import dragged_rows, dragged_text, shown_apart
 from benchmarks.sessions.in_blender import drags_in_blender
-from stiv.blender.blend_files import open_blend
-from stiv.blender.checking import find_pairs, read_surface
+from stiv.blender.scripts.blend_files import open_blend
+from stiv.blender.verify.scene_check import find_pairs, read_surface
 from stiv.edit_scripts import EditScript, EditStep, read_edit_script
 
 FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"

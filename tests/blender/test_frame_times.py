@@ -10,8 +10,8 @@ import pytest
 import stiv
 from benchmarks.sessions.blender_profile import shares_with_blender
 from benchmarks.sessions.frame_times import frame_times, goal_matrix
-from stiv.blender.blend_files import open_blend
-from stiv.blender.checking import find_pairs, read_surface
+from stiv.blender.scripts.blend_files import open_blend
+from stiv.blender.verify.scene_check import find_pairs, read_surface
 from stiv.edit_scripts import EditScript, EditStep, read_edit_script
 
 pytestmark = pytest.mark.usefixtures("registered")

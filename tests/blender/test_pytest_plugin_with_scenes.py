@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 from building import add_cube, add_grid
 
-from stiv.blender.blend_files import save_blend
+from stiv.blender.scripts.blend_files import save_blend
 from stiv.pytest_plugin import _check
 
 

@@ -10,7 +10,7 @@ bpy = pytest.importorskip("bpy")
 
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
-from stiv.blender.enabling import is_enabled  # noqa: E402
+from stiv.blender.scripts.enabling import is_enabled  # noqa: E402
 from stiv.command_line import program  # noqa: E402
 
 

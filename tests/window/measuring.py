@@ -67,11 +67,13 @@ class Stopwatch:
 
 def watch_all(watch: Stopwatch) -> None:
     """The parts of a frame."""
-    from stiv.blender import edit, lattice_points, showing, verification
+    from stiv.blender.controls import lattice_points
+    from stiv.blender.edit import blender_edit, state_writer
+    from stiv.blender.verify import verification
 
-    watch.watch(edit.BlenderEdit, "drag", "solving")
-    watch.watch(edit.BlenderEdit, "write", "write, all")
-    watch.watch(showing.Showing, "put", "writing and evaluation")
+    watch.watch(blender_edit.BlenderEdit, "drag", "solving")
+    watch.watch(blender_edit.BlenderEdit, "write", "write, all")
+    watch.watch(state_writer.Showing, "put", "writing and evaluation")
     watch.watch(lattice_points.LatticeWriter, "write", "writing controls")
     watch.watch(verification, "read_shown", "reading back")
 

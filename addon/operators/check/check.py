@@ -26,7 +26,7 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Check, show, select."""
         from stiv.blender import check_scene  # the add-on registers without the native module
-        from stiv.blender.face_selection import faces_of, select_faces
+        from stiv.blender.verify.face_selection import faces_of, select_faces
 
         try:
             found = check_scene(context, edit_settings(context.scene))
@@ -76,7 +76,7 @@ def counted(count: int, noun: str) -> str:
 
 def read_out(context: bpy.types.Context) -> str:
     """The least distance between two objects as a line, shown in the view too; "" where there are not two."""
-    from stiv.blender.measuring import nearest_pair  # the add-on registers without the native module
+    from stiv.blender.verify.nearest_pair import nearest_pair  # the add-on registers without the native module
 
     least = nearest_pair(context, edit_settings(context.scene))
     display.show_clearance(least)

@@ -20,7 +20,7 @@ class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Measure, show, say."""
-        from stiv.blender.measuring import nearest_pair  # the add-on registers without the native module
+        from stiv.blender.verify.nearest_pair import nearest_pair  # the add-on registers without the native module
 
         try:
             found = nearest_pair(context, edit_settings(context.scene))

@@ -27,7 +27,7 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find all pairs and keep them in the scene, in place of those kept before."""
-        from stiv.blender.checking import exclusions_now  # the add-on registers without the native module
+        from stiv.blender.verify.scene_check import exclusions_now  # the add-on registers without the native module
 
         try:
             excluded, others = exclusions_now(context, _settings(context))

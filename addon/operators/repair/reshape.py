@@ -65,7 +65,7 @@ class ReshapeOperator(NeedsNativeModule):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do all of it, with Blender's progress at the pointer."""
-        from stiv.blender.repairing import carry_out  # the add-on registers without the native module
+        from stiv.blender.repair.repair import carry_out  # the add-on registers without the native module
 
         manager = context.window_manager
         manager.progress_begin(0, 100)

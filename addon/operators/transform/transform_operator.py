@@ -109,7 +109,7 @@ def begin_drag(context: bpy.types.Context, request: Any) -> Any:
 
 
 def _told(context: bpy.types.Context, edit: Any) -> Any:
-    from stiv.blender.left_out import text_not_guarded  # the add-on registers without the native module
+    from stiv.blender.verify.left_out import text_not_guarded  # the add-on registers without the native module
 
     found = text_not_guarded(context, edit.guard.evaluations, edit.carried)
     context.window_manager.stiv_check.left_out = found

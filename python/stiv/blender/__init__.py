@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The one place that reads a Blender scene and writes controls back."""
 
-from stiv.blender.changes import Change, Changes, compare
-from stiv.blender.checking import SceneCheck, check_scene, read_surface
-from stiv.blender.contracting import BlenderContraction, ContractionSettings, contract_scene
-from stiv.blender.drawable import Contacts, contacts_of, triangles_of
-from stiv.blender.edit import BlenderEdit
-from stiv.blender.enabling import enable
-from stiv.blender.errors import SceneChangedError
-from stiv.blender.exclusions import Exclusions
-from stiv.blender.expanding import BlenderExpansion, ExpansionSettings, expand_scene
-from stiv.blender.following import Followed, follow
-from stiv.blender.guarding import Guard, choose_guard
-from stiv.blender.loop_objects import add_refined, remove_refined
-from stiv.blender.loop_surfaces import refresh
-from stiv.blender.motion import Influence, Motion
-from stiv.blender.nearby import begin_nearby
-from stiv.blender.repairing import BlenderRepair, RepairSettings, repair_scene
-from stiv.blender.reshaping import ReshapeReport
-from stiv.blender.reverting import revert
-from stiv.blender.scene_state import ObjectState, SceneState, read_state
+from stiv.blender.controls.loop_objects import add_refined, remove_refined
+from stiv.blender.controls.loop_surfaces import refresh
+from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.culled_edit import begin_nearby
+from stiv.blender.edit.drawable import Contacts, contacts_of, triangles_of
+from stiv.blender.edit.state_writer import WriteReport
+from stiv.blender.guard.changes import Change, Changes, compare
+from stiv.blender.guard.correction import Followed, follow
+from stiv.blender.guard.reverting import revert
+from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
+from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
+from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
+from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene
+from stiv.blender.repair.reshaping import ReshapeReport
+from stiv.blender.scene.errors import SceneChangedError
+from stiv.blender.scene.exclusions import Exclusions
+from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
+from stiv.blender.scripts.enabling import enable
 from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
-from stiv.blender.showing import WriteReport
-from stiv.blender.verification import FacePair
+from stiv.blender.verify.scene_check import SceneCheck, check_scene, read_surface
+from stiv.blender.verify.verification import FacePair
 
 __all__ = [
     "BlenderContraction",

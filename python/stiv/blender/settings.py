@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from stiv import InputError
-from stiv.blender.exclusions import Exclusions
+from stiv.blender.scene.exclusions import Exclusions
 from stiv.choices import BOUNDARIES, DEFORMATIONS, GUARDS, OBJECT_RESPONSES, OPERATORS, RESPONDERS, RESTS, ROLES
 
 Kind = Literal["move", "rotate", "scale"]

@@ -34,7 +34,7 @@ def addon_registered(path: Path) -> Iterator[None]:
 
     Raises InputError where Blender's module or the add-on is not installed.
     """
-    if require_blender("stiv.blender.enabling", path).is_enabled():
+    if require_blender("stiv.blender.scripts.enabling", path).is_enabled():
         yield
         return
     try:

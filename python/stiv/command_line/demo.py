@@ -56,7 +56,7 @@ def add_to(subcommands: Subparsers) -> None:
 
 def _run(arguments: argparse.Namespace) -> ExitCode:
     begin, scene, output = time.perf_counter(), _scene(), arguments.output
-    require_blender("stiv.blender.blend_files", scene)
+    require_blender("stiv.blender.scripts.blend_files", scene)
     require_folder(output)
     output.mkdir(exist_ok=True)
     edits = _edited(scene, output)
@@ -77,7 +77,7 @@ def _scene() -> Path:
 
 def _edited(scene: Path, output: Path) -> list[dict[str, Any]]:
     """Runs the edits and writes their files; what each edit did."""
-    files = require_blender("stiv.blender.blend_files", scene)
+    files = require_blender("stiv.blender.scripts.blend_files", scene)
     script = read_edit_script(scene.with_suffix(".edits.json"))
     with quiet_blender():
         files.open_blend(scene)

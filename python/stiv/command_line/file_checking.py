@@ -61,10 +61,10 @@ def _looks_at_mesh(path: Path, choices: Choices) -> Iterable[Look]:
 
 def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
     """Of every mesh that a scene shows or renders, as Blender evaluates it; loose edges and vertices are tested too."""
-    files = require_blender("stiv.blender.blend_files", path)
+    files = require_blender("stiv.blender.scripts.blend_files", path)
     with quiet_blender():
         files.open_blend(path)
-    whole = require_blender("stiv.blender.whole_files", path)
+    whole = require_blender("stiv.blender.verify.all_scenes", path)
     try:
         whole.check_names(choices.scene, choices.objects)
         names = whole.scene_names(choices.scene)
@@ -79,7 +79,7 @@ def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
 def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look]:
     checking, evaluations, whole = (
         require_blender(f"stiv.blender.{name}", path)
-        for name in ("frame_checking", "checked_evaluations", "whole_files")
+        for name in ("verify.frame_check", "scene.checked_evaluations", "verify.all_scenes")
     )
     if choices.hidden:
         whole.unhide_all(context)
@@ -102,7 +102,7 @@ def _frames(path: Path, choices: Choices, checking: Any, context: Any) -> list[f
     if count >= MAX_FRAMES:
         raise InputError(f"{count} frames; at most {MAX_FRAMES} are checked")
     frames = [first + number * step / choices.subframes for number in range(count + 1)]
-    keyed: list[float] = require_blender("stiv.blender.keyed_frames", path).with_subframe_keys(frames)
+    keyed: list[float] = require_blender("stiv.blender.verify.keyed_frames", path).with_subframe_keys(frames)
     return keyed
 
 

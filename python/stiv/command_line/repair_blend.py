@@ -18,7 +18,7 @@ def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOu
 
     Roles that the add-on has stored are followed if it is installed. The selection in the file stays as it is.
     """
-    files = require_blender("stiv.blender.blend_files", source)
+    files = require_blender("stiv.blender.scripts.blend_files", source)
     with quiet_blender():
         context = files.open_blend(source)
         settings = _settings(context, source, choices)
@@ -31,7 +31,7 @@ def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOu
 
 def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -> RepairOutcome:
     blender = require_blender("stiv.blender", source)
-    selecting = require_blender("stiv.blender.selecting", source)
+    selecting = require_blender("stiv.blender.scripts.selection", source)
     found = blender.check_scene(context, settings, strands=False)
     before = len(found.pairs)
     if before == 0:

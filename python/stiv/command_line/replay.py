@@ -82,7 +82,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
-    files = require_blender("stiv.blender.blend_files", arguments.scene)
+    files = require_blender("stiv.blender.scripts.blend_files", arguments.scene)
     with quiet_blender():
         files.open_blend(arguments.scene)
         edits = run_script(script, arguments.scene, arguments.check)
@@ -115,7 +115,7 @@ def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dic
 
     check: make the exact test anew after each edit.
     """
-    replaying = require_blender("stiv.blender.replaying", scene)
+    replaying = require_blender("stiv.blender.scripts.replaying", scene)
     with addon_registered(scene), progress_bar("edits", len(script)) as advance:
         edits: list[dict[str, Any]] = replaying.replay(script, lambda edit: advance(edit["status"]), check)
     return edits
@@ -123,7 +123,7 @@ def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dic
 
 def render_scene(picture: Path, scene: Path) -> None:
     """Renders the open scene, which came from the file `scene`, to a PNG file."""
-    files = require_blender("stiv.blender.blend_files", scene)
+    files = require_blender("stiv.blender.scripts.blend_files", scene)
     with written_atomically(picture) as temporary, quiet_blender(errors=True):
         files.render_picture(temporary)
 

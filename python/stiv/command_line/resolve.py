@@ -80,8 +80,8 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
     files, poses, resolving, writing, checking, keyed, guarding, evaluations = (
         require_blender(f"stiv.blender.{name}", scene)
         for name in (
-            "blend_files", "animation_poses", "animation_resolving", "animation_writing", "frame_checking",
-            "keyed_frames", "animation_guarding", "checked_evaluations",
+            "scripts.blend_files", "animation.tracks", "animation.resolving", "animation.writing",
+            "verify.frame_check", "verify.keyed_frames", "animation.guard_choice", "scene.checked_evaluations",
         )
     )  # fmt: skip
     context = files.open_blend(scene)

@@ -85,7 +85,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     said = SimpleNamespace(text_not_guarded=lambda context, evaluations, carried: "")
-    monkeypatch.setitem(sys.modules, "stiv.blender.left_out", said)
+    monkeypatch.setitem(sys.modules, "stiv.blender.verify.left_out", said)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")
     return bpy.context.active_object

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a drag asks of the selection: a transform, about which points, and how far its influence reaches."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stiv import InputError
+from stiv.blender.controls.rotations import is_rotation, rotation_vector
+from stiv.blender.scene.arrays import Floats, transform_points
+
+FALLOFFS = ("SMOOTH", "SPHERE", "ROOT", "INVERSE_SQUARE", "SHARP", "LINEAR", "CONSTANT", "RANDOM")
+
+
+@dataclass(frozen=True)
+class Influence:
+    """Proportional editing: points near the selection follow it.
+
+    Attributes:
+        size: distance from the nearest selected point up to which points follow, world units, above 0.
+        falloff: how the share decreases with distance, one of FALLOFFS, as Blender names them.
+        connected: measure the distance along the edges of the cage instead of straight.
+    """
+
+    size: float
+    falloff: str = "SMOOTH"
+    connected: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what has no meaning."""
+        if not (np.isfinite(self.size) and self.size > 0):
+            raise InputError(f"size of the influence: {self.size!r} must be a finite number above 0")
+        if self.falloff not in FALLOFFS:
+            raise InputError(f"falloff: {self.falloff!r} is none of {', '.join(FALLOFFS)}")
+
+    def shares(self, distances: Floats) -> Floats:
+        """Share of the transform, 0 to 1, for distances from the selection, (m,)."""
+        t = np.clip(1 - distances / self.size, 0, 1)
+        curves = {
+            "SMOOTH": t * t * (3 - 2 * t), "SPHERE": np.sqrt(t * (2 - t)), "ROOT": np.sqrt(t),
+            "INVERSE_SQUARE": t * (2 - t), "SHARP": t * t, "LINEAR": t, "CONSTANT": np.sign(t),
+            "RANDOM": t * np.random.default_rng(0).random(len(t)),  # the same at each motion of a drag
+        }  # fmt: skip
+        shares: Floats = np.where(distances == 0, 1, curves[self.falloff])
+        return shares
+
+
+@dataclass(frozen=True)
+class Motion:
+    """An absolute goal of the selection since the start of an edit.
+
+    Attributes:
+        matrix: (4, 4) world transform.
+        pivot: (3,) point that the linear part of the matrix is about; what is left moves it.
+        individual: each object, island of vertices or lattice turns and grows about its own origin instead.
+        influence: how far the transform reaches beyond the selection; None: nowhere.
+        rotation: (3,) rotation vector of the matrix, where the way round is not the shortest; None: it is.
+    """
+
+    matrix: Floats
+    pivot: Floats
+    individual: bool = False
+    influence: Influence | None = None
+    rotation: Floats | None = None
+
+    @staticmethod
+    def of(given: "Motion | ArrayLike") -> "Motion":
+        """A motion, or a (4, 4) matrix alone. Raises InputError for what is not finite."""
+        motion = given if isinstance(given, Motion) else Motion(np.asarray(given, np.float64), np.zeros(3))
+        matrix = np.asarray(motion.matrix, np.float64)
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not np.isfinite(motion.pivot).all():
+            raise InputError("transform: must be a matrix of 4 x 4 finite numbers")
+        return replace(motion, matrix=matrix)
+
+    @property
+    def linear(self) -> Floats:
+        """(3, 3) without the translation."""
+        return self.matrix[:3, :3]
+
+    @property
+    def shift(self) -> Floats:
+        """(3,) by which the pivot moves."""
+        moved: Floats = transform_points(self.matrix, self.pivot[None])[0] - self.pivot
+        return moved
+
+    def whole(self, points: Floats) -> Floats:
+        """Points, (k, 3), that follow all of the transform."""
+        return transform_points(self.matrix, points)
+
+    def about(self, points: Floats, origins: Floats) -> Floats:
+        """Points, (k, 3), each transformed about an origin of its own, (k, 3) or (3,)."""
+        moved: Floats = origins + (points - origins) @ self.linear.T + self.shift
+        return moved
+
+    def shared(self, points: Floats, shares: NDArray[Any]) -> Floats:
+        """Points, (k, 3), that follow a share of the transform each, (k,): turned by part of the angle."""
+        arms = points - self.pivot
+        if is_rotation(self.linear):
+            vector = rotation_vector(self.linear) if self.rotation is None else self.rotation
+            moved = _turned(arms, vector, shares)
+        else:
+            moved = arms + shares[:, None] * (arms @ self.linear.T - arms)
+        result: Floats = self.pivot + moved + shares[:, None] * self.shift
+        return result
+
+
+def _turned(arms: Floats, vector: Floats, shares: NDArray[Any]) -> Floats:
+    """Vectors turned by a share of a rotation each (Rodrigues)."""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0:
+        return arms
+    axis, turns = vector / angle, (shares * angle)[:, None]
+    along = (arms @ axis)[:, None] * axis
+    turned: Floats = along + np.cos(turns) * (arms - along) + np.sin(turns) * np.cross(axis, arms)
+    return turned

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mathematics of placements: rotation vectors, and what an affine map does to a body that keeps its shape."""
+
+import numpy as np
+
+from stiv.blender.scene.arrays import Floats
+
+SINGLE = 2.0**-23  # from 1 to the next number of single precision
+
+
+def rotation_matrix(vector: Floats) -> Floats:
+    """The rotation by |vector| radians about vector, (3, 3). (Rodrigues)"""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0:
+        return np.eye(3)
+    x, y, z = vector / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    rotation: Floats = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return rotation
+
+
+def rotation_vector(matrix: Floats) -> Floats:
+    """The vector of a rotation, its angle in [0, pi]; by way of the unit quaternion, stable for all angles."""
+    quaternion = _quaternion(matrix)
+    length = float(np.linalg.norm(quaternion[1:]))
+    if length == 0:
+        return np.zeros(3)
+    vector: Floats = quaternion[1:] * (2 * np.arctan2(length, quaternion[0]) / length)
+    return vector
+
+
+def nearest_turn(vector: Floats, last: Floats) -> Floats:
+    """The vector of the same rotation, full turns added, that is nearest to `last`: a drag may turn more than once."""
+    angle = float(np.linalg.norm(vector))
+    reference = last if angle == 0 else vector
+    length = float(np.linalg.norm(reference))
+    if length == 0:
+        return vector
+    axis = reference / length
+    turns = round((float(last @ axis) - (float(vector @ axis))) / (2 * np.pi))
+    return vector + axis * (2 * np.pi * turns)
+
+
+def nearest_rotation(matrix: Floats) -> Floats:
+    """The rotation nearest to a linear map, (3, 3): its polar factor, mirroring left out."""
+    u, _, vt = np.linalg.svd(matrix)
+    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0])
+    rotation: Floats = (u * signs) @ vt
+    return rotation
+
+
+def is_rotation(matrix: Floats, tolerance: float = 1e-5) -> bool:
+    """Does a (3, 3) matrix keep lengths and handedness, to within single precision?"""
+    return bool(np.abs(matrix @ matrix.T - np.eye(3)).max() <= tolerance and np.linalg.det(matrix) > 0)
+
+
+def about(centre: Floats, linear: Floats, target: Floats) -> Floats:
+    """The affine map, (4, 4), with a linear part that takes `centre` to `target`."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = linear
+    matrix[:3, 3] = target - linear @ centre
+    return matrix
+
+
+def without_rounding(vector: Floats, unit: float = 0.0) -> Floats:
+    """The vector, (3,), with 0 for components that single precision cannot hold beside its length, or beside `unit`.
+
+    A solve leaves them where nothing asks for a motion. Blender's fields would show them, as -0.
+    """
+    cleaned: Floats = np.where(np.abs(vector) > SINGLE * max(float(np.linalg.norm(vector)), unit), vector, 0.0)
+    return cleaned
+
+
+def _quaternion(r: Floats) -> Floats:
+    """(w, x, y, z) with w >= 0. (Shepperd 1978: the largest component first.)"""
+    squares = np.array([1 + np.trace(r), *(1 + 2 * r.diagonal() - np.trace(r))])
+    k = int(np.argmax(squares))
+    skew = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+    if k == 0:
+        quaternion = np.array([squares[0], *skew])
+    else:
+        row = (r + r.T)[k - 1]
+        quaternion = np.array([skew[k - 1], *row])
+        quaternion[k] = squares[k]
+    quaternion /= np.linalg.norm(quaternion)
+    return quaternion if quaternion[0] >= 0 else -quaternion

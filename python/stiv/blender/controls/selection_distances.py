@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far points are from the selected ones, and which of the selected hang together."""
+
+import heapq
+
+import numpy as np
+from mathutils.kdtree import KDTree
+from numpy.typing import NDArray
+
+from stiv.blender.scene.arrays import Floats, Indices
+
+Mask = NDArray[np.bool_]
+
+
+def nearest_distances(points: Floats, selected: Mask) -> Floats:
+    """Straight distance of each point, (m, 3), from the nearest selected one, (m,); infinite where none is."""
+    distances = np.where(selected, 0.0, np.inf)
+    chosen = points[selected]
+    if len(chosen) == 0:
+        return distances
+    tree = KDTree(len(chosen))
+    for number, point in enumerate(chosen.tolist()):
+        tree.insert(point, number)
+    tree.balance()
+    nearest = [tree.find(point)[1] for point in points[~selected].tolist()]
+    # From the tree, which is in single precision, only who is nearest.
+    distances[~selected] = np.linalg.norm(points[~selected] - chosen[np.array(nearest, np.int64)], axis=1)
+    return distances
+
+
+def distances_along(edges: Indices, points: Floats, selected: Mask) -> Floats:
+    """Length of the shortest way along edges, (e, 2), from a selected point, (m,); infinite where there is none.
+
+    (Dijkstra 1959.)
+    """
+    neighbours = _neighbours(edges, points)
+    distances = np.where(selected, 0.0, np.inf)
+    queue = [(0.0, int(index)) for index in np.flatnonzero(selected)]
+    while queue:
+        distance, index = heapq.heappop(queue)
+        if distance > distances[index]:
+            continue
+        for other, length in neighbours[index]:
+            if distance + length < distances[other]:
+                distances[other] = distance + length
+                heapq.heappush(queue, (distance + length, other))
+    return distances
+
+
+def island_centres(points: Floats, selected: Mask, edges: Indices | None) -> Floats:
+    """For each selected point, (k,), the mean of the selected points that hang together with it, (k, 3).
+
+    Without edges all of them hang together.
+    """
+    chosen = np.flatnonzero(selected)
+    labels = np.zeros(len(points), np.int64) if edges is None else _islands(len(points), edges, selected)
+    _, numbers = np.unique(labels[chosen], return_inverse=True)
+    sums = np.zeros((numbers.max(initial=0) + 1, 3))
+    np.add.at(sums, numbers, points[chosen])
+    centres: Floats = (sums / np.bincount(numbers, minlength=len(sums))[:, None])[numbers]
+    return centres
+
+
+def _neighbours(edges: Indices, points: Floats) -> list[list[tuple[int, float]]]:
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    neighbours: list[list[tuple[int, float]]] = [[] for _ in points]
+    for (a, b), length in zip(edges.tolist(), lengths.tolist(), strict=True):
+        neighbours[a].append((b, length))
+        neighbours[b].append((a, length))
+    return neighbours
+
+
+def _islands(count: int, edges: Indices, selected: Mask) -> NDArray[np.int64]:
+    """A number for each point, the same for selected ones that hang together: the smallest spreads along edges."""
+    labels = np.arange(count)
+    inside = edges[selected[edges].all(axis=1)]
+    while True:
+        before = labels.copy()
+        np.minimum.at(labels, inside[:, 0], before[inside[:, 1]])
+        np.minimum.at(labels, inside[:, 1], before[inside[:, 0]])
+        labels = labels[labels]  # so that it spreads in leaps
+        if np.array_equal(labels, before):
+            return labels

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's Subdivision Surface modifier as a deformation of the core."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv.blender.controls.deformation_cache import remembered
+from stiv.blender.scene.arrays import Indices, Singles
+from stiv.blender.scene.mesh_reading import read_creases, read_edges, read_faces
+from stiv.blender.scene.modifier_stack import Subdivision
+
+
+def subdivide(mesh: bpy.types.Mesh, stage: Subdivision) -> stiv.Deformation:
+    """From world positions of the cage's vertices to those of the subdivided mesh, in Blender's order."""
+    corners, starts = read_faces(mesh)
+    edge_crease, vertex_crease = read_creases(mesh) if stage.use_creases else (None, None)
+    cage = (len(mesh.vertices), corners, starts, read_edges(mesh), edge_crease, vertex_crease)
+    return remembered(_smooth, *cage, stage.levels, stage.limit_surface, stage.quality, stage.simple, stage.boundary)
+
+
+def unchanged(count: int) -> stiv.Deformation:
+    """Controls as the surface itself, as a linear deformation that can be stacked."""
+    rows = np.arange(count + 1, dtype=np.int32)
+    return stiv.linear(stiv.Weights(rows, rows[:-1], np.ones(count), (count, count)))
+
+
+def stacked(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
+    """Linear deformations with the same controls, their surfaces one after the other."""
+    if len(deformations) == 1:
+        return deformations[0]
+    parts = [stiv.linear_weights(deformation) for deformation in deformations]
+    weights = [part[0] for part in parts]
+    ends = np.cumsum([0, *(len(each.data) for each in weights)])
+    starts = [np.asarray(each.indptr[:-1]) + end for each, end in zip(weights, ends, strict=False)]
+    shape = (sum(each.shape[0] for each in weights), weights[0].shape[1])
+    offsets = [
+        np.zeros((each.shape[0], 3)) if offset is None else offset
+        for each, (_, offset) in zip(weights, parts, strict=True)
+    ]
+    whole = stiv.Weights(
+        np.append(np.concatenate(starts), ends[-1]),
+        np.concatenate([each.indices for each in weights]),
+        np.concatenate([each.data for each in weights]),
+        shape,
+    )
+    return stiv.linear(whole, np.concatenate(offsets))
+
+
+def _smooth(
+    count: int,
+    corners: Indices,
+    starts: Indices,
+    edges: Indices,
+    edge_crease: Singles | None,
+    vertex_crease: Singles | None,
+    levels: int,
+    limit_surface: bool,
+    quality: int,
+    simple: bool,
+    boundary: Any,
+) -> stiv.Deformation:
+    cage = stiv.Cage(count, corners, starts, edges, edge_crease, vertex_crease)
+    deformation, _ = stiv.catmull_clark(
+        cage, levels, limit_surface=limit_surface, quality=quality, simple=simple, boundary=boundary
+    )
+    return deformation

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an overlay draws, as plain arrays of world positions: contacts of an edit, faces that intersect."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+import stiv
+from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.evaluated_scene import read_scene
+from stiv.blender.scene.evaluations import SHOWN
+from stiv.blender.verify.verification import FacePair
+
+MOST_CONTACTS = 2000  # that are drawn; of more, as many evenly chosen ones
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Where an edit was held up.
+
+    Attributes:
+        points: (k, 3) the middle between what meets.
+        blocked: (k, 3) unit direction in which the side that moves cannot go on; where both move, that of the first.
+    """
+
+    points: Floats
+    blocked: Floats
+
+
+def contacts_of(edit: BlenderEdit, result: stiv.EditResult) -> Contacts:
+    """Contacts that the last call of an edit found, at its accepted surface."""
+    moving = np.zeros(len(edit.surface), np.bool_)
+    for index in (index for part in edit.parts for index in part.surfaces):
+        moving[edit.assembly.vertices(index)] = True
+    return contacts_at(result.events, edit.surface, moving)
+
+
+def contacts_at(events: stiv.Events, surface: Floats, moving: NDArray[np.bool_]) -> Contacts:
+    """Contacts of events at positions of the surface, (N, 3), of which these vertices, (N,), may move.
+
+    The weights of an event give the point on its first side where they are positive, on its second where negative; its
+    normal points to where the first side is pushed.
+    """
+    count = len(events.kind)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_CONTACTS)).astype(int))
+    vertices, weights = events.vertices[chosen], events.weights[chosen]
+    corners = surface[vertices]
+    first = np.einsum("kc,kcx->kx", np.maximum(weights, 0), corners)
+    second = np.einsum("kc,kcx->kx", np.maximum(-weights, 0), corners)
+    first_moves = (moving[vertices] & (weights > 0)).any(axis=1)
+    blocked = np.where(first_moves[:, None], -events.normal[chosen], events.normal[chosen])
+    return Contacts((first + second) / 2, blocked)
+
+
+def triangles_of(context: bpy.types.Context, pairs: Sequence[FacePair]) -> Floats:
+    """The triangles, (t, 3, 3), of all faces in pairs, as Blender shows them now."""
+    faces: dict[str, set[int]] = {}
+    for element in (each for pair in pairs for each in (pair.first, pair.second)):
+        if element.kind == "face" and element.evaluation == SHOWN:
+            faces.setdefault(element.object, set()).add(element.number)
+    found = [np.empty((0, 3, 3))]
+    for mesh in read_scene(context, lambda name: name in faces).meshes:
+        wanted = np.isin(mesh.faces, list(faces[mesh.owner.name]))
+        found.append(mesh.world()[mesh.triangles[wanted]])
+    return np.concatenate(found)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vertices of meshes that lie in exactly the same place made one: first in copies, in the meshes when all went well."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bmesh
+import bpy
+import numpy as np
+
+from stiv import InputError
+from stiv.blender.scene.arrays import read_collection
+from stiv.blender.scene.references import ObjectReference
+
+
+@dataclass(frozen=True)
+class WeldedMeshes:
+    """Objects that show welded copies of their meshes. One of `keep` and `undo` has to follow.
+
+    `meshes` and `copies` are names of meshes, one an object.
+    """
+
+    owners: tuple[ObjectReference, ...]
+    meshes: tuple[str, ...]
+    copies: tuple[str, ...]
+
+    def keep(self) -> None:
+        """Weld the meshes themselves, give them the positions of the copies, and remove the copies."""
+        for name, copy in zip(self.meshes, self.copies, strict=True):
+            mesh = bpy.data.meshes[name]
+            _weld(mesh)
+            positions = read_collection(bpy.data.meshes[copy].vertices, "co", 3, np.float32)
+            mesh.vertices.foreach_set("co", positions.ravel())
+            if mesh.shape_keys is not None:
+                mesh.shape_keys.key_blocks[0].data.foreach_set("co", positions.ravel())
+            mesh.update()
+        self.undo()
+
+    def undo(self) -> None:
+        """Show the meshes again, and remove the copies; a second call does nothing."""
+        for owner, name, copy in zip(self.owners, self.meshes, self.copies, strict=True):
+            if copy in bpy.data.meshes:
+                owner.find().data = bpy.data.meshes[name]
+                bpy.data.meshes.remove(bpy.data.meshes[copy])
+        bpy.context.view_layer.update()
+
+
+def weld_selected(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
+    """Let objects show welded copies of their meshes. Raises InputError in Edit Mode, with nothing changed."""
+    for ob in objects:
+        if ob.mode == "EDIT":
+            raise InputError(f'object "{ob.name}": cannot be welded in Edit Mode; leave it, or use Merge by Distance')
+    owners, meshes, copies = [], [], []
+    for ob in objects:
+        owners.append(ObjectReference.of(ob))
+        meshes.append(ob.data.name)
+        ob.data = ob.data.copy()
+        copies.append(ob.data.name)
+        _weld(ob.data)
+    bpy.context.view_layer.update()
+    return WeldedMeshes(tuple(owners), tuple(meshes), tuple(copies))
+
+
+def _weld(mesh: bpy.types.Mesh) -> None:
+    edited = bmesh.new()
+    try:
+        edited.from_mesh(mesh)
+        first: dict[tuple[float, ...], bmesh.types.BMVert] = {}
+        targets = {}
+        for vertex in edited.verts:
+            place = tuple(coordinate + 0.0 for coordinate in vertex.co)  # -0.0 and 0.0 are one place
+            if first.setdefault(place, vertex) is not vertex:
+                targets[vertex] = first[place]
+        bmesh.ops.weld_verts(edited, targetmap=targets)
+        edited.to_mesh(mesh)
+    finally:
+        edited.free()
+    mesh.update()

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Selects the faces of findings: in Edit Mode as its face selection, in Object Mode in the mesh, for later."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+import bmesh
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from stiv import InputError
+from stiv.blender.scene.arrays import Indices
+from stiv.blender.scene.evaluations import SHOWN
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_faces
+from stiv.blender.scene.modifier_stack import Subdivision, read_stack
+from stiv.blender.verify.verification import FacePair
+
+
+def faces_of(pairs: Sequence[FacePair]) -> dict[str, set[int]]:
+    """Numbers of the evaluated faces that take part in pairs, by the name of the object."""
+    found: dict[str, set[int]] = {}
+    for pair in pairs:
+        for each in (pair.first, pair.second):
+            numbers = found.setdefault(each.object, set())
+            if each.kind == "face" and each.evaluation == SHOWN:
+                numbers.add(each.number)
+    return found
+
+
+def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]]) -> dict[str, int]:
+    """Select exactly the faces below these evaluated ones, in every visible mesh; how many, by the name of the object.
+
+    Objects in Edit Mode show it at once, in the select mode for faces; others when they enter it. Left out are meshes
+    whose modifiers make faces that cannot be told apart by number, linked ones, and objects that are no meshes.
+    """
+    graph = context.evaluated_depsgraph_get()
+    counts = {}
+    for name, numbers in faces.items():
+        ob = bpy.data.objects.get(name)
+        if ob is None or ob.type != "MESH" or ob.data.library is not None:
+            continue
+        with evaluated_mesh(ob.evaluated_get(graph)) as shown:
+            total = len(shown.polygons)
+        if ob.mode == "EDIT":
+            ob.update_from_editmode()
+        origins = _origins(ob, context.scene, total)
+        if origins is not None:
+            chosen = np.zeros(len(ob.data.polygons), bool)
+            chosen[origins[np.array(sorted(numbers), np.int64)]] = True
+            counts[name] = int(chosen.sum())
+            _select(ob, chosen)
+    if any(bpy.data.objects[name].mode == "EDIT" for name in counts):
+        context.tool_settings.mesh_select_mode = (False, False, True)
+    return counts
+
+
+def _origins(ob: bpy.types.Object, scene: bpy.types.Scene, total: int) -> Indices | None:
+    """The polygon of the mesh below each evaluated face; None where that cannot be told."""
+    _, starts = read_faces(ob.data)
+    corners = np.diff(starts)
+    try:
+        levels = [stage.levels for stage in read_stack(ob, scene) if isinstance(stage, Subdivision)]
+    except InputError:
+        return None
+    # A face of n corners is cut into n quads, these into four each; quads among faces are cut into four at once.
+    made = corners * 4 ** (levels[0] - 1) if levels else np.ones(len(corners), np.int64)
+    origins = np.repeat(np.arange(len(corners), dtype=np.int32), made)
+    has_triangles = any(modifier.type == "TRIANGULATE" for modifier in ob.modifiers)
+    return origins if len(origins) == total and not has_triangles else None
+
+
+def _select(ob: bpy.types.Object, chosen: NDArray[np.bool_]) -> None:
+    if ob.mode == "EDIT":
+        edited = bmesh.from_edit_mesh(ob.data)
+        edited.select_mode = {"FACE"}
+        for elements in (edited.verts, edited.edges, edited.faces):
+            for element in elements:
+                element.select = False
+        for face, is_chosen in zip(edited.faces, chosen, strict=True):
+            if is_chosen:
+                face.select_set(True)
+        bmesh.update_edit_mesh(ob.data, loop_triangles=False, destructive=False)
+        return
+    mesh = ob.data
+    corners, starts = read_faces(mesh)
+    of_corners = np.repeat(chosen, np.diff(starts))
+    vertices = np.zeros(len(mesh.vertices), bool)
+    vertices[corners[of_corners]] = True
+    edges = np.zeros(len(mesh.edges), bool)
+    sides = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", sides)
+    edges[sides[of_corners]] = True
+    mesh.polygons.foreach_set("select", chosen)
+    mesh.vertices.foreach_set("select", vertices)
+    # Blender 5.0.1 ends when this attribute is written as `from_pydata` leaves it: one value for all edges.
+    if (attribute := mesh.attributes.get(".select_edge")) is not None:
+        mesh.attributes.remove(attribute)
+    mesh.edges.foreach_set("select", edges)
+    mesh.update()

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects of a scene that no test sees, each with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+import bpy
+
+from stiv.blender.controls.loop_objects import cages_shown_by_others
+from stiv.blender.scene.evaluated_scene import SURFACE_TYPES
+from stiv.blender.scene.evaluations import RENDER, rendered_objects
+from stiv.blender.scene.strand_reading import (
+    STRAND_TYPES,
+    hair_systems,
+    helper_curves,
+    why_no_particle_hair,
+    why_no_strands,
+)
+from stiv.checks.findings import LeftOut, left_out_text
+
+WITHOUT_SURFACE = {
+    "POINTCLOUD": "point clouds",
+    "VOLUME": "volumes",
+}
+
+
+def find_left_out(
+    context: bpy.types.Context, tested: Collection[str], named: Collection[str] = ()
+) -> tuple[LeftOut, ...]:
+    """What of the scene is not in a test of these objects, by name; each object once for a reason.
+
+    named: names that the test is limited to, if any. Objects that never have a surface, such as lights, do not come.
+    """
+    candidates = [ob for ob in context.scene.objects if ob.type in SURFACE_TYPES | {"VOLUME"} and ob.name not in tested]
+    reasons = [
+        *((ob.name, "not named") for ob in candidates if named and ob.name not in named),
+        *((ob.name, why) for ob in candidates if (not named or ob.name in named) and (why := _reason(context, ob))),
+        *(each for each in _without_surface(context) if not named or each[0] in named),
+    ]
+    return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
+
+
+def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
+    """What edits that guard these evaluations pass through, though the viewport or the render shows it; "" for nothing.
+
+    That is what cannot be tested and, unless the render is guarded, what is hidden in the viewport and rendered.
+    carried: names of the objects whose strands move along with what is edited.
+    """
+    reasons = [*_without_surface(context), *((name, "hair and curves that move along") for name in sorted(carried))]
+    found = [LeftOut(name, why) for name, why in dict.fromkeys(reasons)]
+    if RENDER not in evaluations:
+        found += [LeftOut(name, "rendered only") for name in _rendered_only(context)]
+    return f"Not guarded, {left_out_text(found)}" if found else ""
+
+
+def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:
+    """Why an object shows nothing that is tested; "" where its geometry says why."""
+    if ob.name in cages_shown_by_others(context):
+        return "cages shown by another object"
+    if ob.name not in context.view_layer.objects:
+        return "in an excluded collection"
+    return "" if ob.visible_get(view_layer=context.view_layer) else "hidden"
+
+
+def _without_surface(context: bpy.types.Context) -> Iterator[tuple[str, str]]:
+    """What is shown, is no mesh and cannot be tested as strands: of objects of such a kind, and made by modifiers."""
+    helpers = helper_curves(context)
+    graph = context.evaluated_depsgraph_get()
+    for instance in graph.object_instances:
+        if instance.show_self or instance.is_instance:
+            owner = instance.parent.original if instance.is_instance else instance.object.original
+            source = instance.instance_object.original if instance.is_instance else owner
+            why = _why_untested(instance, source, helpers)
+            if why:
+                yield owner.name, why
+    for ob in context.view_layer.objects:
+        if hair_systems(ob) and ob.visible_get(view_layer=context.view_layer):
+            why = why_no_particle_hair(ob.evaluated_get(graph))
+            if why:
+                yield ob.name, why
+
+
+def _rendered_only(context: bpy.types.Context) -> list[str]:
+    rendered = rendered_objects(context.view_layer)
+    return [
+        ob.name for ob in context.scene.objects
+        if ob.session_uid in rendered and ob.type in SURFACE_TYPES
+        and not (ob.name in context.view_layer.objects and ob.visible_get(view_layer=context.view_layer))
+    ]  # fmt: skip
+
+
+def _why_untested(
+    instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, helpers: frozenset[str]
+) -> str:
+    shown = instance.object
+    if shown.type in STRAND_TYPES:
+        return why_no_strands(shown, source, helpers)
+    if instance.is_instance and shown.type == "MESH" and hair_systems(source):
+        return "particle hair of instances"
+    return WITHOUT_SURFACE.get(shown.type, "")

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Object Mode shows while in Edit Mode, and what is rendered, against Blender put into that state by hand."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from building import add, add_cube, add_grid, add_lattice, add_modifier, as_rendered, edit_mode, evaluated, select
+
+from stiv.blender.scene.evaluated_scene import read_scene
+
+
+def kept() -> dict[str, int]:
+    names = ("objects", "meshes", "scenes", "collections", "curves", "lattices", "shape_keys", "metaballs", "worlds")
+    return {name: len(getattr(bpy.data, name)) for name in names}
+
+
+def read(evaluation: str) -> dict[str, np.ndarray]:
+    before = kept()
+    meshes = read_scene(bpy.context, evaluations=(evaluation,)).meshes
+    assert kept() == before
+    assert len({mesh.owner for mesh in meshes}) == len(meshes)
+    return {mesh.owner.name: mesh.world() for mesh in meshes}
+
+
+def stacks() -> dict[str, Any]:
+    """Objects that the viewport, Edit Mode and the render show in different ways."""
+    cubes = {name: add_cube(name, (4.0 * number, 0, 0)) for number, name in enumerate("ABCDEFGH")}
+    add_modifier(cubes["A"], "SUBSURF", levels=1, render_levels=3)
+    add_modifier(cubes["B"], "DISPLACE", strength=1.0, mid_level=0.0)
+    add_modifier(cubes["C"], "DISPLACE", strength=0.3, mid_level=0.0, show_viewport=False)
+    add_modifier(cubes["D"], "SUBSURF", levels=2, render_levels=2, show_in_editmode=False)
+    cubes["E"].hide_render = True
+    cubes["F"].hide_set(True)
+    add_modifier(cubes["G"], "SHRINKWRAP", target=cubes["A"])
+    lattice = add_lattice("Lattice", (2, 2, 2), (28, 0, 0), scale=(3, 3, 3))
+    add_modifier(cubes["H"], "LATTICE", object=lattice)
+    lattice.data.points[0].co_deform = (-1.0, -0.2, -0.1)
+    return {**cubes, "Lattice": lattice}
+
+
+def check_equal(found: dict[str, np.ndarray], names: Any) -> None:
+    wanted = {ob.name: evaluated(ob) for ob in bpy.data.objects if ob.type == "MESH" and ob.visible_get()}
+    assert set(found) == set(wanted) and set(names) <= set(found)
+    for name, points in wanted.items():
+        np.testing.assert_array_equal(found[name].astype(np.float32), points.astype(np.float32))
+
+
+@pytest.mark.parametrize("edited", ["", "B", "ABCDG", "Lattice"])
+@pytest.mark.parametrize("simplified", [False, True])
+def test_both_evaluations_are_blenders(edited: str, simplified: bool) -> None:
+    objects = stacks()
+    bpy.context.scene.render.use_simplify = simplified
+    bpy.context.scene.render.simplify_subdivision, bpy.context.scene.render.simplify_subdivision_render = 1, 2
+    chosen = [ob for name, ob in objects.items() if name == edited or (len(name) == 1 and name in edited)]
+    if edited == "Lattice":
+        chosen = [objects["Lattice"]]
+    if chosen:
+        edit_mode(*chosen)
+    viewport, render = read("viewport"), read("render")
+    if chosen:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    check_equal(viewport, "ABCDEGH")
+    as_rendered()
+    check_equal(render, "ABCDFGH")
+
+
+def test_posed_armature_is_seen_from_edit_mode() -> None:
+    arm = add("Arm", bpy.data.armatures.new("Arm"))
+    select(arm)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = arm.data.edit_bones.new("Bone")
+    bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    arm.pose.bones["Bone"].location = (0.5, 0.25, 0.125)
+    cube = add_cube("Cube")
+    cube.vertex_groups.new(name="Bone").add(range(8), 1.0, "REPLACE")
+    add_modifier(cube, "ARMATURE", object=arm)
+    wanted = evaluated(cube)
+    edit_mode(cube)
+    assert np.abs(wanted - read("shown")["Cube"]).max() > 0.4
+    np.testing.assert_array_equal(read("viewport")["Cube"].astype(np.float32), wanted.astype(np.float32))
+
+
+def test_instances_of_what_is_rendered_otherwise() -> None:
+    cube, other = add_cube("Cube"), add_cube("Other", (0, 3, 0))
+    add_modifier(cube, "SUBSURF", levels=1, render_levels=2)
+    collection = bpy.data.collections.new("Shown")
+    for ob in (cube, other):
+        bpy.context.collection.objects.unlink(ob)
+        collection.objects.link(ob)
+    add("Empty", None, (5, 0, 0), instance_type="COLLECTION", instance_collection=collection)
+    meshes = read_scene(bpy.context, evaluations=("render",)).meshes
+    assert {(mesh.owner.name, mesh.source, len(mesh.local)) for mesh in meshes} == {
+        ("Empty", "Cube", 98), ("Empty", "Other", 8)
+    }  # fmt: skip
+
+
+def test_render_resolution_of_curves() -> None:
+    data = bpy.data.curves.new("Curve", "CURVE")
+    data.dimensions, data.bevel_depth, data.render_resolution_u = "3D", 0.1, 4
+    spline = data.splines.new("BEZIER")
+    spline.bezier_points.add(1)
+    spline.bezier_points[1].co = (1, 0, 0)
+    curve = add("Curve", data)
+    shown, rendered = read("viewport")["Curve"], read("render")["Curve"]
+    data.splines[0].resolution_u = 4
+    assert len(shown) != len(rendered) == len(evaluated(curve))
+
+
+def test_nothing_is_copied_where_nothing_differs(monkeypatch: Any) -> None:
+    cube = add_cube("Cube")
+    add_modifier(cube, "SUBSURF", levels=2, render_levels=2)
+    add_grid("Grid", 2)
+    monkeypatch.setattr("stiv.blender.scene.evaluated_scene.open_twins", None)
+    for mode in (select, edit_mode):
+        mode(cube)
+        meshes = read_scene(bpy.context, evaluations=("shown", "viewport", "render")).meshes
+        assert {(mesh.owner.name, len(mesh.exists_in)) for mesh in meshes} == {("Cube", 3), ("Grid", 3)}
+
+
+def test_copies_are_removed_after_an_error() -> None:
+    cube = add_cube("Cube")
+    add_modifier(cube, "SUBSURF", levels=1, render_levels=2)
+    before = kept()
+
+    def accept(name: str) -> bool:
+        raise RuntimeError(name)
+
+    with pytest.raises(RuntimeError, match="Cube"):
+        read_scene(bpy.context, accept, evaluations=("render",))
+    assert kept() == before
+
+
+def test_metaballs_are_rendered_in_their_own_families() -> None:
+    """A copy whose name got a number would show no surface, or join another family."""
+    balls = [bpy.data.metaballs.new("Ball") for _ in range(2)]
+    for number, data in enumerate(balls):
+        data.elements.new()
+        data.resolution, data.render_resolution = 0.5, 0.2
+        add(("Ball", "Ball.001")[number], data, (1.5 * number, 0, 0))
+    found = [mesh.local for mesh in read_scene(bpy.context, evaluations=("render",)).meshes]
+    for data in balls:
+        data.resolution = data.render_resolution
+    bpy.context.view_layer.update()
+    instances = bpy.context.evaluated_depsgraph_get().object_instances
+    wanted = [len(instance.object.data.vertices) for instance in instances if instance.object.type == "MESH"]
+    assert [len(local) for local in found] == wanted == [max(wanted)]

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenes that intersect and are edited all the same: what is excluded gets no more, everything else stays guarded."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, mesh, select, shift, snapshot
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, Exclusions, check_scene
+from stiv.blender.verify.scene_check import exclusions_now
+
+DEFORM = EditSettings(object_response="deform")
+
+
+def excluded_now() -> Exclusions:
+    excluded, others = exclusions_now(bpy.context)
+    assert others == ()
+    return excluded
+
+
+def meeting() -> set[frozenset[tuple[str, int]]]:
+    """Pairs of faces that meet now."""
+    return {
+        frozenset(((pair.first.object, pair.first.number), (pair.second.object, pair.second.number)))
+        for pair in check_scene(bpy.context).pairs
+    }
+
+
+def stuck_cube() -> tuple:
+    """A cube that stands in a grid, a second one apart, and a wall."""
+    grid, stuck = add_grid("Grid", 8, 3.0), add_cube("Stuck", (0.1, 0.15, 0.2), 0.5)
+    return grid, stuck, add_cube("Free", (0, 0, 3.0), 0.5)
+
+
+def test_what_intersects_is_refused_until_it_is_excluded() -> None:
+    _, _, free = stuck_cube()
+    select(free)
+    add_cube("Other", (1.5, 0, 3.0), 0.5)
+    before = meeting()
+    with pytest.raises(stiv.StartIntersectsError):
+        select(bpy.data.objects["Stuck"])
+        BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    select(bpy.data.objects["Grid"], free)
+    settings = replace(DEFORM, excluded=excluded_now())
+    edit = BlenderEdit.begin(bpy.context, settings, "move")
+    assert edit.summary.warnings == ()
+    assert edit.apply(shift(x=3.0)).status in ("corrected", "blocked")
+    report = edit.write()
+    assert report.passed, report.message
+    assert meeting() <= before
+    assert not any({"Free", "Other"} & {name for name, _ in pair} for pair in meeting())
+
+
+@pytest.mark.parametrize("way", [(0, 0, 2.0), (0, 0, -2.0), (1.0, 0.3, 0), (0, 0, 0.1)])
+def test_no_other_pairs_than_those_excluded_ever_meet(way) -> None:
+    grid, _, _ = stuck_cube()
+    add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
+    edit_mode(grid)
+    edited = grid.data
+    bpy.ops.mesh.select_all(action="SELECT")
+    before, count = meeting(), len(check_scene(bpy.context).pairs)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(excluded=excluded_now()), "move")
+    edit.apply(shift(*way))
+    edit.write()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert meeting() <= before
+    assert len(check_scene(bpy.context).pairs) <= count
+    assert edited is grid.data
+
+
+def test_cancelling_restores_everything() -> None:
+    grid, _, _ = stuck_cube()
+    select(grid)
+    before = snapshot()
+    edit = BlenderEdit.begin(bpy.context, replace(DEFORM, excluded=excluded_now()), "move")
+    edit.drag(shift(z=0.2))
+    edit.write()
+    edit.restore()
+    assert snapshot() == before
+
+
+def test_exclusions_of_a_mesh_that_changed_are_dropped_with_a_message() -> None:
+    grid, stuck, _ = stuck_cube()
+    excluded = excluded_now()
+    kept = Exclusions.from_json(excluded.to_json())
+    assert kept == excluded and len(kept.pairs) > 3
+    select(stuck)
+    stuck.location.x += 0.01  # the same faces: nothing is stale
+    bpy.context.view_layer.update()
+    moved = evaluated(stuck)
+    current, message = kept.current(read_meshes())
+    assert (current, message) == (kept, "")
+    grid.data.vertices[0].co.x -= 0.1
+    grid.data.update()
+    assert kept.current(read_meshes())[1] == ""
+    add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
+    bpy.context.view_layer.update()
+    current, message = kept.current(read_meshes())
+    assert current.pairs == frozenset() and list(current.shapes) == ["Stuck"]
+    assert message == f'excluded pairs are dropped ({len(kept.pairs)}): the faces of "Grid" have changed'
+    with pytest.raises(stiv.StartIntersectsError):
+        BlenderEdit.begin(bpy.context, EditSettings(excluded=kept), "move")
+    assert np.array_equal(evaluated(stuck), moved)
+
+
+def read_meshes():
+    from stiv.blender.scene.evaluated_scene import read_scene
+
+    return read_scene(bpy.context, evaluations=("shown", "viewport")).meshes
+
+
+def test_what_is_loose_cannot_be_excluded() -> None:
+    add_grid("Grid", 3, 1.5)
+    add("Wire", mesh("Wire", [(0.2, 0.1, -1), (0.2, 0.1, 1)], [], [(0, 1)]))
+    excluded, others = exclusions_now(bpy.context)
+    assert excluded.pairs == frozenset()
+    assert [pair.first.kind for pair in others] == ["edge"]
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"pairs": [[1]], "shapes": {}}', '{"pairs": [], "shapes": []}'])
+def test_what_cannot_be_read_says_what_to_do(text: str) -> None:
+    with pytest.raises(stiv.InputError, match="clear them"):
+        Exclusions.from_json(text)

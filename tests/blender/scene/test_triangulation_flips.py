@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A quad that bends until Blender cuts it along its other diagonal, with a post where that would go through."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
+from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.evaluated_scene import read_scene
+from stiv.blender.scene.triangulation_flips import as_shown, fresh_cuts, with_bent_quads, with_cuts
+
+WINGS = (1, 3)
+
+
+def add_quad(height: float) -> Any:
+    """A square cut along the x axis, its two other corners raised."""
+    corners = [(-1, 0, 0), (0, -1, height), (1, 0, 0), (0, 1, height)]
+    return add("Quad", mesh("Quad", corners, [(0, 1, 2, 3)]))
+
+
+def add_post() -> Any:
+    return add_cube("Post", (0, 0, 3.3), 1, scale=(0.02, 0.02, 3))  # from z = 0.3 up
+
+
+def raise_wings(quad: Any, height: float) -> None:
+    for index in WINGS:
+        quad.data.vertices[index].co.z = height
+    quad.data.update()
+    bpy.context.view_layer.update()
+
+
+def read() -> Assembly:
+    meshes = read_scene(bpy.context).meshes
+    return assemble(meshes, ["deformable"] * len(meshes))
+
+
+def test_the_cut_that_blender_changes_is_seen_and_taken_in_once() -> None:
+    quad = add_quad(0.1)
+    assembly = read()
+    assert fresh_cuts(bpy.context, assembly) == ()
+    raise_wings(quad, 2)
+    (cut,) = fresh_cuts(bpy.context, assembly)
+    assert cut.fresh.faces.tolist() == [0, 0]
+    assert as_shown(assembly, [cut]).surface.triangles.tolist() == read().surface.triangles.tolist()
+    extended = with_cuts(assembly, [cut.fresh])
+    assert len(extended.surface.triangles) == 4
+    assert [extended.face(k).number for k in range(4)] == [0] * 4
+    assert extended.surface.recut_faces == ((0, 1, 2, 3),)
+    assert fresh_cuts(bpy.context, extended) == ()
+    assert len(stiv.find_intersections(extended.positions, extended.surface)) == 0
+
+
+@pytest.mark.parametrize(("height", "post", "triangles"), [(0.1, False, 2), (0.8, False, 4), (0.8, True, 2)])
+def test_quads_bent_far_keep_both_cuts_where_both_are_free(height: float, post: bool, triangles: int) -> None:
+    add_quad(height)
+    if post:
+        add_post()
+    assembly = read()
+    extra = len(with_bent_quads(assembly).surface.triangles) - len(assembly.surface.triangles)
+    assert 2 + extra == triangles
+
+
+def test_the_other_cut_of_a_bent_quad_is_the_one_that_blender_changes_to() -> None:
+    quad = add_quad(0.8)
+    extended = with_bent_quads(read())
+    raise_wings(quad, 2)
+    present = {tuple(sorted(row)) for row in read().surface.triangles.tolist()}
+    assert {tuple(sorted(row)) for row in extended.surface.triangles[2:].tolist()} == present
+
+
+def begin_with_wings(quad: Any) -> BlenderEdit:
+    edit_mode(quad)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    import bmesh
+
+    for vertex in bmesh.from_edit_mesh(quad.data).verts:
+        vertex.select = vertex.index in WINGS
+    return BlenderEdit.begin(bpy.context, EditSettings(), "move")
+
+
+def test_an_edit_that_would_change_the_cut_through_a_post_gives_way() -> None:
+    quad = add_quad(0)
+    add_post()
+    edit = begin_with_wings(quad)
+    edit.apply(shift(z=2))
+    report = edit.write()
+    assert report.passed
+    assert report.message == ""
+    assert report.result is not None
+    assert check_scene(bpy.context).pairs == ()
+    assert evaluated(quad)[WINGS, 2].min() > 0.2
+
+
+def test_a_drag_past_the_post_is_held_where_the_cut_would_change_and_comes_back() -> None:
+    quad = add_quad(0)
+    add_post()
+    edit = begin_with_wings(quad)
+    heights = []
+    for height in [*np.linspace(0.1, 2, 20), 0.5]:
+        edit.drag(shift(z=height))
+        report = edit.write()
+        assert check_scene(bpy.context).pairs == ()
+        assert report.passed or "Post" in report.message
+        heights.append(float(evaluated(quad)[WINGS, 2].min()))
+    assert heights[:9] == pytest.approx(np.linspace(0.1, 0.9, 9), abs=1e-6)
+    assert min(heights[9:-1]) > 0.89
+    assert heights[-1] == pytest.approx(0.5, abs=1e-6)
+
+
+def test_nothing_of_the_other_cut_is_left_after_going_back() -> None:
+    quad = add_quad(0)
+    add_post()
+    select(quad)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")
+    start = read_surface(bpy.context).positions
+    edit.apply(shift(x=0.5))
+    edit.write()
+    edit.restore()
+    assert np.array_equal(read_surface(bpy.context).positions, start)
