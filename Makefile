@@ -100,7 +100,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
-	build/venv/bin/python tests/long/edit_machine_steps.py --steps 20000
+	build/venv/bin/python tests/long/random_sessions.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	build/venv-blender/bin/python tests/long/cancelling_in_blender.py --times 200
 	build/venv/bin/python tests/window/run.py --sequences 500 --limit 7200 random_sequences

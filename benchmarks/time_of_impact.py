@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Times of impact of single pairs: right or wrong by exact arithmetic, and what a query costs.
 
-Random and awkward queries of ten sorts (the long form of tests/detection/test_many_queries.py), and the published ones
-of Wang et al. 2021 if their folder is named. Early: how much before the exact time. Microseconds a query, one thread:
-of a whole array, and the median and the most over arrays that repeat one query.
+Random and awkward queries of ten sorts (the long form of tests/detection/test_random_queries.py), and the
+published ones of Wang et al. 2021 if their folder is named. Early: how much before the exact time. Microseconds per
+query on one thread: over a whole array, and the median and maximum over arrays that repeat one query.
 
 `python -m benchmarks.time_of_impact [--count N] [--seed S] [--queries FOLDER]`
 """
@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 import stiv
 from tests.detection.awkward_queries import SORTS, Points, make
-from tests.detection.exact import WIDTH, first_contact
 from tests.detection.published_queries import KINDS, read
+from tests.oracles.first_contact import WIDTH, first_contact
 
 COPIES = 64
 

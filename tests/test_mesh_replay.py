@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from oracles import exact
+from oracles import rational
 
 import stiv
 from stiv.command_line import program
@@ -57,7 +57,7 @@ def test_a_seam_stays_closed_where_one_side_of_it_is_moved():
     for one, other in ((6, 9), (8, 10)):
         np.testing.assert_array_equal(mesh.vertices[one], mesh.vertices[other])
     places, index = np.unique(mesh.vertices, axis=0, return_inverse=True)
-    assert exact.find_intersections(places, index.reshape(-1)[mesh.triangles]) == set()
+    assert rational.find_intersections(places, index.reshape(-1)[mesh.triangles]) == set()
 
 
 def test_points_are_counted_within_their_object():

@@ -2,7 +2,7 @@
 """Check the wording of documents and code, and the links and references in them.
 
 Documents: words, length of sentences and lines, links. Code: words of comments, texts and names, and references to
-mathematics.md. Usage: check_documents.py prints FILE:LINE: MESSAGE for each finding; the exit code is 1 if any is found.
+mathematics.md. Usage: check_documents.py prints FILE:LINE: MESSAGE for each finding and exits with 1 if there is any.
 check_documents.py --code [PATH...] lists the words in code alone, by default in all of it.
 """
 

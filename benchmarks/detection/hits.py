@@ -13,7 +13,7 @@ import numpy as np
 
 import stiv
 from blend_fixtures.scenes.detection_steps import Step
-from tests.detection.exact import first_contact
+from tests.oracles.first_contact import first_contact
 
 from .ipc_toolkit import Peer
 

@@ -9,7 +9,7 @@ from acceptance import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from oracles import exact
+from oracles import rational
 
 import stiv
 
@@ -75,7 +75,9 @@ def test_pairs_equal_rational_arithmetic(make: Callable[[np.random.Generator, in
     count = 400
     vertices, faces = side_by_side(make(np.random.default_rng(len(sharing)), count), *SHARING[sharing])
     expected = {
-        (2 * k, 2 * k + 1) for k in range(count) if exact.triangles_intersect(faces[2 * k], faces[2 * k + 1], vertices)
+        (2 * k, 2 * k + 1)
+        for k in range(count)
+        if rational.triangles_intersect(faces[2 * k], faces[2 * k + 1], vertices)
     }
     found = stiv.find_intersections(vertices, faces)
     assert {(int(a), int(b)) for a, b in found} == expected
@@ -94,7 +96,7 @@ def soup(seed: int, triangles: int = 80, size: float = 0.2) -> tuple[Floats, Int
 @given(st.integers(0, 2**32), st.integers(-23, 23))
 def test_soups_equal_brute_force_for_any_scale_order_and_thread_count(seed: int, exponent: int) -> None:
     vertices, faces = soup(seed)
-    expected = exact.find_intersections(vertices, faces)
+    expected = rational.find_intersections(vertices, faces)
     scaled = vertices * 2.0**exponent
     found = stiv.find_intersections(scaled, faces, threads=1)
     assert {(int(a), int(b)) for a, b in found} == expected
@@ -123,7 +125,7 @@ def test_linked_rings() -> None:
     vertices, faces = shapes.linked_tori(1.2)
     found = stiv.find_intersections(vertices, faces)
     assert len(found) > 10
-    assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)
+    assert {(int(a), int(b)) for a, b in found} == rational.find_intersections(vertices, faces)
 
 
 def test_kept_trees_follow_the_positions() -> None:
@@ -132,7 +134,7 @@ def test_kept_trees_follow_the_positions() -> None:
     random = np.random.default_rng(4)
     for _ in range(4):
         found = test.find(vertices)
-        assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)
+        assert {(int(a), int(b)) for a, b in found} == rational.find_intersections(vertices, faces)
         vertices = vertices + 0.2 * random.standard_normal(vertices.shape)
     with pytest.raises(stiv.InputError, match="vertices"):
         test.find(vertices[1:])
@@ -194,4 +196,4 @@ def folded_sheet(seed: int, reach: int, size: int = 6) -> tuple[Floats, Integers
 def test_folded_sheets_equal_brute_force(seed: int, reach: int, scale: float) -> None:
     vertices, faces = folded_sheet(seed, reach)
     found = stiv.find_intersections(scale * vertices, faces)
-    assert {(int(a), int(b)) for a, b in found} == exact.find_intersections(vertices, faces)
+    assert {(int(a), int(b)) for a, b in found} == rational.find_intersections(vertices, faces)

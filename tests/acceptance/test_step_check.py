@@ -6,7 +6,7 @@ import pytest
 from acceptance import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles import exact, path
+from oracles import path, rational
 
 import stiv
 
@@ -35,7 +35,7 @@ def test_random_steps_equal_an_independent_check(seed: int, stir: float, scale: 
     contacts = path.find_contacts(faces, start, end)
     events = stiv.find_interference(faces, start, end)
     assert sorted(map(tuple, events.vertices.tolist())) == sorted(map(tuple, contacts.vertices.tolist()))
-    ends_free = not exact.find_intersections(start, faces) and not exact.find_intersections(end, faces)
+    ends_free = not rational.find_intersections(start, faces) and not rational.find_intersections(end, faces)
     assert stiv.is_step_free(faces, start, end) == (ends_free and len(contacts.time) == 0)
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stiv
-from tests.detection.exact import WIDTH, first_contact, squared_distance
+from tests.oracles.first_contact import WIDTH, first_contact, squared_distance
 
 GRID = st.integers(-3, 3)
 EARLY = 5e-3  # grids are full of contacts that touch without crossing, for which the advance is slow

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from oracles import exact
+from oracles import rational
 
 import stiv
 from stiv.edge_contacts import edge_contacts
@@ -41,7 +41,7 @@ def test_joined_seams_are_free_and_an_edit_keeps_them_closed():
     result = stiv.EditSession(joined.surface, deformation, joined.positions[sheet]).edit(goal)
     assert result.status == "corrected"
     assert result.surface[:49, 2].max() < 0.5
-    assert exact.find_intersections(result.surface, joined.surface.triangles) == set()
+    assert rational.find_intersections(result.surface, joined.surface.triangles) == set()
 
 
 def test_bodies_are_not_joined_to_each_other_and_doubled_faces_stay():

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 from building import add, add_cube, add_grid, add_modifier
-from oracles import exact
+from oracles import rational
 
 from stiv.blender.animation import guard_choice
 from stiv.blender.scene.animation_curves import channel_curves
@@ -127,7 +127,7 @@ def meet(shown: list[np.ndarray]) -> bool:
     one, two = shown
     low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
     near = np.argwhere((low <= high).all(axis=2))
-    return any(exact.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
+    return any(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
 
 
 def run(folder: Path, *options: str) -> tuple[int, Path, Path]:

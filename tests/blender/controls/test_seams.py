@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, select, shift
-from oracles import exact
+from oracles import rational
 
 import stiv
 from stiv.blender import (
@@ -71,7 +71,7 @@ def joined_pairs(ob: Any) -> set[tuple[int, int]]:
     shown.calc_loop_triangles()
     corners = np.array([tuple(triangle.vertices) for triangle in shown.loop_triangles])
     q, same = np.unique(evaluated(ob), axis=0, return_inverse=True)
-    return exact.find_intersections(q, same.reshape(-1)[corners])
+    return rational.find_intersections(q, same.reshape(-1)[corners])
 
 
 def add_clean_objects() -> None:

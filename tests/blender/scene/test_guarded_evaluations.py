@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 from building import add, add_cube, add_grid, add_modifier, as_rendered, edit_mode, select, snapshot
-from oracles import exact
+from oracles import rational
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene
@@ -42,7 +42,7 @@ def meet(first: str, second: str) -> int:
     one, two = shown_triangles(first), shown_triangles(second)
     low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
     near = np.argwhere((low <= high).all(axis=2))
-    return sum(exact.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
+    return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
 
 
 def meetings(name: str = "Cube", other: str = "Wall") -> list[int]:

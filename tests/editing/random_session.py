@@ -24,7 +24,7 @@ SEPARATIONS = st.sampled_from([0.0, 1e-3, 0.02, 0.3])
 MODES = st.sampled_from(["vertices", "rigid", "scaling"])
 
 
-class EditMachine(RuleBasedStateMachine):
+class RandomSession(RuleBasedStateMachine):
     """The scene is `vertices` (ball first) and `plates`; the session edits it, `history` holds accepted controls."""
 
     done = 0  # steps of all machines
@@ -90,7 +90,7 @@ class EditMachine(RuleBasedStateMachine):
 
     @invariant()
     def nothing_intersects(self) -> None:
-        EditMachine.done += 1
+        RandomSession.done += 1
         assert len(stiv.find_intersections(self.positions(), self.surface())) == 0
 
     def start(self) -> None:

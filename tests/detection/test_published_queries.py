@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import stiv
-from tests.detection.exact import WIDTH, first_contact, squared_distance
 from tests.detection.published_queries import KINDS, read
+from tests.oracles.first_contact import WIDTH, first_contact, squared_distance
 
 SAMPLE = Path(__file__).with_name("sample_queries")
 BESIDE = Path(__file__).parents[3] / "shared" / "ccd_queries"

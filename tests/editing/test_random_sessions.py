@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A thousand random steps of editing sessions, each checked; tests/long/edit_machine_steps.py does twenty thousand."""
+"""A thousand random steps of editing sessions, each checked; tests/long/random_sessions.py does twenty thousand."""
 
-from edit_machine import EditMachine
 from hypothesis import HealthCheck, settings
 from hypothesis.stateful import run_state_machine_as_test
+from random_session import RandomSession
 
 QUIET = settings(
     max_examples=60, stateful_step_count=50, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
@@ -11,6 +11,6 @@ QUIET = settings(
 
 
 def test_a_thousand_random_steps_never_make_an_intersection():
-    EditMachine.done = 0
-    run_state_machine_as_test(EditMachine, settings=QUIET)
-    assert EditMachine.done >= 1000
+    RandomSession.done = 0
+    run_state_machine_as_test(RandomSession, settings=QUIET)
+    assert RandomSession.done >= 1000

@@ -8,7 +8,7 @@ import pytest
 
 import stiv
 from tests.detection.awkward_queries import SORTS, Points, make
-from tests.detection.exact import WIDTH, first_contact
+from tests.oracles.first_contact import WIDTH, first_contact
 
 COUNT = 1000
 KINDS = ["vf", "ee"]

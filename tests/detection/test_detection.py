@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import stiv
 from blend_fixtures.scenes.detection_steps import pressed_inside
-from tests.detection.exact import WIDTH, first_contact
+from tests.oracles.first_contact import WIDTH, first_contact
 
 
 def soup(seed: int, triangles: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

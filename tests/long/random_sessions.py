@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random steps of editing sessions until there were so many, every one checked.
 
-    python tests/long/edit_machine_steps.py [--steps 20000]
+    python tests/long/random_sessions.py [--steps 20000]
 
 A failure is shrunk by hypothesis to the fewest steps, and printed.
 """
@@ -14,9 +14,9 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS.parent), str(TESTS / "editing")]
 
-from edit_machine import EditMachine  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
 from hypothesis.stateful import run_state_machine_as_test  # noqa: E402
+from random_session import RandomSession  # noqa: E402
 
 SETTINGS = settings(max_examples=100, stateful_step_count=100, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -26,9 +26,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=20_000)
     steps, begin = parser.parse_args().steps, time.process_time()
-    while EditMachine.done < steps:
-        run_state_machine_as_test(EditMachine, settings=SETTINGS)
-    print(f"{EditMachine.done} steps, 0 intersections, {time.process_time() - begin:.0f} s of processor time")
+    while RandomSession.done < steps:
+        run_state_machine_as_test(RandomSession, settings=SETTINGS)
+    print(f"{RandomSession.done} steps, 0 intersections, {time.process_time() - begin:.0f} s of processor time")
 
 
 if __name__ == "__main__":
