@@ -46,7 +46,7 @@ test-sanitizers: build/stiv_tests_asan ## Run the core's own tests under address
 test-threads: build/stiv_thread_tests ## Run the tests of what works on several threads under the thread sanitizer
 	build/venv/bin/python tools/run_tests.py threads
 
-test-python: build/venv/stiv ## Run the Python tests that need no Blender
+test-python: build/venv/stiv build/venv/lint ## Run the Python tests that need no Blender
 	build/venv/bin/python tools/run_tests.py python
 
 test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blender on every Blender module

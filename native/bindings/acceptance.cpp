@@ -86,22 +86,27 @@ py::object tuple_of(const std::optional<NearestTriangles>& nearest) {
 
 void bind_acceptance(py::module_& module) {
   using Release = py::call_guard<py::gil_scoped_release>;
-  module.def("find_intersections", &find_intersections, Release());
-  module.def("find_loose_intersections", &find_loose_intersections, Release());
-  module.def("is_step_free", &step_is_free, Release());
-  module.def("stored_mesh", &stored_mesh);
-  module.def("least_distance", [](const SurfacePointer& surface, const PositionsView& q, bool within) {
-    return tuple_of([&] {
-      const py::gil_scoped_release unlocked;
-      return LeastDistance(surface).find(q, within);
-    }());
-  });
+  const py::arg surface("surface"), positions("positions"), start("start"), end("end"), separation("separation"),
+      threads("threads");
+  module.def("find_intersections", &find_intersections, surface, positions, threads, Release());
+  module.def("find_loose_intersections", &find_loose_intersections, surface, positions, threads, Release());
+  module.def("is_step_free", &step_is_free, surface, start, end, separation, threads, Release());
+  module.def("stored_mesh", &stored_mesh, py::arg("mesh"), py::arg("frame"));
+  module.def(
+      "least_distance",
+      [](const SurfacePointer& surface, const PositionsView& q, bool within) {
+        return tuple_of([&] {
+          const py::gil_scoped_release unlocked;
+          return LeastDistance(surface).find(q, within);
+        }());
+      },
+      surface, positions, py::arg("within"));
   py::class_<KeptIntersectionTest>(module, "IntersectionTest")
-      .def(py::init<const SurfacePointer&, int>())
-      .def("find", &KeptIntersectionTest::find, Release());
+      .def(py::init<const SurfacePointer&, int>(), surface, threads)
+      .def("find", &KeptIntersectionTest::find, positions, Release());
   py::class_<StepCheck>(module, "StepCheck")
-      .def(py::init<const SurfacePointer&, int>())
-      .def("is_free", &StepCheck::is_free, Release());
+      .def(py::init<const SurfacePointer&, int>(), surface, threads)
+      .def("is_free", &StepCheck::is_free, start, end, separation, Release());
 }
 
 }  // namespace stiv::bindings

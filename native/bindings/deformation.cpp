@@ -179,74 +179,95 @@ LatticeDefinition make_lattice_definition(const std::array<Index, 3>& resolution
 void bind_class(py::module_& module) {
   py::class_<Deformation, std::shared_ptr<Deformation>>(
       module, "Deformation",
-      "A map q = f(p) from controls p, (m, 3), to world positions q of a surface, (n, 3). Made by the functions of "
-      "this "
-      "package (identity, linear, rigid, ...); immutable, may be used from several threads.")
-      .def_property_readonly("control_count", &Deformation::control_count, "m, the number of control rows.")
-      .def_property_readonly("vertex_count", &Deformation::vertex_count, "n, the number of vertices that it places.")
+      "Map q = f(p) from controls p, (m, 3), to world positions q of a surface, (n, 3).\n\n"
+      "Made by the functions of this package: identity, linear, rigid, ... Immutable and safe to use from any thread.")
+      .def_property_readonly("control_count", &Deformation::control_count, "m, the number of rows of the controls.")
+      .def_property_readonly("vertex_count", &Deformation::vertex_count, "n, the number of vertices of the surface.")
       .def_property_readonly("rotation_rows", &Deformation::rotation_rows,
-                             "Rows of the controls that are rotation vectors (radians) rather than points; a list.")
+                             "Rows of the controls that are rotation vectors (radians) instead of points.")
       .def("surface", py::overload_cast<const Controls&>(&Deformation::surface, py::const_), py::arg("controls"),
-           py::call_guard<py::gil_scoped_release>(), "Positions f(p), (n, 3), at controls p, (m, 3).")
+           py::call_guard<py::gil_scoped_release>(), "Return the positions f(p), (n, 3), at controls p, (m, 3).")
       .def("pull_back", &pull_back, py::arg("controls"), py::arg("covector"), py::call_guard<py::gil_scoped_release>(),
-           "J(p)' g, (m, 3), of a covector g over vertices, (n, 3).")
+           "Return J(p)^T g, (m, 3), for a covector g over the vertices, (n, 3).")
       .def("push_forward", &push_forward, py::arg("controls"), py::arg("motion"),
            py::call_guard<py::gil_scoped_release>(),
-           "J(p) d, (n, 3): the surface's velocity under a motion d of the controls, (m, 3).")
+           "Return J(p) d, (n, 3), the velocity of the surface for a motion d of the controls, (m, 3).")
       .def("apply_inverse_metric", &apply_inverse_metric, py::arg("controls"), py::arg("covector"),
            py::arg("smoothness") = 0.1, py::arg("weights") = WeightArray(0),
            py::arg("weight_axes") = std::vector<Eigen::Matrix3d>(), py::call_guard<py::gil_scoped_release>(),
-           "W^1/2 (J'J + damping)^-1 W^1/2 g, (m, 3), of a covector g over controls, (m, 3). `smoothness` > 0 is the "
-           "damping relative to the diagonal; `weights`, (m,) or (m, 3), default 1, pin a control or one of its\n"
-           "coordinates where 0. `weight_axes`, (m, 3, 3): three weights act along the columns of a rotation.")
-      .def("support", &support, py::arg("control"), "Vertices that a control moves, ascending; a list.");
+           "Return W^1/2 (J^T J + damping)^-1 W^1/2 g, (m, 3), for a covector g over the controls, (m, 3).\n\n"
+           "smoothness   > 0, the damping relative to the diagonal\n"
+           "weights      (m,) or (m, 3), default 1; 0 pins a control or one of its coordinates\n"
+           "weight_axes  (m, 3, 3): the three weights of a control act along the columns of a rotation")
+      .def("support", &support, py::arg("control"), "Return the vertices that a control moves, in ascending order.");
 }
 
 }  // namespace
 
 void bind_deformation(py::module_& module) {
   bind_class(module);
-  module.def("identity", [](Index count) { return shared(make_identity(count)); });
-  module.def("linear", [](const Array<Index>& starts, const Array<Index>& controls, const Array<double>& values,
-                          Index control_count, Positions offset) {
-    return shared(
-        make_linear(weights_from_rows(vector_of(starts), vector_of(controls), vector_of(values), control_count),
-                    std::move(offset)));
-  });
-  module.def("linear_parts", &linear_parts);
-  module.def("rigid", [](const Positions& rest) { return shared(make_rigid(rest)); });
-  module.def("rigid_rest_controls", &rigid_rest_controls);
-  module.def("scaling", [](const Positions& rest, const Eigen::Matrix3d& rotation) {
-    return shared(make_scaling(rest, rotation));
-  });
-  module.def("scaling_rest_controls", &scaling_rest_controls);
-  module.def("concatenate", &concatenate);
-  module.def("compose", &compose);
-  py::class_<HandleDefinition>(module, "Handles").def(py::init(&make_handles));
   module.def(
-      "laplacian", [](const HandleDefinition& handles) { return shared(make_laplacian(handles)); },
+      "identity", [](Index count) { return shared(make_identity(count)); }, py::arg("vertex_count"));
+  module.def(
+      "linear",
+      [](const Array<Index>& starts, const Array<Index>& controls, const Array<double>& values, Index control_count,
+         Positions offset) {
+        return shared(
+            make_linear(weights_from_rows(vector_of(starts), vector_of(controls), vector_of(values), control_count),
+                        std::move(offset)));
+      },
+      py::arg("starts"), py::arg("controls"), py::arg("values"), py::arg("control_count"), py::arg("offset"));
+  module.def("linear_parts", &linear_parts, py::arg("deformation"));
+  module.def(
+      "rigid", [](const Positions& rest) { return shared(make_rigid(rest)); }, py::arg("rest"));
+  module.def("rigid_rest_controls", &rigid_rest_controls, py::arg("rest"));
+  module.def(
+      "scaling",
+      [](const Positions& rest, const Eigen::Matrix3d& rotation) { return shared(make_scaling(rest, rotation)); },
+      py::arg("rest"), py::arg("rotation"));
+  module.def("scaling_rest_controls", &scaling_rest_controls, py::arg("rest"));
+  module.def("concatenate", &concatenate, py::arg("parts"), py::arg("start"));
+  module.def("compose", &compose, py::arg("outer"), py::arg("inner"));
+  py::class_<HandleDefinition>(module, "Handles")
+      .def(py::init(&make_handles), py::arg("rest"), py::arg("triangles"), py::arg("handles"), py::arg("pull"),
+           py::arg("fixed"), py::arg("edge_weights"));
+  module.def(
+      "laplacian", [](const HandleDefinition& handles) { return shared(make_laplacian(handles)); }, py::arg("handles"),
       py::call_guard<py::gil_scoped_release>());
   module.def(
-      "arap", [](const HandleDefinition& handles) { return shared(make_arap(handles)); },
+      "arap", [](const HandleDefinition& handles) { return shared(make_arap(handles)); }, py::arg("handles"),
       py::call_guard<py::gil_scoped_release>());
-  py::class_<Cage>(module, "Cage").def(py::init(&make_cage));
-  module.def("subdivision_weights", [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple,
-                                       const std::string& boundary, const std::string& scheme) {
-    return rows_of(
-        subdivision_weights(cage, {levels, limit_surface, quality, simple, boundary_of(boundary), scheme_of(scheme)}));
-  });
-  module.def("subdivided_faces", &subdivided_faces);
-  module.def("subdivided_triangles", &subdivided_triangles);
-  py::class_<LatticeDefinition>(module, "Lattice").def(py::init(&make_lattice_definition));
-  module.def("lattice_weights",
-             [](const LatticeDefinition& lattice, const Positions& vertices, const Eigen::VectorXd& influence) {
-               return rows_of(lattice_weights(lattice, vertices, influence));
-             });
-  module.def("lattice", [](const LatticeDefinition& lattice, Positions rest_vertices, Eigen::VectorXd influence,
-                           Positions vertices, Controls points) {
-    return shared(make_lattice(
-        lattice, {std::move(rest_vertices), std::move(influence), std::move(vertices), std::move(points)}));
-  });
+  py::class_<Cage>(module, "Cage")
+      .def(py::init(&make_cage), py::arg("vertex_count"), py::arg("edges"), py::arg("corners"), py::arg("starts"),
+           py::arg("edge_crease"), py::arg("vertex_crease"));
+  module.def(
+      "subdivision_weights",
+      [](const Cage& cage, int levels, bool limit_surface, int quality, bool simple, const std::string& boundary,
+         const std::string& scheme) {
+        return rows_of(subdivision_weights(
+            cage, {levels, limit_surface, quality, simple, boundary_of(boundary), scheme_of(scheme)}));
+      },
+      py::arg("cage"), py::arg("levels"), py::arg("limit_surface"), py::arg("quality"), py::arg("simple"),
+      py::arg("boundary"), py::arg("scheme"));
+  module.def("subdivided_faces", &subdivided_faces, py::arg("cage"), py::arg("levels"));
+  module.def("subdivided_triangles", &subdivided_triangles, py::arg("cage"), py::arg("levels"));
+  py::class_<LatticeDefinition>(module, "Lattice")
+      .def(py::init(&make_lattice_definition), py::arg("resolution"), py::arg("interpolation"), py::arg("rest"),
+           py::arg("point_weights"));
+  module.def(
+      "lattice_weights",
+      [](const LatticeDefinition& lattice, const Positions& vertices, const Eigen::VectorXd& influence) {
+        return rows_of(lattice_weights(lattice, vertices, influence));
+      },
+      py::arg("lattice"), py::arg("vertices"), py::arg("influence"));
+  module.def(
+      "lattice",
+      [](const LatticeDefinition& lattice, Positions rest_vertices, Eigen::VectorXd influence, Positions vertices,
+         Controls points) {
+        return shared(make_lattice(
+            lattice, {std::move(rest_vertices), std::move(influence), std::move(vertices), std::move(points)}));
+      },
+      py::arg("lattice"), py::arg("rest_vertices"), py::arg("influence"), py::arg("vertices"), py::arg("points"));
 }
 
 }  // namespace stiv::bindings

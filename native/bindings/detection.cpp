@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/eigen.h>
+#include <pybind11/native_enum.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -103,27 +104,37 @@ py::tuple arrays_of(const Events& events) {
 
 void bind_detection(py::module_& module) {
   using Release = py::call_guard<py::gil_scoped_release>;
-  py::enum_<EventKind>(module, "EventKind").value("vf", EventKind::vertex_face).value("ee", EventKind::edge_edge);
-  py::enum_<BroadPhase>(module, "BroadPhase")
+  py::native_enum<EventKind>(module, "EventKind", "enum.Enum")
+      .value("vf", EventKind::vertex_face)
+      .value("ee", EventKind::edge_edge)
+      .finalize();
+  py::native_enum<BroadPhase>(module, "BroadPhase", "enum.Enum")
       .value("bvh", BroadPhase::bvh)
       .value("hash_grid", BroadPhase::hash_grid)
-      .value("brute_force", BroadPhase::brute_force);
-  py::enum_<NarrowPhase>(module, "NarrowPhase")
+      .value("brute_force", BroadPhase::brute_force)
+      .finalize();
+  py::native_enum<NarrowPhase>(module, "NarrowPhase", "enum.Enum")
       .value("conservative", NarrowPhase::conservative)
-      .value("polynomial", NarrowPhase::polynomial);
-  module.def("times_of_impact", &times_of_impact, Release());
+      .value("polynomial", NarrowPhase::polynomial)
+      .finalize();
+  module.def("times_of_impact", &times_of_impact, py::arg("kind"), py::arg("start"), py::arg("end"),
+             py::arg("separation"), py::arg("threads"), Release());
+  const py::arg start("start"), end("end"), separation("separation"), keep("keep");
   py::class_<GuardedDetector>(module, "Detector")
-      .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>())
-      .def("find",
-           [](GuardedDetector& detector, const PositionsView& start, const PositionsView& end, double separation,
-              double keep) {
-             const Events events = [&] {
-               const py::gil_scoped_release release;
-               return detector.find(start, end, separation, keep);
-             }();
-             return arrays_of(events);
-           })
-      .def("earliest_time", &GuardedDetector::earliest_time, Release());
+      .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>(), py::arg("surface"),
+           py::arg("broad_phase"), py::arg("narrow_phase"), py::arg("threads"))
+      .def(
+          "find",
+          [](GuardedDetector& detector, const PositionsView& start, const PositionsView& end, double separation,
+             double keep) {
+            const Events events = [&] {
+              const py::gil_scoped_release release;
+              return detector.find(start, end, separation, keep);
+            }();
+            return arrays_of(events);
+          },
+          start, end, separation, keep)
+      .def("earliest_time", &GuardedDetector::earliest_time, start, end, separation, keep, Release());
 }
 
 }  // namespace stiv::bindings

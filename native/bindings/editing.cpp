@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/editing/session.hpp"
 
+#include <pybind11/native_enum.h>
+
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -158,25 +160,31 @@ class Session {
 void bind_options(py::module_& module) {
   py::class_<StorageFrame>(module, "StorageFrame")
       .def(py::init([](Index first, Index count, const Eigen::Matrix4d& frame) {
-        return StorageFrame{first, count, frame};
-      }));
+             return StorageFrame{first, count, frame};
+           }),
+           py::arg("first"), py::arg("count"), py::arg("frame"));
   py::class_<BodyPairSeparation>(module, "BodyPairSeparation")
       .def(py::init([](Index first, Index second, double separation) {
-        return BodyPairSeparation{first, second, separation};
-      }));
-  py::enum_<ConstraintKind>(module, "ConstraintKind")
+             return BodyPairSeparation{first, second, separation};
+           }),
+           py::arg("first"), py::arg("second"), py::arg("separation"));
+  py::native_enum<ConstraintKind>(module, "ConstraintKind", "enum.Enum")
       .value("per_patch", ConstraintKind::per_patch)
-      .value("single", ConstraintKind::single);
-  py::enum_<ConstraintSolver>(module, "ConstraintSolver")
+      .value("single", ConstraintKind::single)
+      .finalize();
+  py::native_enum<ConstraintSolver>(module, "ConstraintSolver", "enum.Enum")
       .value("lcp", ConstraintSolver::lcp)
-      .value("linear", ConstraintSolver::linear);
-  py::enum_<MetricKind>(module, "MetricKind")
+      .value("linear", ConstraintSolver::linear)
+      .finalize();
+  py::native_enum<MetricKind>(module, "MetricKind", "enum.Enum")
       .value("energy", MetricKind::energy)
-      .value("controls", MetricKind::controls);
-  py::enum_<VolumeKind>(module, "VolumeKind")
+      .value("controls", MetricKind::controls)
+      .finalize();
+  py::native_enum<VolumeKind>(module, "VolumeKind", "enum.Enum")
       .value("relative", VolumeKind::relative)
       .value("published", VolumeKind::published)
-      .value("published_frozen", VolumeKind::published_frozen);
+      .value("published_frozen", VolumeKind::published_frozen)
+      .finalize();
   py::class_<EditOptions>(module, "EditOptions")
       .def(py::init<>())
       .def_readwrite("separation", &EditOptions::separation)
@@ -207,14 +215,15 @@ void bind_options(py::module_& module) {
 
 void bind_editing(py::module_& module) {
   bind_options(module);
-  py::class_<CancelToken>(module, "CancelToken", "Asks a solve to stop; may be used from any thread.")
+  py::class_<CancelToken>(module, "CancelToken", "Cancels a call from any thread.")
       .def(py::init<>())
       .def("cancel", [](CancelToken& token) { token.cancelled = true; })
       .def_property_readonly("cancelled", [](const CancelToken& token) { return token.cancelled.load(); });
   const auto cancel = py::arg("cancel") = static_cast<CancelToken*>(nullptr);
   const auto progress = py::arg("progress") = py::none();
   py::class_<Session>(module, "EditSession")
-      .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<Deformation>, const DoubleArray&, const EditOptions&>())
+      .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<Deformation>, const DoubleArray&, const EditOptions&>(),
+           py::arg("surface"), py::arg("deformation"), py::arg("controls"), py::arg("options"))
       .def("edit", &Session::edit, py::arg("goal"), cancel, progress)
       .def("drag", &Session::drag, py::arg("goal"), cancel, progress, py::arg("time_budget") = py::none())
       .def("settle", &Session::settle, cancel, progress)

@@ -32,10 +32,9 @@ void raise_start_intersects(const stiv::StartIntersectsError& error) {
 
 void register_exceptions(py::module_& module) {
   input_error = new_exception(module, "InputError", PyExc_ValueError,
-                              "Input that cannot be worked with: names object and element; nothing was changed.");
+                              "Invalid input: the message names object and element. Nothing was changed.");
   start_intersects_error = new_exception(module, "StartIntersectsError", input_error,
-                                         "The start already contains intersections; `pairs` (K, 2) int32 lists the "
-                                         "triangles that meet.");
+                                         "The start intersects itself; `pairs`, (K, 2) int32, lists the triangles.");
   py::register_local_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) std::rethrow_exception(pointer);
@@ -50,7 +49,7 @@ void register_exceptions(py::module_& module) {
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
-  module.doc() = "Native core of stiv; use the package stiv, which documents it.";
+  module.doc() = "The native core. Use the package `stiv`, which documents it.";
   register_exceptions(module);
   stiv::bindings::bind_vector_target(module);
   stiv::bindings::bind_surface(module);

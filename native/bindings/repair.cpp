@@ -103,10 +103,9 @@ Positions step(const SurfacePointer& surface, const Positions& start, const Posi
   return contraction_step(*surface, contraction_system(*surface, start, moves), q, smoothing);
 }
 
-py::dict run_contraction(const SurfacePointer& surface, const DeformationPointer& deformation,
-                         const SurfacePointer& cage, const Controls& p, const std::vector<unsigned char>& moves,
-                         const ContractionOptions& options, int threads, const CancelToken* cancel,
-                         const py::object& progress) {
+py::dict run_contraction(const SurfacePointer& surface, const Controls& p, const std::vector<unsigned char>& moves,
+                         const ContractionOptions& options, int threads, const DeformationPointer& deformation,
+                         const SurfacePointer& cage, const CancelToken* cancel, const py::object& progress) {
   return dict_of(call(threads, cancel, progress, [&](Execution& execution) {
     try {
       return contract(caged_surface(surface, deformation, cage), p, moves, options, execution);
@@ -116,16 +115,16 @@ py::dict run_contraction(const SurfacePointer& surface, const DeformationPointer
   }));
 }
 
-py::dict run_expansion(const SurfacePointer& surface, const DeformationPointer& deformation, const Controls& from,
-                       const Controls& target, const EditOptions& options, const CancelToken* cancel,
+py::dict run_expansion(const SurfacePointer& surface, const Controls& from, const Controls& target,
+                       const EditOptions& options, const DeformationPointer& deformation, const CancelToken* cancel,
                        const py::object& progress) {
   return bindings::dict_of(call(options.threads, cancel, progress, [&](Execution& execution) {
     return expand(surface, caged_surface(surface, deformation, surface).deformation, from, target, options, execution);
   }));
 }
 
-py::dict run_repair(const SurfacePointer& surface, const DeformationPointer& deformation, const SurfacePointer& cage,
-                    const Controls& p, const RepairOptions& options, const CancelToken* cancel,
+py::dict run_repair(const SurfacePointer& surface, const Controls& p, const RepairOptions& options,
+                    const DeformationPointer& deformation, const SurfacePointer& cage, const CancelToken* cancel,
                     const py::object& progress) {
   return dict_of(call(options.edit.threads, cancel, progress, [&](Execution& execution) {
     return repair(caged_surface(surface, deformation, cage), p, options, execution);
@@ -149,10 +148,17 @@ void bind_repair(py::module_& module) {
       .def_readwrite("moves", &RepairOptions::moves)
       .def_readwrite("good_deviation", &RepairOptions::good_deviation)
       .def_readwrite("max_deviation", &RepairOptions::max_deviation);
-  module.def("contraction_step", &step, py::call_guard<py::gil_scoped_release>());
-  module.def("contract", &run_contraction);
-  module.def("expand", &run_expansion);
-  module.def("repair", &run_repair);
+  const py::arg surface("surface"), positions("positions"), moves("moves"), options("options");
+  const auto deformation = py::arg("deformation") = DeformationPointer();
+  const auto cage = py::arg("cage") = SurfacePointer();
+  const auto cancel = py::arg("cancel") = static_cast<CancelToken*>(nullptr);
+  const auto progress = py::arg("progress") = py::none();
+  module.def("contraction_step", &step, surface, py::arg("start"), positions, moves, py::arg("smoothing"),
+             py::call_guard<py::gil_scoped_release>());
+  module.def("contract", &run_contraction, surface, positions, moves, options, py::arg("threads"), deformation, cage,
+             cancel, progress);
+  module.def("expand", &run_expansion, surface, positions, py::arg("target"), options, deformation, cancel, progress);
+  module.def("repair", &run_repair, surface, positions, options, deformation, cage, cancel, progress);
 }
 
 }  // namespace stiv::bindings

@@ -38,9 +38,9 @@ void bind_surface(py::module_& module) {
       .def(py::init(&make_surface), py::arg("vertex_count"), py::arg("triangles"), py::arg("loose_edges"),
            py::arg("vertex_body"), py::arg("bodies"), py::arg("ignored"), py::arg("recut_faces"))
       .def_property_readonly("edges", &Surface::edges)
-      .def("describe_vertex", &Surface::describe_vertex)
-      .def("describe_triangle", &Surface::describe_triangle)
-      .def("vertex_areas", &Surface::vertex_areas);
+      .def("describe_vertex", &Surface::describe_vertex, py::arg("vertex"))
+      .def("describe_triangle", &Surface::describe_triangle, py::arg("triangle"))
+      .def("vertex_areas", &Surface::vertex_areas, py::arg("positions"));
 }
 
 }  // namespace stiv::bindings

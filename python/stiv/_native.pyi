@@ -1,188 +1,237 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Types of the compiled module; what it does is documented by the modules of the package that use it.
-import enum
-from collections.abc import Callable, Sequence
-from typing import Any
+# Written by tools/native_stub.py.
+"""
+The native core. Use the package `stiv`, which documents it.
+"""
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
+from enum import Enum
+from typing import Annotated, Any
 
-_Floats = NDArray[np.float64]
-_Indices = NDArray[np.int32]
+from numpy import float64, int32
+from numpy.typing import ArrayLike, NDArray
 
 class InputError(ValueError): ...
 
 class StartIntersectsError(InputError):
-    pairs: _Indices
+    pairs: NDArray[int32]
 
-class VectorTarget(enum.Enum):
+class VectorTarget(Enum):
     baseline = 0
     avx2 = 1
     avx512 = 2
-
-def best_vector_target() -> VectorTarget: ...
-def vector_target() -> VectorTarget: ...
-def limit_vector_target(most: VectorTarget) -> None: ...
 
 class Surface:
     def __init__(
         self,
         vertex_count: int,
-        triangles: _Indices,
-        loose_edges: _Indices,
-        vertex_body: list[int],
-        bodies: list[tuple[str, str]],
-        ignored: list[tuple[int, int]],
-        recut_faces: list[list[int]],
+        triangles: Annotated[ArrayLike, int32, "[m, 3]"],
+        loose_edges: Annotated[ArrayLike, int32, "[m, 2]"],
+        vertex_body: ArrayLike,
+        bodies: Sequence[tuple[str, str]],
+        ignored: Sequence[tuple[int, int]],
+        recut_faces: Sequence[Sequence[int]],
     ) -> None: ...
-    @property
-    def edges(self) -> _Indices: ...
-    def describe_vertex(self, vertex: int) -> str: ...
     def describe_triangle(self, triangle: int) -> str: ...
-    def vertex_areas(self, positions: _Floats) -> _Floats: ...
-
-class EventKind(enum.Enum):
-    vf = 0
-    ee = 1
-
-class BroadPhase(enum.Enum):
-    bvh = 0
-    hash_grid = 1
-    brute_force = 2
-
-class NarrowPhase(enum.Enum):
-    conservative = 0
-    polynomial = 1
-
-_EventArrays = tuple[NDArray[np.uint8], _Indices, _Floats, _Floats, _Floats, _Floats]
-
-def times_of_impact(kind: EventKind, start: _Floats, end: _Floats, separation: float, threads: int) -> _Floats: ...
-
-class Detector:
-    def __init__(self, surface: Surface, broad_phase: BroadPhase, narrow_phase: NarrowPhase, threads: int) -> None: ...
-    def find(self, start: _Floats, end: _Floats, separation: float, keep: float) -> _EventArrays: ...
-    def earliest_time(self, start: _Floats, end: _Floats, separation: float, keep: float) -> float: ...
-
-def find_intersections(surface: Surface, positions: _Floats, threads: int) -> _Indices: ...
-def find_loose_intersections(surface: Surface, positions: _Floats, threads: int) -> tuple[_Indices, _Indices]: ...
-def is_step_free(surface: Surface, start: _Floats, end: _Floats, separation: float, threads: int) -> bool: ...
-
-class IntersectionTest:
-    def __init__(self, surface: Surface, threads: int) -> None: ...
-    def find(self, vertices: _Floats) -> _Indices: ...
-
-class StepCheck:
-    def __init__(self, surface: Surface, threads: int) -> None: ...
-    def is_free(self, start: _Floats, end: _Floats, separation: float) -> bool: ...
+    def describe_vertex(self, vertex: int) -> str: ...
+    def vertex_areas(
+        self, positions: Annotated[NDArray[float64], "[m, 3]"]
+    ) -> Annotated[NDArray[float64], "[m, 1]"]: ...
+    @property
+    def edges(self) -> Annotated[NDArray[int32], "[m, 2]"]: ...
 
 class Deformation:
-    @property
-    def control_count(self) -> int: ...
-    @property
-    def vertex_count(self) -> int: ...
-    @property
-    def rotation_rows(self) -> list[int]: ...
-    def surface(self, controls: _Floats) -> _Floats: ...
-    def pull_back(self, controls: _Floats, covector: _Floats) -> _Floats: ...
-    def push_forward(self, controls: _Floats, motion: _Floats) -> _Floats: ...
+    """
+    Map q = f(p) from controls p, (m, 3), to world positions q of a surface, (n, 3).
+
+    Made by the functions of this package: identity, linear, rigid, ... Immutable and safe to use from any thread.
+    """
+
     def apply_inverse_metric(
         self,
-        controls: _Floats,
-        covector: _Floats,
+        controls: Annotated[ArrayLike, float64, "[m, 3]"],
+        covector: Annotated[ArrayLike, float64, "[m, 3]"],
         smoothness: float = 0.1,
-        weights: _Floats = ...,
-        weight_axes: Sequence[_Floats] = ...,
-    ) -> _Floats: ...
-    def support(self, control: int) -> list[int]: ...
+        weights: Annotated[ArrayLike, float64] = ...,
+        weight_axes: Sequence[Annotated[ArrayLike, float64, "[3, 3]"]] = [],
+    ) -> Annotated[NDArray[float64], "[m, 3]"]:
+        """
+        Return W^1/2 (J^T J + damping)^-1 W^1/2 g, (m, 3), for a covector g over the controls, (m, 3).
 
-_Rows = tuple[_Indices, _Indices, _Floats, tuple[int, int]]
+        smoothness   > 0, the damping relative to the diagonal
+        weights      (m,) or (m, 3), default 1; 0 pins a control or one of its coordinates
+        weight_axes  (m, 3, 3): the three weights of a control act along the columns of a rotation
+        """
 
-def identity(vertex_count: int) -> Deformation: ...
-def linear(
-    starts: _Indices, controls: _Indices, values: _Floats, control_count: int, offset: _Floats
-) -> Deformation: ...
-def linear_parts(deformation: Deformation) -> tuple[_Rows, _Floats] | None: ...
-def rigid(rest: _Floats) -> Deformation: ...
-def rigid_rest_controls(rest: _Floats) -> _Floats: ...
-def scaling(rest: _Floats, rotation: _Floats) -> Deformation: ...
-def scaling_rest_controls(rest: _Floats) -> _Floats: ...
-def concatenate(parts: list[tuple[Deformation, _Indices]], start: _Floats) -> Deformation: ...
+    def pull_back(
+        self, controls: Annotated[ArrayLike, float64, "[m, 3]"], covector: Annotated[ArrayLike, float64, "[m, 3]"]
+    ) -> Annotated[NDArray[float64], "[m, 3]"]:
+        """
+        Return J(p)^T g, (m, 3), for a covector g over the vertices, (n, 3).
+        """
+
+    def push_forward(
+        self, controls: Annotated[ArrayLike, float64, "[m, 3]"], motion: Annotated[ArrayLike, float64, "[m, 3]"]
+    ) -> Annotated[NDArray[float64], "[m, 3]"]:
+        """
+        Return J(p) d, (n, 3), the velocity of the surface for a motion d of the controls, (m, 3).
+        """
+
+    def support(self, control: int) -> list[int]:
+        """
+        Return the vertices that a control moves, in ascending order.
+        """
+
+    def surface(self, controls: Annotated[ArrayLike, float64, "[m, 3]"]) -> Annotated[NDArray[float64], "[m, 3]"]:
+        """
+        Return the positions f(p), (n, 3), at controls p, (m, 3).
+        """
+
+    @property
+    def control_count(self) -> int:
+        """
+        m, the number of rows of the controls.
+        """
+
+    @property
+    def rotation_rows(self) -> list[int]:
+        """
+        Rows of the controls that are rotation vectors (radians) instead of points.
+        """
+
+    @property
+    def vertex_count(self) -> int:
+        """
+        n, the number of vertices of the surface.
+        """
 
 class Handles:
     def __init__(
         self,
-        rest: _Floats,
-        triangles: _Indices,
-        handles: _Indices,
-        pull: _Floats,
-        fixed: _Indices,
+        rest: Annotated[ArrayLike, float64, "[m, 3]"],
+        triangles: Annotated[ArrayLike, int32, "[m, 3]"],
+        handles: ArrayLike,
+        pull: Annotated[ArrayLike, float64, "[m, 1]"],
+        fixed: ArrayLike,
         edge_weights: str,
     ) -> None: ...
-
-def laplacian(handles: Handles) -> Deformation: ...
-def arap(handles: Handles) -> Deformation: ...
-def stored_mesh(mesh: Deformation, frame: _Floats) -> Deformation: ...
-def compose(outer: Deformation, inner: Deformation) -> Deformation: ...
 
 class Cage:
     def __init__(
         self,
         vertex_count: int,
-        edges: _Indices,
-        corners: _Indices,
-        starts: _Indices,
-        edge_crease: NDArray[np.float32],
-        vertex_crease: NDArray[np.float32],
+        edges: Annotated[ArrayLike, int32, "[m, 2]"],
+        corners: ArrayLike,
+        starts: ArrayLike,
+        edge_crease: ArrayLike,
+        vertex_crease: ArrayLike,
     ) -> None: ...
-
-def subdivision_weights(
-    cage: Cage, levels: int, limit_surface: bool, quality: int, simple: bool, boundary: str, scheme: str
-) -> _Rows: ...
-def subdivided_faces(cage: Cage, levels: int) -> _Indices: ...
-def subdivided_triangles(cage: Cage, levels: int) -> _Indices: ...
 
 class Lattice:
     def __init__(
-        self, resolution: list[int], interpolation: list[str], rest: _Floats, point_weights: _Floats
+        self,
+        resolution: Annotated[Sequence[int], "FixedSize(3)"],
+        interpolation: Annotated[Sequence[str], "FixedSize(3)"],
+        rest: Annotated[ArrayLike, float64, "[m, 3]"],
+        point_weights: Annotated[ArrayLike, float64, "[m, 1]"],
     ) -> None: ...
 
-def lattice_weights(lattice: Lattice, vertices: _Floats, influence: _Floats) -> _Rows: ...
-def lattice(
-    lattice: Lattice, rest_vertices: _Floats, influence: _Floats, vertices: _Floats, points: _Floats
-) -> Deformation: ...
+class EventKind(Enum):
+    vf = 0
+    ee = 1
 
-class ConstraintKind(enum.Enum):
-    per_patch = 0
-    single = 1
+class BroadPhase(Enum):
+    bvh = 0
+    hash_grid = 1
+    brute_force = 2
 
-_Nearest = tuple[float, list[int], _Floats]
+class NarrowPhase(Enum):
+    conservative = 0
+    polynomial = 1
 
-def least_distance(surface: Surface, q: _Floats, within: bool) -> _Nearest | None: ...
+class Detector:
+    def __init__(self, surface: Surface, broad_phase: BroadPhase, narrow_phase: NarrowPhase, threads: int) -> None: ...
+    def earliest_time(
+        self,
+        start: Annotated[NDArray[float64], "[m, 3]"],
+        end: Annotated[NDArray[float64], "[m, 3]"],
+        separation: float,
+        keep: float,
+    ) -> float: ...
+    def find(
+        self,
+        start: Annotated[NDArray[float64], "[m, 3]"],
+        end: Annotated[NDArray[float64], "[m, 3]"],
+        separation: float,
+        keep: float,
+    ) -> tuple[Any, ...]: ...
+
+class IntersectionTest:
+    def __init__(self, surface: Surface, threads: int) -> None: ...
+    def find(self, positions: Annotated[NDArray[float64], "[m, 3]"]) -> Annotated[NDArray[int32], "[m, 2]"]: ...
+
+class StepCheck:
+    def __init__(self, surface: Surface, threads: int) -> None: ...
+    def is_free(
+        self,
+        start: Annotated[NDArray[float64], "[m, 3]"],
+        end: Annotated[NDArray[float64], "[m, 3]"],
+        separation: float,
+    ) -> bool: ...
+
+class StorageFrame:
+    def __init__(self, first: int, count: int, frame: Annotated[ArrayLike, float64, "[4, 4]"]) -> None: ...
 
 class BodyPairSeparation:
     def __init__(self, first: int, second: int, separation: float) -> None: ...
 
-class ConstraintSolver(enum.Enum):
+class ConstraintKind(Enum):
+    per_patch = 0
+    single = 1
+
+class ConstraintSolver(Enum):
     lcp = 0
     linear = 1
 
-class MetricKind(enum.Enum):
+class MetricKind(Enum):
     energy = 0
     controls = 1
 
-class VolumeKind(enum.Enum):
+class VolumeKind(Enum):
     relative = 0
     published = 1
     published_frozen = 2
 
-class StorageFrame:
-    def __init__(self, first: int, count: int, frame: _Floats) -> None: ...
-
 class EditOptions:
+    broad_phase: BroadPhase
+    constraints: ConstraintKind
+    metric: MetricKind
+    narrow_phase: NarrowPhase
+    single_precision: bool
+    solver: ConstraintSolver
+    volumes: VolumeKind
+    accumulated_rounds: int
+    exclude: Sequence[tuple[int, int]]
+    keep: float
+    keep_between: float
+    max_rounds: int
+    max_sub_edits: int
+    pair_separations: Sequence[BodyPairSeparation]
+    pull_limit: float
+    separation: float
+    smoothness: float
+    storage: Sequence[StorageFrame]
+    threads: int
+    time_budget: float
+    weight_axes: Sequence[Annotated[ArrayLike, float64, "[3, 3]"]]
+    weights: Annotated[ArrayLike, float64, "[m, 1]"]
+
     def __init__(self) -> None: ...
 
 class CancelToken:
-    """Asks a solve to stop; may be used from any thread."""
+    """
+    Cancels a call from any thread.
+    """
 
     def __init__(self) -> None: ...
     def cancel(self) -> None: ...
@@ -190,69 +239,146 @@ class CancelToken:
     def cancelled(self) -> bool: ...
 
 class EditSession:
-    def __init__(self, surface: Surface, deformation: Deformation, controls: _Floats, options: EditOptions) -> None: ...
-    def edit(
-        self, goal: _Floats, cancel: CancelToken | None, progress: Callable[[str, float], None] | None
-    ) -> dict[str, Any]: ...
+    def __init__(
+        self, surface: Surface, deformation: Deformation, controls: Annotated[ArrayLike, float64], options: EditOptions
+    ) -> None: ...
     def drag(
         self,
-        goal: _Floats,
-        cancel: CancelToken | None,
-        progress: Callable[[str, float], None] | None,
-        time_budget: float | None,
+        goal: Annotated[ArrayLike, float64],
+        cancel: CancelToken | None = None,
+        progress: Any = None,
+        time_budget: float | None = None,
     ) -> dict[str, Any]: ...
-    def settle(self, cancel: CancelToken | None, progress: Callable[[str, float], None] | None) -> dict[str, Any]: ...
-    def is_step_free(self, start: _Floats, end: _Floats) -> bool: ...
-    def least_distance(self, within: bool) -> _Nearest | None: ...
-    def restore(self, controls: _Floats, goal: _Floats | None) -> None: ...
+    def edit(
+        self, goal: Annotated[ArrayLike, float64], cancel: CancelToken | None = None, progress: Any = None
+    ) -> dict[str, Any]: ...
+    def is_step_free(
+        self, start: Annotated[NDArray[float64], "[m, 3]"], end: Annotated[NDArray[float64], "[m, 3]"]
+    ) -> bool: ...
+    def least_distance(self, within: bool) -> Any: ...
+    def restore(self, controls: Annotated[ArrayLike, float64], goal: Annotated[ArrayLike, float64] | None) -> None: ...
+    def settle(self, cancel: CancelToken | None = None, progress: Any = None) -> dict[str, Any]: ...
     @property
-    def controls(self) -> _Floats: ...
-    @property
-    def surface(self) -> _Floats: ...
+    def controls(self) -> Annotated[NDArray[float64], "[m, 3]"]: ...
     @property
     def separation(self) -> float: ...
+    @property
+    def surface(self) -> Annotated[NDArray[float64], "[m, 3]"]: ...
 
 class ContractionOptions:
-    storage: list[StorageFrame]
+    growth: float
+    max_steps: int
+    smoothing: float
+    storage: Sequence[StorageFrame]
+    tolerance: float
+
     def __init__(self) -> None: ...
 
 class RepairOptions:
     contraction: ContractionOptions
     edit: EditOptions
-    moves: list[int]
     good_deviation: float
     max_deviation: float
+    moves: Sequence[int]
+
     def __init__(self) -> None: ...
 
-def contraction_step(
-    surface: Surface, start: _Floats, positions: _Floats, moves: list[int], smoothing: float
-) -> _Floats: ...
+def arap(handles: Handles) -> Deformation: ...
+def best_vector_target() -> VectorTarget: ...
+def compose(outer: Deformation, inner: Deformation) -> Deformation: ...
+def concatenate(
+    parts: Sequence[tuple[Deformation, Annotated[ArrayLike, int32]]], start: Annotated[ArrayLike, float64, "[m, 3]"]
+) -> Deformation: ...
 def contract(
     surface: Surface,
-    deformation: Deformation | None,
-    cage: Surface | None,
-    positions: _Floats,
-    moves: list[int],
+    positions: Annotated[ArrayLike, float64, "[m, 3]"],
+    moves: ArrayLike,
     options: ContractionOptions,
     threads: int,
-    cancel: CancelToken | None,
-    progress: Callable[[str, float], None] | None,
+    deformation: Deformation | None = None,
+    cage: Surface | None = None,
+    cancel: CancelToken | None = None,
+    progress: Any = None,
 ) -> dict[str, Any]: ...
+def contraction_step(
+    surface: Surface,
+    start: Annotated[ArrayLike, float64, "[m, 3]"],
+    positions: Annotated[ArrayLike, float64, "[m, 3]"],
+    moves: ArrayLike,
+    smoothing: float,
+) -> Annotated[NDArray[float64], "[m, 3]"]: ...
 def expand(
     surface: Surface,
-    deformation: Deformation | None,
-    positions: _Floats,
-    target: _Floats,
+    positions: Annotated[ArrayLike, float64, "[m, 3]"],
+    target: Annotated[ArrayLike, float64, "[m, 3]"],
     options: EditOptions,
-    cancel: CancelToken | None,
-    progress: Callable[[str, float], None] | None,
+    deformation: Deformation | None = None,
+    cancel: CancelToken | None = None,
+    progress: Any = None,
 ) -> dict[str, Any]: ...
+def find_intersections(
+    surface: Surface, positions: Annotated[NDArray[float64], "[m, 3]"], threads: int
+) -> Annotated[NDArray[int32], "[m, 2]"]: ...
+def find_loose_intersections(
+    surface: Surface, positions: Annotated[NDArray[float64], "[m, 3]"], threads: int
+) -> tuple[Annotated[NDArray[int32], "[m, 2]"], Annotated[NDArray[int32], "[m, 2]"]]: ...
+def identity(vertex_count: int) -> Deformation: ...
+def is_step_free(
+    surface: Surface,
+    start: Annotated[NDArray[float64], "[m, 3]"],
+    end: Annotated[NDArray[float64], "[m, 3]"],
+    separation: float,
+    threads: int,
+) -> bool: ...
+def laplacian(handles: Handles) -> Deformation: ...
+def lattice(
+    lattice: Lattice,
+    rest_vertices: Annotated[ArrayLike, float64, "[m, 3]"],
+    influence: Annotated[ArrayLike, float64, "[m, 1]"],
+    vertices: Annotated[ArrayLike, float64, "[m, 3]"],
+    points: Annotated[ArrayLike, float64, "[m, 3]"],
+) -> Deformation: ...
+def lattice_weights(
+    lattice: Lattice,
+    vertices: Annotated[ArrayLike, float64, "[m, 3]"],
+    influence: Annotated[ArrayLike, float64, "[m, 1]"],
+) -> tuple[Any, ...]: ...
+def least_distance(surface: Surface, positions: Annotated[NDArray[float64], "[m, 3]"], within: bool) -> Any: ...
+def limit_vector_target(most: VectorTarget) -> None: ...
+def linear(
+    starts: Annotated[ArrayLike, int32],
+    controls: Annotated[ArrayLike, int32],
+    values: Annotated[ArrayLike, float64],
+    control_count: int,
+    offset: Annotated[ArrayLike, float64, "[m, 3]"],
+) -> Deformation: ...
+def linear_parts(deformation: Deformation) -> Any: ...
 def repair(
     surface: Surface,
-    deformation: Deformation | None,
-    cage: Surface | None,
-    positions: _Floats,
+    positions: Annotated[ArrayLike, float64, "[m, 3]"],
     options: RepairOptions,
-    cancel: CancelToken | None,
-    progress: Callable[[str, float], None] | None,
+    deformation: Deformation | None = None,
+    cage: Surface | None = None,
+    cancel: CancelToken | None = None,
+    progress: Any = None,
 ) -> dict[str, Any]: ...
+def rigid(rest: Annotated[ArrayLike, float64, "[m, 3]"]) -> Deformation: ...
+def rigid_rest_controls(rest: Annotated[ArrayLike, float64, "[m, 3]"]) -> Annotated[NDArray[float64], "[m, 3]"]: ...
+def scaling(
+    rest: Annotated[ArrayLike, float64, "[m, 3]"], rotation: Annotated[ArrayLike, float64, "[3, 3]"]
+) -> Deformation: ...
+def scaling_rest_controls(rest: Annotated[ArrayLike, float64, "[m, 3]"]) -> Annotated[NDArray[float64], "[m, 3]"]: ...
+def stored_mesh(mesh: Deformation, frame: Annotated[ArrayLike, float64, "[4, 4]"]) -> Deformation: ...
+def subdivided_faces(cage: Cage, levels: int) -> Annotated[NDArray[int32], "[m, 4]"]: ...
+def subdivided_triangles(cage: Cage, levels: int) -> Annotated[NDArray[int32], "[m, 3]"]: ...
+def subdivision_weights(
+    cage: Cage, levels: int, limit_surface: bool, quality: int, simple: bool, boundary: str, scheme: str
+) -> tuple[Any, ...]: ...
+def times_of_impact(
+    kind: EventKind,
+    start: Annotated[ArrayLike, float64, "[m, 12]"],
+    end: Annotated[ArrayLike, float64, "[m, 12]"],
+    separation: float,
+    threads: int,
+) -> Annotated[NDArray[float64], "[m, 1]"]: ...
+def vector_target() -> VectorTarget: ...

@@ -96,7 +96,7 @@ def contract(
     frames = [_native.StorageFrame(each.first, each.count, np.asarray(each.frame, float)) for each in storage]
     native.storage = (frames or [_native.StorageFrame(0, len(p), np.eye(4))]) if single_precision else []
     values = _native.contract(
-        whole.native, deformation, mesh.native, p, as_marks(moves, len(p)), native, as_count(threads, "threads"),
+        whole.native, p, as_marks(moves, len(p)), native, as_count(threads, "threads"), deformation, mesh.native,
         cancel, progress,
     )  # fmt: skip
     return ContractionResult(**values)
@@ -125,7 +125,7 @@ def expand(
     whole = as_surface(surface, len(p) if deformation is None else deformation.vertex_count)
     goal = as_floats(target, "target", (len(p), 3))
     native = native_options(options or EditOptions())
-    return result_of(_native.expand(whole.native, deformation, p, goal, native, cancel, progress), whole)
+    return result_of(_native.expand(whole.native, p, goal, native, deformation, cancel, progress), whole)
 
 
 def as_caged(

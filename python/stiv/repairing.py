@@ -99,7 +99,7 @@ def repair(
     native.moves = as_marks(moves, len(whole.positions))
     native.good_deviation = as_number(chosen.good_deviation, "good_deviation", 0)
     native.max_deviation = as_number(chosen.max_deviation, "max_deviation", 0)
-    values = _native.repair(whole.surface.native, deformation, mesh.native, whole.positions, native, cancel, progress)
+    values = _native.repair(whole.surface.native, whole.positions, native, deformation, mesh.native, cancel, progress)
     message = _REFUSALS[values["refusal"]].format(**values)
     return RepairResult(message=message, surface=whole.surface, vertex_map=whole.vertex_map, **values)
 
