@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tests share: the add-on, which of them need Blender, no deadlines, and an end that Blender cannot spoil."""
+"""Shared by all tests: the add-on, the marker for Blender, no deadlines, and an exit that avoids Blender's crash."""
 
 import importlib.util
 import os
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-settings.register_profile("untimed", deadline=None)  # what else runs on a machine fails no test
+settings.register_profile("untimed", deadline=None)  # a busy machine must not fail a test
 settings.load_profile("untimed")
 
 ADDON = Path(__file__).resolve().parents[1] / "addon"
@@ -37,7 +37,7 @@ def registered() -> Iterator[None]:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what is in tests/blender, and the tests of every module that imports bpy."""
+    """Mark the tests in tests/blender, and those of every module that imports bpy."""
     for item in items:
         if item.path.parent.name == "blender" or "bpy" in vars(getattr(item, "module", None) or object):
             item.add_marker(pytest.mark.blender)
@@ -45,14 +45,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
-    """Remember the exit code for pytest_unconfigure, which does not get it."""
+    """Store the exit code for pytest_unconfigure, which does not receive it."""
     yield
     session.config.stash[EXIT_CODE] = int(session.exitstatus)
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Leave at once where Blender was loaded: 4.2 crashes and 4.5 hangs when Python ends with classes registered."""
+    """Exit at once if Blender is loaded: 4.2 crashes and 4.5 hangs when Python exits with registered classes."""
     if "bpy" in sys.modules:
         sys.stdout.flush()
         sys.stderr.flush()

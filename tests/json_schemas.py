@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Validation of what is written against the schemas that come with the package."""
+"""Validation of outputs against the schemas of the package."""
 
 import importlib.resources
 import json

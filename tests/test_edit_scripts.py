@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edit scripts: what is read, what is refused."""
+"""Edit scripts: valid ones are read, invalid ones rejected."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def test_defaults_and_repeats():
     assert len(read) == 3 and list(read.edits()) == [step] * 3
 
 
-def test_steps_that_reshape_may_leave_their_values_out():
+def test_values_of_reshaping_steps_are_optional():
     bare = {"operator": "repair", "objects": ["A"]}
     given = {"operator": "contract", "objects": ["A"], "values": {"steps": 3, "until_free": True}}
     read = parse_edit_script({"schema": "stiv-edits", "version": 1, "steps": [bare, given]})
@@ -40,7 +40,7 @@ def test_steps_that_reshape_may_leave_their_values_out():
         ("settle", [], "step 0: values: not an object"),
     ],
 )
-def test_bad_values_of_steps_that_reshape_are_named(operator, values, message):
+def test_bad_values_of_reshaping_steps_are_named(operator, values, message):
     with pytest.raises(stiv.InputError, match=message):
         parse_edit_script(script(operator=operator, values=values))
 
@@ -84,13 +84,13 @@ def test_bad_steps_are_named(changes, message):
 
 
 @pytest.mark.parametrize("data", [None, [], {}, {"schema": "stiv-edits"}, {"schema": "stiv-edits", "version": 1}])
-def test_what_is_no_script_is_refused(data):
+def test_other_json_is_refused(data):
     with pytest.raises(stiv.InputError):
         parse_edit_script(data)
 
 
 @pytest.mark.parametrize("text", ["", "{", "[" * 100_000, "\xff"])
-def test_files_that_are_no_json_are_refused_by_name(tmp_path, text):
+def test_files_without_json_are_refused_by_name(tmp_path, text):
     path = tmp_path / "bad ä.json"
     path.write_bytes(text.encode("latin-1"))
     with pytest.raises(stiv.InputError, match=r"bad ä\.json"):

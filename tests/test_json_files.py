@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The text of reports: read back as it was, and short."""
+"""The JSON text of reports: compact, and unchanged when read back."""
 
 import json
 
@@ -13,7 +13,7 @@ ANYTHING = st.recursive(PLAIN, lambda inner: st.lists(inner) | st.dictionaries(s
 
 
 @given(ANYTHING)
-def test_it_is_read_back_as_it_was(data):
+def test_it_is_unchanged_when_read_back(data):
     assert json.loads(json_text(data)) == data
 
 

@@ -32,7 +32,7 @@ def move(z, **more):
     return {"operator": "move", "objects": ["Above ü"], "values": {"value": [0, 0, z]}, **more}
 
 
-def test_an_object_in_the_clear_goes_to_its_goal():
+def test_an_object_without_contact_reaches_its_goal():
     mesh, (report,) = edited(move(-0.5))
     np.testing.assert_allclose(mesh.vertices[4:], two_sheets().vertices[4:] - (0, 0, 0.5), atol=1e-12)
     np.testing.assert_array_equal(mesh.vertices[:4], SHEET)
@@ -40,7 +40,7 @@ def test_an_object_in_the_clear_goes_to_its_goal():
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_an_object_does_not_go_through_another(mode):
+def test_an_object_does_not_pass_through_another(mode):
     mesh, (report,) = edited(move(-1.5, mode=mode))
     assert report["rounds"] > 0
     assert (mesh.vertices[4:, 2] > 0).all() and mesh.vertices[4:, 2].max() < 1
@@ -65,7 +65,7 @@ def test_points_are_counted_within_their_object():
     assert mesh.vertices[:, 2].tolist() == [0, 0, 0, 0, 1, 1, 0.5, 1]
 
 
-def test_turning_and_scaling_act_about_the_middle():
+def test_rotation_and_scaling_use_the_mean_as_centre():
     turn = {"operator": "rotate", "objects": ["Above ü"], "values": {"angle": np.pi / 2, "axis": [0, 0, 2]}}
     for mode in ("OBJECT", "EDIT"):
         mesh, _ = edited(turn | {"mode": mode})
@@ -89,7 +89,7 @@ def test_turning_and_scaling_act_about_the_middle():
         ({"operator": "repair", "objects": ["Below"]}, "mesh files take move, scale, rotate alone; `stiv repair`"),
     ],
 )
-def test_what_does_not_fit_is_named(step, message):
+def test_mismatched_input_is_named(step, message):
     with pytest.raises(stiv.InputError) as raised:
         edited(step)
     assert message in str(raised.value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs that are whole or not there."""
+"""Outputs are complete or absent."""
 
 import os
 
@@ -10,7 +10,7 @@ from stiv.json_files import write_json
 from stiv.output_files import written_atomically
 
 
-def test_an_output_replaces_what_was_there(tmp_path):
+def test_an_output_replaces_the_old_file(tmp_path):
     path = tmp_path / "a ü.json"
     path.write_text("old")
     write_json(path, {"name": "ü"})
@@ -18,7 +18,7 @@ def test_an_output_replaces_what_was_there(tmp_path):
     assert os.listdir(tmp_path) == [path.name]
 
 
-def test_an_error_while_writing_leaves_what_was_there(tmp_path):
+def test_an_error_while_writing_preserves_the_old_file(tmp_path):
     path = tmp_path / "a.json"
     path.write_text("old")
 
@@ -32,6 +32,6 @@ def test_an_error_while_writing_leaves_what_was_there(tmp_path):
     assert path.read_text() == "old" and os.listdir(tmp_path) == ["a.json"]
 
 
-def test_a_place_that_cannot_be_written_is_named(tmp_path):
+def test_a_path_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(stiv.InputError, match=r"a\.json: cannot be written"):
         write_json(tmp_path / "nowhere" / "a.json", {})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact static test against rational arithmetic, over every way in which two triangles can share corners."""
+"""The exact static test against rational arithmetic, for all ways in which two triangles can share corners."""
 
 from collections.abc import Callable
 
@@ -42,7 +42,7 @@ def one_plane(random: np.random.Generator, count: int) -> Floats:
 
 
 def one_line(random: np.random.Generator, count: int) -> Floats:
-    """Corners on a line, some of them off it by one."""
+    """Corners on a line, some of them one unit off."""
     on_line = random.integers(0, 5, (count, 6, 1)) * np.array([2, -1, 3])
     return (on_line + (random.random((count, 6, 1)) < 0.1) * random.integers(-1, 2, (count, 6, 3))).astype(np.float64)
 
@@ -52,7 +52,7 @@ def fine_grid(random: np.random.Generator, count: int) -> Floats:
 
 
 def rounded_plane(random: np.random.Generator, count: int) -> Floats:
-    """Corners in a rotated plane, rounded: coplanar but for the last digits, where only exact signs decide."""
+    """Rounded corners in a rotated plane: coplanar up to the last digits, so only exact signs decide."""
     grid = random.integers(0, 4, (count, 6, 2)) * 0.1
     return grid @ np.linalg.qr(random.standard_normal((3, 3)))[0][:2] + 1 / 3
 
@@ -61,7 +61,7 @@ CORNERS = [coarse_grid, one_plane, one_line, fine_grid, rounded_plane]
 
 
 def side_by_side(corners: Floats, first: list[int], second: list[int]) -> tuple[Floats, Integers]:
-    """Put all pairs into one mesh, pair k in the triangles 2k and 2k + 1; shifts by powers of two stay exact."""
+    """Put all pairs into one mesh, with pair k as triangles 2k and 2k + 1; shifts by powers of two are exact."""
     count = len(corners)
     cells = np.stack(np.unravel_index(np.arange(count), (16, 16, count // 256 + 1)), axis=-1)
     shifted = corners + 64.0 * cells[:, None, :]
@@ -116,7 +116,7 @@ def test_spheres_apart_touching_and_overlapping(scale: float) -> None:
         return len(stiv.find_intersections(scale * vertices, faces))
 
     assert count(2.0000001) == 0
-    assert count(2.0) == 16 * 16  # pole on pole: each face of one fan with each of the other
+    assert count(2.0) == 16 * 16  # the poles touch: each face of one fan meets each face of the other
     assert count(1.9) > 16
 
 
@@ -128,7 +128,7 @@ def test_linked_rings() -> None:
     assert {(int(a), int(b)) for a, b in found} == rational.find_intersections(vertices, faces)
 
 
-def test_kept_trees_follow_the_positions() -> None:
+def test_cached_trees_follow_the_positions() -> None:
     vertices, faces = soup(3)
     test = stiv.IntersectionTest(stiv.Surface(faces, len(vertices)), threads=1)
     random = np.random.default_rng(4)
@@ -140,7 +140,7 @@ def test_kept_trees_follow_the_positions() -> None:
         test.find(vertices[1:])
 
 
-def test_bodies_that_do_not_meet_are_left_out_unless_asked_for() -> None:
+def test_untested_bodies_are_skipped_unless_requested() -> None:
     vertices, faces = shapes.linked_tori(1.2)
     body = np.repeat([0, 1], len(vertices) // 2)
     fixed = [stiv.Body("a", "fixed"), stiv.Body("b", "fixed")]
@@ -174,7 +174,7 @@ def test_bad_input_is_named(vertices: Floats, faces: Integers, message: str) -> 
         stiv.find_intersections(vertices, faces)
 
 
-def test_nothing_gives_nothing() -> None:
+def test_an_empty_mesh_has_no_intersections() -> None:
     assert stiv.find_intersections(np.zeros((0, 3)), np.zeros((0, 3), np.int32)).shape == (0, 2)
     assert stiv.find_intersections(np.zeros((3, 3)), np.zeros((0, 3), np.int32)).shape == (0, 2)
 

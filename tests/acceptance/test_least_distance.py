@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The read-out of the least distance, against brute force."""
+"""The least distance, against brute force."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.oracles.distances import near_pairs
 
 
 def scene(seed: int) -> tuple[stiv.Surface, np.ndarray]:
-    """A turned ring about a ball, above a sheet: three bodies."""
+    """Three bodies: a rotated ring around a ball, above a sheet."""
     chance = np.random.default_rng(seed)
     shapes = [
         icosphere(2).turned(chance.normal(size=3)).scaled(0.6),
@@ -37,7 +37,7 @@ def brute_force(surface: stiv.Surface, q: np.ndarray, reach: float, within: bool
 
 @pytest.mark.parametrize("within", [False, True])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_least_distance_is_that_of_all_pairs(seed: int, within: bool) -> None:
+def test_the_least_distance_is_the_minimum_over_all_pairs(seed: int, within: bool) -> None:
     surface, q = scene(seed)
     nearest = stiv.least_distance(q, surface, within=within)
     assert nearest is not None
@@ -58,7 +58,7 @@ def test_the_least_distance_is_that_of_all_pairs(seed: int, within: bool) -> Non
         assert weights @ corners == pytest.approx(point, abs=1e-9)
 
 
-def test_a_session_reads_its_accepted_state_and_one_body_has_no_distance() -> None:
+def test_a_session_measures_its_accepted_state_and_one_body_has_no_distance() -> None:
     surface, q = scene(1)
     session = stiv.EditSession(surface, stiv.identity(len(q)), q)
     before, again = session.least_distance(), stiv.least_distance(session.surface, surface)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The test of a step against an independent one over all pairs, and against what is known of simple motions."""
+"""The step check against an independent check of all pairs, and against simple motions with known results."""
 
 import numpy as np
 import pytest
@@ -14,14 +14,14 @@ TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 
 def tetrahedra(seed: int, count: int = 12) -> tuple[shapes.Floats, shapes.Integers]:
-    """Small tetrahedra in the unit cube, some of which touch or cross others."""
+    """Small tetrahedra in the unit cube, some of which touch or intersect others."""
     random = np.random.default_rng(seed)
     vertices = random.random((count, 1, 3)) + 0.15 * random.random((count, 4, 3))
     return vertices.reshape(-1, 3), (TETRAHEDRON + 4 * np.arange(count)[:, None, None]).reshape(-1, 3)
 
 
 def moved(vertices: shapes.Floats, stir: float, seed: int) -> shapes.Floats:
-    """Each tetrahedron goes its own way, and changes its shape on it."""
+    """Each tetrahedron moves independently and changes its shape."""
     random = np.random.default_rng(seed)
     ways = random.standard_normal((len(vertices) // 4, 1, 3)) + 0.1 * random.standard_normal((len(vertices) // 4, 4, 3))
     return vertices + stir * ways.reshape(-1, 3)
@@ -51,13 +51,13 @@ def test_a_ring_cannot_leave_its_link() -> None:
     assert len(path.find_contacts(faces, linked, nudged).time) == 0
 
 
-def test_an_end_in_intersection_or_a_start_in_one_is_not_free() -> None:
+def test_a_step_with_an_intersecting_start_or_end_is_not_free() -> None:
     crossed, faces = shapes.linked_tori(1.2)
     assert not stiv.is_step_free(faces, crossed, crossed)
     assert not stiv.is_step_free(faces, crossed, shapes.linked_tori(0)[0])
 
 
-def test_separation_is_kept() -> None:
+def test_separation_is_respected() -> None:
     start, both = shapes.two_spheres(3.0)
     end, _ = shapes.two_spheres(2.1)
     assert stiv.is_step_free(both, start, end, separation=0.08)
@@ -66,7 +66,7 @@ def test_separation_is_kept() -> None:
     assert len(path.find_contacts(both, start, end, separation=0.101).time) > 0
 
 
-def test_the_oracle_knows_when_a_vertex_meets_a_face() -> None:
+def test_the_oracle_finds_the_time_at_which_a_vertex_meets_a_face() -> None:
     triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
     start = np.array([*triangle, [0.2, 0.2, 1.0]])
     end = np.array([*triangle, [0.2, 0.2, -2.0]])
@@ -85,7 +85,7 @@ def test_bad_input_is_named() -> None:
         stiv.is_step_free(faces, start, start, separation=-1.0)
 
 
-def test_kept_check_says_what_the_one_off_form_says() -> None:
+def test_the_reusable_check_agrees_with_the_one_off_function() -> None:
     triangles = [[0, 1, 2], [3, 4, 5]]
     start = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, 1], [0.3, 0.2, 2], [0.2, 0.3, 2.0]])
     check = stiv.StepCheck(stiv.Surface(triangles))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small OBJ files: two triangles apart, and crossing."""
+"""Small OBJ files with two triangles, disjoint or crossing."""
 
 from pathlib import Path
 

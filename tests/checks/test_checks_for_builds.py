@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv check` as a build uses it: many files, a baseline, JUnit, reports by the schema, pictures."""
+"""`stiv check` in a build: many files, baselines, JUnit, reports with a schema, pictures."""
 
 import json
 import xml.etree.ElementTree as ElementTree
@@ -14,7 +14,7 @@ from PIL import Image
 from stiv.command_line import program
 
 
-def test_several_files_each_get_their_result(tmp_path, capsys):
+def test_each_of_several_files_has_its_own_result(tmp_path, capsys):
     files = [written(tmp_path / "a.obj", APART), written(tmp_path / "b ü.obj", CROSSING)]
     report = tmp_path / "report.json"
     assert program.run(["check", *files, "--json", str(report)]) == 4
@@ -25,7 +25,7 @@ def test_several_files_each_get_their_result(tmp_path, capsys):
     assert [file["file"] for file in data["files"]] == files
 
 
-def test_a_pattern_that_no_shell_expanded_stands_for_its_files(tmp_path):
+def test_a_pattern_that_the_shell_did_not_expand_is_expanded(tmp_path):
     written(tmp_path / "a.obj", APART), written(tmp_path / "b.obj", CROSSING)
     assert program.run(["check", str(tmp_path / "*.obj")]) == 4
     assert program.run(["check", str(tmp_path / "a*.obj")]) == 0
@@ -43,7 +43,7 @@ def test_one_bad_file_ends_with_2_and_the_others_are_checked_and_reported(tmp_pa
     assert [(suite.get("errors"), suite.get("failures")) for suite in suites] == [("1", "0"), ("0", "1")]
 
 
-def test_only_the_objects_named_are_tested(tmp_path, capsys):
+def test_only_the_named_objects_are_tested(tmp_path, capsys):
     mesh = written(tmp_path / "a.obj", CROSSING)
     assert program.run(["check", mesh, "--object", "flat"]) == 0
     assert program.run(["check", mesh, "--object", "flat", "--object", "upright ü"]) == 4
@@ -56,7 +56,7 @@ def test_a_mesh_has_no_frames(tmp_path, capsys):
     assert "a mesh file has no frames" in capsys.readouterr().err
 
 
-def test_what_the_baseline_knows_is_accepted_until_it_grows(tmp_path, capsys):
+def test_known_intersections_are_accepted_until_they_grow(tmp_path, capsys):
     mesh, known = tmp_path / "a.obj", tmp_path / "known.json"
     arguments = ["check", written(mesh, CROSSING), "--baseline", str(known)]
     assert program.run([*arguments, "--write-baseline"]) == 0
@@ -97,7 +97,7 @@ def test_a_bad_baseline_ends_with_2(tmp_path, capsys, text, message):
     assert message in capsys.readouterr().err
 
 
-def test_junit_names_files_and_pairs_even_with_signs_that_xml_cannot_hold(tmp_path):
+def test_junit_names_files_and_pairs_even_with_characters_that_xml_forbids(tmp_path):
     junit = tmp_path / "junit.xml"
     soup = tmp_path / "soup.npz"
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.2, 1], [2, 2, 0]], float)
@@ -119,7 +119,7 @@ def test_a_picture_shows_both_objects_and_marks_the_faces(tmp_path):
     with Image.open(name) as picture:
         pixels = np.asarray(picture.convert("RGB")).astype(int)
     red = (pixels[..., 0] > pixels[..., 1] + 60) & (pixels[..., 0] > pixels[..., 2] + 60)
-    assert red.mean() > 0.02  # both triangles meet, so that all of both is marked
+    assert red.mean() > 0.02  # both triangles intersect, so both are marked completely
     assert (pixels == 255).all(axis=2).mean() > 0.2
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fixture for pytest, in test sessions of their own."""
+"""The fixture for pytest, in separate test sessions."""
 
 import os
 import subprocess
@@ -15,7 +15,7 @@ FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
 
 
 def run_tests(folder: Path, body: str) -> tuple[int, str]:
-    """Exit code and output of a test session with one test of this body."""
+    """Exit code and output of a session with one test of this body."""
     (folder / "test_assets.py").write_text(f"def test_asset(assert_free_of_intersections):\n    {body}\n")
     installed = any(entry.name == "stiv" for entry in metadata.entry_points(group="pytest11"))
     plugin = [] if installed else ["-p", "stiv.pytest_plugin"]
@@ -25,7 +25,7 @@ def run_tests(folder: Path, body: str) -> tuple[int, str]:
     return ended.returncode, ended.stdout
 
 
-def test_a_free_mesh_passes(tmp_path):
+def test_a_clear_mesh_passes(tmp_path):
     code, out = run_tests(tmp_path, f"assert_free_of_intersections({written(tmp_path / 'a.obj', APART)!r})")
     assert code == 0, out
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cages that show each rule of subdivision once; plain data."""
+"""Cages that exercise each rule of subdivision, as plain data."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CageCase:
-    """Vertices (V, 3), faces, loose edges; creases by edge (two vertices) and by vertex."""
+    """Vertices (V, 3), faces and loose edges; creases by edge (two vertices) and by vertex."""
 
     vertices: Floats
     faces: list[tuple[int, ...]]
@@ -32,7 +32,7 @@ def _noisy(points: list[tuple[float, float, float]] | Floats, seed: int = 1) -> 
 
 
 def _with_creases(case: CageCase, seed: int, edges: float = 0.0, vertices: float = 0.0) -> CageCase:
-    """Give random creases to these fractions of the edges and vertices."""
+    """Add random creases to these fractions of the edges and vertices."""
     random = np.random.default_rng(seed)
     edge_crease = {edge: float(random.random()) for edge in case.face_edges() if random.random() < edges}
     vertex_crease = {v: float(random.random()) for v in range(len(case.vertices)) if random.random() < vertices}
@@ -70,7 +70,7 @@ def cube_with_both_creases() -> CageCase:
 
 
 def torus(rings: int = 12, sides: int = 7) -> CageCase:
-    """A closed surface of regular quads alone."""
+    """A closed surface of regular quads."""
     u, v = np.meshgrid(np.arange(rings), np.arange(sides), indexing="ij")
     a, b = 2 * np.pi * u / rings, 2 * np.pi * v / sides
     points = np.stack([(3 + np.cos(b)) * np.cos(a), (3 + np.cos(b)) * np.sin(a), np.sin(b)], -1).reshape(-1, 3)
@@ -83,7 +83,7 @@ def torus(rings: int = 12, sides: int = 7) -> CageCase:
 
 
 def cylinder(sides: int = 7) -> CageCase:
-    """Quads around, one n-gon above and below."""
+    """Quads around the side, and an n-gon at each end."""
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.stack([np.cos(angles), np.sin(angles)], -1)
     points = np.concatenate([np.insert(ring, 2, -1.0, 1), np.insert(ring, 2, 1.0, 1)])
@@ -92,12 +92,12 @@ def cylinder(sides: int = 7) -> CageCase:
 
 
 def creased_cylinder() -> CageCase:
-    """A cylinder with creases, some of them on the n-gons' edges."""
+    """A cylinder with creases, some on the edges of the n-gons."""
     return _with_creases(cylinder(), 4, edges=0.5, vertices=0.2)
 
 
 def octahedron() -> CageCase:
-    """Triangles alone."""
+    """Only triangles."""
     points = [(1.0, 0, 0), (0, 1.0, 0), (-1.0, 0, 0), (0, -1.0, 0), (0, 0, 1.0), (0, 0, -1.0)]
     faces = [f for k in range(4) for f in ((k, (k + 1) % 4, 4), ((k + 1) % 4, k, 5))]
     return CageCase(_noisy(points), faces)
@@ -115,7 +115,7 @@ def grid(side: int = 5) -> CageCase:
 
 
 def creased_grid() -> CageCase:
-    """An open sheet with creases, on its boundary and corners too."""
+    """An open sheet with creases, including its boundary and corners."""
     return _with_creases(grid(), 5, edges=0.3, vertices=0.2)
 
 
@@ -142,7 +142,7 @@ def three_faces_on_an_edge() -> CageCase:
 
 
 def cubes_sharing_an_edge() -> CageCase:
-    """Two closed cubes with one edge in common: four faces on it."""
+    """Two closed cubes that share an edge, with four faces on it."""
     first = cube()
     renamed = {0: 3, 4: 7, **{v: 7 + k for k, v in enumerate((1, 2, 3, 5, 6, 7), 1)}}
     moved = first.vertices + np.array([2.0, 2.0, 0.0])
@@ -151,7 +151,7 @@ def cubes_sharing_an_edge() -> CageCase:
 
 
 def bow_tie() -> CageCase:
-    """Two quads with one vertex in common."""
+    """Two quads that share a vertex."""
     points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.3), (-1, 0, 0.2), (-1, -1, 0), (0, -1, 0)]
     return CageCase(np.array(points, float), [(0, 1, 2, 3), (0, 4, 5, 6)])
 
@@ -163,12 +163,12 @@ def flipped_neighbour() -> CageCase:
 
 
 def loose_vertices() -> CageCase:
-    """A quad among vertices that belong to nothing."""
+    """A quad and loose vertices."""
     return CageCase(_noisy(np.zeros((7, 3)), 6), [(1, 2, 4, 5)])
 
 
 def wires() -> CageCase:
-    """Loose edges: an open chain, a closed one, a branching, a single edge; some with creases."""
+    """Loose edges: an open chain, a closed chain, a branch and a single edge; some with creases."""
     chain, ring, fork, single = (
         [(0, 1), (2, 1), (2, 3)],
         [(4, 5), (6, 5), (6, 4)],
@@ -180,7 +180,7 @@ def wires() -> CageCase:
 
 
 def wires_on_a_sheet() -> CageCase:
-    """Wires that start at vertices of faces: a corner, a boundary vertex, inner ones; one and two at a vertex."""
+    """Wires that start at vertices of faces: at a corner, on the boundary and inside; one or two per vertex."""
     case = grid(4)
     extra = np.random.default_rng(8).normal(size=(7, 3)) + np.array([1.5, 1.5, 2.0])
     loose = [(0, 16), (16, 17), (5, 18), (6, 19), (20, 6), (2, 21), (22, 21), (22, 7)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes in Blender for tests that compare with what Blender evaluates. Only for tests that have imported bpy."""
+"""Meshes in Blender for tests that compare with Blender's evaluation. Import bpy first."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,7 +23,7 @@ def read(collection: Any, attribute: str, width: int = 3) -> Floats:
 
 
 def new_mesh(case: CageCase) -> Any:
-    """A mesh of the case, its creases set."""
+    """A mesh of the case, with its creases."""
     mesh = bpy.data.meshes.new("cage")
     mesh.from_pydata(case.vertices.tolist(), case.loose_edges, case.faces)
     mesh.update()
@@ -38,7 +38,7 @@ def new_mesh(case: CageCase) -> Any:
 
 @contextmanager
 def linked(mesh: Any) -> Iterator[Any]:
-    """An object of the mesh in the scene, removed afterwards."""
+    """An object with this mesh in the scene, removed afterwards."""
     item = bpy.data.objects.new("object", mesh)
     bpy.context.collection.objects.link(item)
     try:
@@ -49,13 +49,13 @@ def linked(mesh: Any) -> Iterator[Any]:
 
 
 def evaluated_positions(item: Any) -> Floats:
-    """Vertices of the evaluated mesh in the object's own space, (N, 3)."""
+    """Vertices of the evaluated mesh in object space, (N, 3)."""
     bpy.context.view_layer.update()
     return read(item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices, "co")
 
 
 def cage_of(mesh: Any) -> stiv.Cage:
-    """The cage as the mesh stores it."""
+    """The cage as stored in the mesh."""
     crease_edge, crease_vert = mesh.attributes.get("crease_edge"), mesh.attributes.get("crease_vert")
     return stiv.Cage.of_faces(
         [tuple(face.vertices) for face in mesh.polygons],

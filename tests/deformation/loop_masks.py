@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loop's subdivision by its published masks, written to be read, not to be fast.
+"""Loop subdivision by its published masks, written for clarity, not speed.
 
-Inner vertices and edges [Loop 1987], creases, boundaries, corners and limit positions [Hoppe et al. 1994, section 4;
-the limit mask of a crease between regular vertices], sharpness that wears off by one a level [DeRose et al. 1998].
-"""
+Inner vertices and edges [Loop 1987], creases, boundaries, corners and limit positions [Hoppe et al. 1994,
+section 4; the limit mask of a crease between regular vertices], sharpness that decreases by one per level
+[DeRose et al. 1998]."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _beta(valence: int) -> float:
 
 @dataclass(frozen=True)
 class LoopMesh:
-    """Triangles over `count` vertices, with sharpness of edges and of vertices; what is not listed is smooth."""
+    """Triangles over `count` vertices, with sharpness of edges and vertices; all others are smooth."""
 
     count: int
     triangles: list[tuple[int, int, int]]
@@ -39,7 +39,7 @@ class LoopMesh:
         return sorted({_edge(t[k - 1], t[k]) for t in self.triangles for k in range(3)})
 
     def opposite(self) -> dict[Edge, list[int]]:
-        """The third corners of the triangles on each edge."""
+        """The opposite corners of the triangles on each edge."""
         found: dict[Edge, list[int]] = {}
         for t in self.triangles:
             for k in range(3):
@@ -51,7 +51,7 @@ class LoopMesh:
         return self.edge_sharpness.get(edge, 0.0) > 0 or len(opposite[edge]) == 1
 
     def around(self) -> list[tuple[list[int], list[int], bool]]:
-        """Of each vertex: all neighbours, those along sharp edges, and whether it stays where it is."""
+        """For each vertex: all neighbours, those along sharp edges, and whether it is fixed."""
         opposite = self.opposite()
         neighbours: list[list[int]] = [[] for _ in range(self.count)]
         sharp: list[list[int]] = [[] for _ in range(self.count)]
@@ -64,7 +64,7 @@ class LoopMesh:
         return list(zip(neighbours, sharp, corner, strict=True))
 
     def refine(self) -> tuple[LoopMesh, Floats]:
-        """One level: the finer mesh, its vertices those of this one and then one for each edge; weights (n', n)."""
+        """The mesh after one level, with the old vertices first and then one per edge; weights (n', n)."""
         edges, opposite, corners = self.edges(), self.opposite(), np.eye(self.count)
         weights = np.zeros((self.count + len(edges), self.count))
         for v, (neighbours, sharp, corner) in enumerate(self.around()):
@@ -94,7 +94,7 @@ class LoopMesh:
         return LoopMesh(len(weights), finer, worn, vertices), weights
 
     def limit(self) -> Floats:
-        """Weights (n, n) of the vertices in their limit positions, if all that is sharp stays so."""
+        """Weights (n, n) of the limit positions, if sharp elements stay sharp."""
         corners = np.eye(self.count)
         weights = np.zeros((self.count, self.count))
         for v, (neighbours, sharp, corner) in enumerate(self.around()):
@@ -109,7 +109,7 @@ class LoopMesh:
 
 
 def subdivided(mesh: LoopMesh, vertices: Floats, levels: int, limit: bool) -> tuple[Floats, NDArray[np.int64]]:
-    """Positions and triangles after so many levels, on the limit surface if asked."""
+    """Positions and triangles after this many levels, optionally on the limit surface."""
     for _ in range(levels):
         mesh, weights = mesh.refine()
         vertices = weights @ vertices

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 def bar() -> tuple[Floats, NDArray[np.integer], NDArray[np.integer], NDArray[np.integer]]:
-    """A tube, its triangles, handles at one end and fixed vertices at the other."""
+    """A tube and its triangles, with handles at one end and fixed vertices at the other."""
     path = np.stack([np.zeros(6), np.zeros(6), np.linspace(0, 2, 6)], axis=1)
     shape = tube(path, np.full(6, 0.4), 6)
     z = shape.vertices[:, 2]
@@ -24,7 +24,7 @@ def bar() -> tuple[Floats, NDArray[np.integer], NDArray[np.integer], NDArray[np.
 
 
 def edge_weights(vertices: Floats, triangles: NDArray[np.integer], kind: str) -> Floats:
-    """W from 1 - D^-1 W, which another test checks: uniform as it is, cotangents by one edge of each vertex."""
+    """W from 1 - D^-1 W, which another test checks; cotangents need one known edge per vertex."""
     laplacian = dense_laplacian(vertices, triangles, kind)
     if kind == "uniform":
         return (laplacian < 0).astype(float)
@@ -41,7 +41,7 @@ def edge_weights(vertices: Floats, triangles: NDArray[np.integer], kind: str) ->
 def alternation(
     vertices: Floats, weights: Floats, held: dict[int, Floats], pulled: dict[int, Floats], steps: int
 ) -> Floats:
-    """Local and global steps as published: rotations by singular values, positions by a dense solve. [Sorkine 2007]"""
+    """Published local and global steps: rotations by singular values, positions by a dense solve. [Sorkine 2007]"""
     q = vertices.copy()
     stiffness = np.diag(weights.sum(axis=1)) - weights
     rest = vertices[:, None] - vertices
@@ -65,7 +65,7 @@ def alternation(
 
 
 def bent(points: Floats, angle: float) -> Floats:
-    """Turned about the y axis through the middle of the bar."""
+    """The points rotated about the y axis through the centre of the bar."""
     turn = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
     return (points - (0, 0, 1)) @ turn.T + (0, 0, 1)
 
@@ -85,7 +85,7 @@ def test_the_minimum_is_that_of_the_published_steps(kind: str, pull: float | Non
     assert np.abs(found - expected).max() < 1e-6
 
 
-def test_a_bar_keeps_its_size_where_laplacian_editing_does_not() -> None:
+def test_a_bar_preserves_its_size_where_laplacian_editing_does_not() -> None:
     vertices, triangles, handles, fixed = bar()
     goal = bent(vertices[handles], 2.0)
     edges = np.unique(np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)

@@ -99,7 +99,7 @@ def test_linear_metric_against_a_dense_one(name: str, smoothness: float) -> None
 
 
 @pytest.mark.parametrize("name", DEFORMATIONS)
-def test_support_is_what_moves(name: str) -> None:
+def test_support_contains_the_vertices_that_move(name: str) -> None:
     make, p = DEFORMATIONS[name]
     f = make()
     columns = np.abs(jacobian(f, p)).reshape(f.vertex_count, 3, f.control_count, 3).max(axis=(1, 3))
@@ -129,7 +129,7 @@ def test_rotation_rows() -> None:
 
 @dataclass
 class CompressedRows:
-    """What any CSR matrix looks like."""
+    """The interface of any CSR matrix."""
 
     indptr: Any
     indices: Any
@@ -137,7 +137,7 @@ class CompressedRows:
     shape: Any
 
 
-def test_linear_accepts_every_form() -> None:
+def test_linear_accepts_every_matrix_format() -> None:
     weights, _ = stiv.linear_weights(stiv.linear(MATRIX))
     fields = (weights.indptr, weights.indices, weights.data, weights.shape)
     assert np.array_equal(weights.dense(), MATRIX)
@@ -148,7 +148,7 @@ def test_linear_accepts_every_form() -> None:
     assert np.array_equal(stiv.linear_weights(doubled)[0].dense(), [[5.0, 3.0]])
 
 
-def test_compose_is_one_after_the_other() -> None:
+def test_compose_applies_one_deformation_after_the_other() -> None:
     outer_matrix, offsets = RANDOM.normal(size=(4, 9)), RANDOM.normal(size=(2, 9, 3))
     inner = stiv.linear(MATRIX, offsets[0])
     outer = stiv.linear(outer_matrix, offsets[1, :4])

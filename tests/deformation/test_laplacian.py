@@ -25,7 +25,7 @@ def knot() -> tuple[Floats, NDArray[np.int64]]:
 
 
 def dense_laplacian(vertices: Floats, triangles: NDArray[np.integer], kind: str) -> Floats:
-    """1 - D^-1 W, written edge by edge; an edge counts 0.001 at least."""
+    """1 - D^-1 W, computed edge by edge; the weight of an edge is at least 0.001."""
     weights = np.zeros((len(vertices), len(vertices)))
     for triangle in triangles:
         for k in range(3):
@@ -45,7 +45,7 @@ def dense_laplacian(vertices: Floats, triangles: NDArray[np.integer], kind: str)
 def least_squares(
     laplacian: Floats, rest: Floats, handles: Integers, fixed: Integers, pull: Floats | None, goal: Floats
 ) -> Floats:
-    """Rows of the Laplacian and of the handles, as an overdetermined system in the vertices that nothing holds."""
+    """Rows of the Laplacian and of the handles, as an overdetermined system in the free vertices."""
     q = rest.copy()
     if pull is None:
         q[handles] = goal
@@ -69,7 +69,7 @@ def test_surface_is_the_least_squares_solution(
 ) -> None:
     vertices, triangles = make_mesh()
     random = np.random.default_rng(5)
-    if kind == "cotangent":  # no right angles: an edge whose cotangents add up to nothing is one all the same
+    if kind == "cotangent":  # no right angles: the edge weights do not vanish
         vertices = vertices + 1e-2 * random.normal(size=vertices.shape)
     chosen = random.permutation(len(vertices))
     handles, fixed = chosen[:12], chosen[12:20]
@@ -84,7 +84,7 @@ def test_surface_is_the_least_squares_solution(
     assert np.array_equal(f.surface(vertices[handles]), vertices)
 
 
-def test_one_pull_for_all_is_the_same_for_each() -> None:
+def test_a_scalar_pull_equals_the_same_pull_for_each_handle() -> None:
     vertices, triangles = knot()
     handles = np.arange(0, 60, 7)
     goal = vertices[handles] + (0.3, 0, -0.2)
@@ -92,7 +92,7 @@ def test_one_pull_for_all_is_the_same_for_each() -> None:
     assert np.array_equal(one.surface(goal), each.surface(goal))
 
 
-def test_the_stronger_the_pull_the_nearer_to_hard() -> None:
+def test_a_stronger_pull_approaches_hard_handles() -> None:
     vertices, triangles = knot()
     handles, fixed = np.arange(5), np.arange(60, 65)
     goal = vertices[handles] + (0.5, 0.2, 0)
@@ -105,7 +105,7 @@ def test_the_stronger_the_pull_the_nearer_to_hard() -> None:
     assert distances[-1] < 1e-5
 
 
-def test_a_common_motion_of_all_handles_moves_the_mesh_alike() -> None:
+def test_a_common_motion_of_all_handles_moves_the_whole_mesh() -> None:
     vertices, triangles = knot()
     f = stiv.laplacian(vertices, triangles, np.arange(0, 120, 11))
     moved = f.surface(vertices[::11] + (1.0, 2.0, -3.0))

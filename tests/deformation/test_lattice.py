@@ -34,7 +34,8 @@ def test_linear_motion_inside_is_reproduced(interpolation: str) -> None:
     deformation = stiv.lattice(inside, (7, 7, 7), interpolation=interpolation)
     matrix, shift = np.eye(3) + RANDOM.normal(scale=0.3, size=(3, 3)), RANDOM.normal(size=3)
     found = deformation.surface(rest @ matrix.T + shift)
-    # Cardinal splines with a tension other than 1/2 do not reproduce straight lines; they do reproduce shifts.
+    # Cardinal splines with a tension other than 1/2 do not reproduce straight lines; they do reproduce
+    # shifts.
     if interpolation == "cardinal":
         found, matrix = deformation.surface(rest + shift), np.eye(3)
     assert np.abs(found - (inside @ matrix.T + shift)).max() < 1e-12

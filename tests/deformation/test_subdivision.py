@@ -27,14 +27,14 @@ def cage_of(case: CageCase) -> stiv.Cage:
 @pytest.mark.parametrize("make_case", CASES)
 @pytest.mark.parametrize("options", [{}, {"limit_surface": False}, {"simple": True}, {"boundary": "preserve_corners"}])
 def test_weights_add_up_to_one(make_case: Callable[[], CageCase], options: dict[str, Any]) -> None:
-    """So that subdivision commutes with every affine map, and world positions may be used for local ones."""
+    """Subdivision therefore commutes with affine maps, and world positions may replace local ones."""
     weights = stiv.subdivision_weights(cage_of(make_case()), 2, **options)
     sums = np.add.reduceat(weights.data, weights.indptr[:-1])
     assert np.abs(sums - 1).max() < 1e-12
 
 
 def midpoints_and_centres(case: CageCase) -> np.ndarray:
-    """One step of Catmull-Clark by its textbook rules, for a closed cage without creases: vertices, edges, faces."""
+    """One step of Catmull-Clark by the textbook rules, for a closed cage without creases: vertices, edges, faces."""
     vertices, edges = case.vertices, case.face_edges()
     centres = np.array([vertices[list(face)].mean(axis=0) for face in case.faces])
     owners = {edge: [k for k, face in enumerate(case.faces) if set(edge) <= set(face)] for edge in edges}
@@ -59,7 +59,7 @@ def test_one_level_by_the_textbook(make_case: Callable[[], CageCase]) -> None:
 
 
 def test_limit_of_refinement() -> None:
-    """Vertices on the limit surface are where refinement leads them."""
+    """Vertices on the limit surface are the limits of refinement."""
     case = octahedron()
     cage, count = cage_of(case), len(case.vertices)
     limit = stiv.linear(stiv.subdivision_weights(cage, 1, quality=6)).surface(case.vertices)

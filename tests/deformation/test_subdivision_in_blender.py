@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Subdivision weights against what Blender's Subdivision Surface modifier evaluates."""
+"""Subdivision weights against Blender's Subdivision Surface modifier."""
 
 from collections.abc import Callable
 from typing import Any

@@ -15,17 +15,17 @@ from tests.deformation.cages import CageCase
 from tests.deformation.loop_masks import LoopMesh, subdivided
 from tests.deformation.test_subdivision import cage_of
 
-FOREVER = 1e9  # a crease of 1 never wears off
+FOREVER = 1e9  # a crease of 1 stays sharp at every level
 
 
 def triangulated(case: CageCase) -> CageCase:
-    """Every face cut into a fan from its first corner; creases stay on the edges that are left."""
+    """Every face split into a fan from its first corner, with the creases of the original edges."""
     faces = [(f[0], f[k], f[k + 1]) for f in case.faces for k in range(1, len(f) - 1)]
     return CageCase(case.vertices, faces, case.loose_edges, case.edge_crease, case.vertex_crease)
 
 
 def tetrahedron() -> CageCase:
-    """Valence 3 alone."""
+    """Only vertices of valence 3."""
     points = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1.2)], float)
     return CageCase(points, [(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
 
@@ -40,7 +40,7 @@ def cylinder() -> CageCase:
 
 
 def torus() -> CageCase:
-    """Regular vertices alone."""
+    """Only regular vertices."""
     return triangulated(cages.torus())
 
 
@@ -50,21 +50,21 @@ def sheet() -> CageCase:
 
 
 def cube_with_sharp_edges() -> CageCase:
-    """A closed crease, a crease that ends within, and a corner of creases."""
+    """A closed crease, a crease that ends inside the surface, and a corner of creases."""
     sharp = {(0, 1): 1.0, (1, 3): 1.0, (2, 3): 1.0, (0, 2): 1.0, (5, 7): 1.0}
     case = cube()
     return CageCase(case.vertices, case.faces, edge_crease=sharp, vertex_crease={6: 1.0})
 
 
 def cylinder_with_worn_creases() -> CageCase:
-    """Closed creases of sharpness 1 and 2, which are gone after as many levels."""
+    """Closed creases of sharpness 1 and 2, which disappear after 1 and 2 levels."""
     case = cylinder()
     rings = {tuple(sorted((k + s, (k + 1) % 9 + s))): crease for s, crease in ((0, 0.1), (9, 0.2)) for k in range(9)}
     return CageCase(case.vertices, case.faces, edge_crease={e: float(np.sqrt(c)) for e, c in rings.items()})  # type: ignore[misc]
 
 
 def creased_sheet() -> CageCase:
-    """A crease across, from boundary to boundary, and one that ends within."""
+    """A crease from boundary to boundary, and one that ends inside the surface."""
     sharp = {(k, k + 5): 1.0 for k in (2, 7, 12, 17)} | {(13, 14): 1.0}
     case = sheet()
     return CageCase(case.vertices, case.faces, edge_crease=sharp)
@@ -83,16 +83,15 @@ QUALITY = 3  # the default
 
 
 def corners_of_boundary(case: CageCase) -> list[int]:
-    """Vertices of one triangle alone."""
+    """Vertices that belong to a single triangle."""
     return [v for v in range(len(case.vertices)) if sum(v in face for face in case.faces) == 1]
 
 
 def reference(case: CageCase, levels: int, limit: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """What the masks give.
+    """The result of the masks.
 
-    The limit is taken after `quality` levels, where it matters: the masks of ends of creases are not exact. At rounded
-    corners of the boundary OpenSubdiv goes no further than those levels.
-    """
+    The limit is taken after `quality` levels, where it matters: the masks of ends of creases are not exact.
+    At rounded corners of the boundary OpenSubdiv goes no further than those levels."""
 
     def sharpness(crease: float) -> float:
         return FOREVER if crease == 1 else round(10 * crease**2, 6)
@@ -118,7 +117,7 @@ def turned_to_smallest(triangles: NDArray[np.integer]) -> set[tuple[int, ...]]:
 
 
 def assert_same_mesh(case: CageCase, levels: int, limit: bool) -> None:
-    """Vertices are told by where they are, since the masks number them otherwise."""
+    """Compare by position, because the masks number the vertices differently."""
     deformation, triangles = stiv.loop(cage_of(case), levels, limit_surface=limit)
     found, (expected, faces) = deformation.surface(case.vertices), reference(case, levels, limit)
     assert found.shape == expected.shape

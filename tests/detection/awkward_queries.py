@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random collision queries of sorts that are known to break detectors."""
+"""Random collision queries of kinds that are known to break detectors."""
 
 from collections.abc import Callable
 
@@ -27,13 +27,13 @@ def coplanar(random: np.random.Generator, count: int) -> Points:
 
 
 def coplanar_aslant(random: np.random.Generator, count: int) -> Points:
-    """In a plane that is none of the axes', exactly."""
+    """Exactly in a plane that is not axis-aligned."""
     flat = grid(random, count)
     return flat @ np.array([[1, 2, 2], [2, -2, 1], [0, 0, 0]], float)
 
 
 def parallel(random: np.random.Generator, count: int) -> Points:
-    """The last two vertices lie as the first two do: parallel edges, or sides of a face along the vertex's way."""
+    """The last two vertices repeat the offset of the first two: parallel edges, or sides of a face along the path."""
     points = grid(random, count)
     factor = random.integers(-2, 3, (count, 1))
     for first in (0, 4):
@@ -42,7 +42,7 @@ def parallel(random: np.random.Generator, count: int) -> Points:
 
 
 def collapsed(random: np.random.Generator, count: int) -> Points:
-    """Faces and edges without extent, at the start, at the end, or always."""
+    """Degenerate faces and edges, at the start, at the end, or always."""
     points = grid(random, count)
     rows = np.arange(count)
     for first in (0, 4):
@@ -53,14 +53,14 @@ def collapsed(random: np.random.Generator, count: int) -> Points:
 
 
 def moved_together(random: np.random.Generator, count: int) -> Points:
-    """Nearly the same motion for all four."""
+    """Nearly the same motion for all four vertices."""
     points = grid(random, count)
     points[:, 4:] = points[:, :4] + random.integers(-9, 10, (count, 1, 3)) + random.integers(-1, 2, (count, 4, 3))
     return points
 
 
 def grazing(random: np.random.Generator, count: int) -> Points:
-    """At half time a vertex is on a side or edge of the other primitive, or all but misses it."""
+    """At half time, a vertex lies on a side or edge of the other primitive, or barely misses it."""
     points = 2 * grid(random, count)
     side = points[:, [2, 3]] + points[:, [6, 7]]
     share = random.integers(0, 5, (count, 1)) / 4
@@ -71,7 +71,7 @@ def grazing(random: np.random.Generator, count: int) -> Points:
 
 
 def sliver(random: np.random.Generator, count: int) -> Points:
-    """The last vertex all but on the line of the two before it."""
+    """The last vertex lies almost on the line through the previous two."""
     points = random.normal(size=(count, 8, 3))
     for first in (0, 4):
         share = random.random((count, 1))
@@ -98,5 +98,5 @@ SORTS: dict[str, Callable[[np.random.Generator, int], Points]] = {
 
 
 def make(sort: str, count: int, seed: int) -> Points:
-    """Make some of one sort."""
+    """`count` queries of one kind."""
     return SORTS[sort](np.random.default_rng(seed), count)

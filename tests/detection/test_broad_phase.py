@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every broad phase finds what brute force finds with either narrow phase, on every family of the scene library."""
+"""Each broad phase finds the events of brute force, with either narrow phase, on each family of the scene library."""
 
 from collections.abc import Callable
 

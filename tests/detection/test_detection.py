@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Events of whole surfaces: the broad phases agree, and agree with single pairs."""
+"""Events of whole surfaces: the broad phases agree with each other and with single pairs."""
 
 import threading
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from tests.oracles.first_contact import WIDTH, first_contact
 
 
 def soup(seed: int, triangles: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Random small triangles, some of which share vertices, and random motion of half of the vertices."""
+    """Small random triangles, some with shared vertices, and random motion of half of the vertices."""
     random = np.random.default_rng(seed)
     centres = random.random((triangles, 1, 3))
     start = (centres + size * (random.random((triangles, 3, 3)) - 0.5)).reshape(-1, 3)
@@ -50,7 +50,7 @@ def all_pairs(corners: np.ndarray) -> list[tuple[int, tuple[int, ...]]]:
     return [(kind, v) for kind, v in pairs if len(set(v)) == 4]
 
 
-def test_events_are_the_pairs_that_meet() -> None:
+def test_events_are_the_pairs_that_collide() -> None:
     corners, start, end = soup(3, 16, 1.2)
     events = stiv.find_interference(corners, start, end, separation=0)
     found = {
@@ -65,8 +65,8 @@ def test_events_are_the_pairs_that_meet() -> None:
     assert len(found) > 20 and {kind for kind, _ in found} == {0, 1}
 
 
-def test_grazing_pairs_are_reported_only_if_they_meet() -> None:
-    # Edges of one smooth body that is cut twice all but touch: 180 of these events were near misses.
+def test_grazing_pairs_are_reported_only_if_they_collide() -> None:
+    # Edges of a smooth body with two triangulations almost touch: 180 of these events were near misses.
     step = pressed_inside(16, 5)
     events = stiv.find_interference(step.triangles, step.start, step.end, separation=0)
     assert len(events) > 500
@@ -93,7 +93,7 @@ def test_events_describe_the_contact() -> None:
 
 
 def misaligned(array: np.ndarray) -> np.ndarray:
-    """The same numbers at addresses that are no multiple of their size."""
+    """The same numbers at unaligned addresses."""
     found = np.frombuffer(bytes(4) + array.tobytes(), np.float64, offset=4).reshape(array.shape)
     assert not found.flags.aligned
     return found
@@ -114,9 +114,9 @@ LAYOUTS = {
 
 @pytest.mark.parametrize("laid_out", LAYOUTS.values(), ids=LAYOUTS.keys())
 @pytest.mark.parametrize("threads", [1, 2])
-def test_arrays_may_lie_in_any_way_and_are_left_as_they_are(laid_out: Callable, threads: int) -> None:
+def test_arrays_may_have_any_layout_and_are_not_changed(laid_out: Callable, threads: int) -> None:
     corners, *both = soup(7, 60, 0.4)
-    start, end = (array.astype(np.float32).astype(float) for array in both)  # what every layout can hold
+    start, end = (array.astype(np.float32).astype(float) for array in both)  # values that every layout can represent
     expected = stiv.find_interference(corners, start, end, 0.01, "brute_force")
     given = [laid_out(start), laid_out(end)]
     before = [np.array(array).tobytes() for array in given]
@@ -124,13 +124,13 @@ def test_arrays_may_lie_in_any_way_and_are_left_as_they_are(laid_out: Callable, 
         if isinstance(array, np.ndarray):
             array.flags.writeable = False
     detector = stiv.Detector(corners, threads=threads)
-    for _ in range(2):  # the second one finds all as it was
+    for _ in range(2):  # the second search finds everything unchanged
         assert_same(detector.find(*given, 0.01), expected)
         assert detector.earliest_time(*given, 0.01) == expected.time.min()
     assert [np.array(array).tobytes() for array in given] == before
 
 
-def test_a_detector_sees_what_was_written_into_an_array_since_its_last_call() -> None:
+def test_a_detector_sees_changes_of_an_array_since_its_last_call() -> None:
     corners, start, end = soup(8, 60, 0.4)
     detector = stiv.Detector(corners)
     given = end.copy()
@@ -200,7 +200,7 @@ def test_a_detector_is_used_by_one_thread_at_a_time() -> None:
 
 @pytest.mark.parametrize("broad_phase", ["bvh", "hash_grid", "brute_force"])
 @pytest.mark.parametrize("asked", ["find", "earliest_time"])
-def test_what_is_not_finite_in_a_later_step_is_named_and_changes_nothing(broad_phase: str, asked: str) -> None:
+def test_non_finite_values_in_a_later_step_are_named_and_change_nothing(broad_phase: str, asked: str) -> None:
     triangles, start, end = soup(0, 60, 0.4)
     detector = stiv.Detector(triangles, broad_phase=broad_phase)
     before = detector.find(start, end)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Published collision queries with exact answers: a sample, and all that lie beside the repository."""
+"""Published collision queries with exact answers: a sample, and all queries next to the repository."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -30,7 +30,7 @@ def test_the_sample_holds_all_contacts_and_some_misses() -> None:
 
 
 @pytest.mark.parametrize("folder", [SAMPLE, pytest.param(BESIDE, marks=NOT_BESIDE)], ids=lambda path: path.name)
-def test_few_pairs_that_only_come_near_are_reported(folder: Path) -> None:
+def test_few_near_misses_are_reported(folder: Path) -> None:
     count = false = 0
     for path in sorted(folder.glob("*/*/*.csv")):
         queries, answers = read(path)

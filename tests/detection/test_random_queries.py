@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Twenty thousand random and adversarial queries against rational arithmetic, and what must not change the hits."""
+"""Twenty thousand random and adversarial queries against rational arithmetic, and under transformations."""
 
 from fractions import Fraction
 
@@ -49,7 +49,7 @@ def test_no_contact_is_missed_none_is_late_and_none_is_made_up(sort: str, kind: 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("sort", SORTS)
-def test_order_of_vertices_and_axes_and_direction_of_time_change_no_hit(sort: str, kind: str) -> None:
+def test_order_of_vertices_and_axes_and_direction_of_time_change_no_result(sort: str, kind: str) -> None:
     points = make(sort, 4 * COUNT, seed(sort) + 100)
     hits = np.isfinite(impacts(kind, points))
     assert COUNT // 50 < np.sum(hits) < 4 * COUNT
@@ -62,12 +62,13 @@ def test_order_of_vertices_and_axes_and_direction_of_time_change_no_hit(sort: st
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("sort", SORTS)
-def test_scale_changes_no_hit(sort: str, kind: str) -> None:
+def test_scale_changes_no_result(sort: str, kind: str) -> None:
     points = make(sort, 4 * COUNT, seed(sort) + 200)
     times = impacts(kind, points)
     for exponent in (-24, 24):
         assert np.array_equal(impacts(kind, np.ldexp(points, exponent)), times)
-    # Other factors round coordinates, which parts or joins what only just touches, except where they are whole numbers.
+    # Other factors round coordinates, which separates or joins pairs that barely touch, except for whole
+    # numbers.
     if sort in ("general", "sliver"):
         for scale in (1e-7, 1e7):
             assert np.array_equal(np.isfinite(impacts(kind, points * scale)), np.isfinite(times))

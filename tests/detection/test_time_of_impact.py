@@ -12,7 +12,7 @@ import stiv
 from tests.oracles.first_contact import WIDTH, first_contact, squared_distance
 
 GRID = st.integers(-3, 3)
-EARLY = 5e-3  # grids are full of contacts that touch without crossing, for which the advance is slow
+EARLY = 5e-3  # grids are full of contacts that touch without crossing; the advance is slow for these
 KIND = st.sampled_from(["vf", "ee"])
 
 
@@ -32,7 +32,7 @@ def truth(kind: str, eight: list[list[int]]) -> Fraction | None:
 
 
 def check(kind: str, eight: list[list[int]], found: float) -> None:
-    """Grid points either meet or stay apart by far more than rounding: the answer itself must be right."""
+    """Points of a grid either touch or stay apart by far more than rounding, so the result must be exact."""
     expected = truth(kind, eight)
     assert np.isfinite(found) == (expected is not None)
     if expected is not None:
@@ -60,7 +60,7 @@ def test_scales(kind: str, eight: list[list[int]], scale: float) -> None:
 
 @settings(max_examples=120, deadline=None, derandomize=True)
 @given(KIND, points(GRID), points(GRID))
-def test_common_motion_does_not_count(kind: str, eight: list[list[int]], shift: list[list[int]]) -> None:
+def test_common_motion_does_not_matter(kind: str, eight: list[list[int]], shift: list[list[int]]) -> None:
     moved = eight[:4] + [[c + s for c, s in zip(point, shift[0], strict=True)] for point in eight[4:]]
     assert impact(kind, moved) == pytest.approx(impact(kind, eight), abs=1e-12)
     still = eight[:4] + [[c + s for c, s in zip(point, shift[0], strict=True)] for point in eight[:4]]
@@ -81,7 +81,7 @@ def test_corners_may_be_permuted(eight: list[list[int]], order: list[int]) -> No
 
 @settings(max_examples=80, deadline=None, derandomize=True)
 @given(KIND, points(GRID), st.sampled_from([0.0625, 0.5, 1.0]))
-def test_separation_is_kept_up_to_the_time(kind: str, eight: list[list[int]], separation: float) -> None:
+def test_separation_holds_until_the_time_of_impact(kind: str, eight: list[list[int]], separation: float) -> None:
     x = np.array(eight, float)
     found = float(stiv.time_of_impact(kind, x[None, :4], x[None, 4:], separation, threads=1)[0])
     distances = [(t, distance(kind, eight, t)) for t in np.linspace(0, 1, 65)]

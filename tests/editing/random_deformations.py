@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random sessions: any deformation, goals, weights, separations, and who responds."""
+"""Random sessions with any deformation, goals, weights, separations and responders."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Chance = np.random.Generator
 
 @dataclass(frozen=True)
 class Case:
-    """A session and the goals that it is given."""
+    """A session and its goals."""
 
     name: str
     edit: Edit  #: its surface, deformation and start
@@ -29,7 +29,7 @@ class Case:
 
 
 def side_by_side() -> Edit:
-    """A rigid box, a subdivided cage, a sheet under handles and free vertices, over a fixed wall."""
+    """A rigid box, a subdivided cage, a sheet with handles and free vertices, above a fixed wall."""
     rigid = triangulated(box(1, (0.5, 0.4, 0.3))).turned((0.3, 0.2, 0.1)).moved((-0.8, -0.7, 0.6))
     cage = box(1, (0.6, 0.6, 0.6))
     fine = stiv.catmull_clark(stiv.Cage.of_faces(cage.faces), 2)
@@ -86,7 +86,7 @@ BUILDERS: list[Callable[[], Edit]] = [
 def _goal(
     chance: Chance, controls: Array, selected: NDArray[np.bool_], turning: NDArray[np.bool_], size: float
 ) -> Array:
-    """Selected points moved, turned or scaled about their middle, sometimes with noise."""
+    """Selected points moved, rotated or scaled about their centre, sometimes with noise."""
     goal = controls.copy()
     points = selected & ~turning
     if points.any():
@@ -98,7 +98,7 @@ def _goal(
         if kind == "rotate":
             arms = _rotated(chance.normal(scale=0.4, size=3), arms)
         push = chance.normal(size=3)
-        push[2] -= 1.0  # what lies below is there to be met
+        push[2] -= 1.0  # downward, so that contacts occur
         goal[points] = middle + arms + chance.uniform(0, 0.5) * size * push / np.linalg.norm(push)
         if chance.random() < 0.3:
             goal[points] += chance.normal(scale=0.02 * size, size=(int(points.sum()), 3))
@@ -116,7 +116,7 @@ def _rotated(turn: Array, vectors: Array) -> Array:
 
 
 def _weights(chance: Chance, selected: NDArray[np.bool_]) -> Array | None:
-    """Who responds: all, the selected, the unselected, or some more than others."""
+    """Weights of the response: all, selected, unselected, or uneven."""
     who = chance.choice(["all", "all", "selected", "unselected", "weighted", "by axis"])
     if who == "all":
         return None
@@ -128,12 +128,12 @@ def _weights(chance: Chance, selected: NDArray[np.bool_]) -> Array | None:
 
 
 def as_stored(edit: Edit) -> Edit:
-    """The same with controls that single precision holds, as a scene's are."""
+    """The same with controls in single precision, like those of a scene."""
     return replace(edit, controls=edit.controls.astype(np.float32).astype(float))
 
 
 def random_cases(count: int, seed: int) -> Iterator[Case]:
-    """Sessions of four goals each, `count` goals in all; of all deformations in turn."""
+    """Sessions with four goals each, `count` goals in total, cycling through all deformations."""
     chance = np.random.default_rng(seed)
     scenes = [as_stored(build()) for build in BUILDERS]
     for number in range(0, count, 4):
@@ -144,7 +144,7 @@ def random_cases(count: int, seed: int) -> Iterator[Case]:
         if edit.surface.bodies[0].mobility == "rigid":
             turning[1] = True
         selected = chance.random(len(edit.controls)) < chance.choice([0.2, 0.6, 1.0])
-        if edit.name == "side by side" and chance.random() < 0.7:  # one part of it, as a user would
+        if edit.name == "side by side" and chance.random() < 0.7:  # one component, as a user would
             borders = np.cumsum([0, 2, 8, 4, 42])
             part = chance.integers(4)
             selected = (np.arange(len(selected)) >= borders[part]) & (np.arange(len(selected)) < borders[part + 1])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball among plates as a state machine: drags, undo, new obstacles, other separations, other ways to move it.
+"""A ball among plates as a state machine: drags, undo, new obstacles, other separations and deformations.
 
-After every step the exact test finds nothing, and what was gone through on the way is free by a test of its own.
+After every step, the exact test finds no intersection, and an independent test shows that the path is clear.
 """
 
 import itertools
@@ -27,7 +27,7 @@ MODES = st.sampled_from(["vertices", "rigid", "scaling"])
 class RandomSession(RuleBasedStateMachine):
     """The scene is `vertices` (ball first) and `plates`; the session edits it, `history` holds accepted controls."""
 
-    done = 0  # steps of all machines
+    done = 0  # steps of all sessions
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,11 +46,11 @@ class RandomSession(RuleBasedStateMachine):
 
     @rule(shift=SHIFTS, first=st.integers(0, 40))
     @precondition(lambda self: self.mode == "vertices")
-    def drag_a_part(self, shift: tuple, first: int) -> None:
+    def drag_some_vertices(self, shift: tuple, first: int) -> None:
         self.solve(lambda goal: self.session.drag(goal), shift, slice(first, first + 12))
 
     @rule(shift=SHIFTS)
-    def edit_at_once(self, shift: tuple) -> None:
+    def edit_in_one_call(self, shift: tuple) -> None:
         self.solve(lambda goal: self.session.edit(goal), shift, slice(None))
 
     @rule()
@@ -67,7 +67,7 @@ class RandomSession(RuleBasedStateMachine):
     @rule(place=PLACES, turn=TURNS)
     @precondition(lambda self: len(self.plates) < MOST_PLATES)
     def add_a_plate(self, place: tuple, turn: tuple) -> None:
-        """Refused, with nothing changed, where it would intersect."""
+        """Rejected without any change if the plate would intersect."""
         plate = PLATE.turned(turn).moved(place).vertices
         before = list(self.plates)
         self.plates.append(plate)
@@ -84,7 +84,7 @@ class RandomSession(RuleBasedStateMachine):
         self.start()
 
     @rule(mode=MODES)
-    def move_otherwise(self, mode: str) -> None:
+    def change_deformation(self, mode: str) -> None:
         self.mode = mode
         self.start()
 
@@ -94,7 +94,7 @@ class RandomSession(RuleBasedStateMachine):
         assert len(stiv.find_intersections(self.positions(), self.surface())) == 0
 
     def start(self) -> None:
-        """A session from where the ball is now."""
+        """A session from the current position of the ball."""
         ball = np.arange(len(BALL.vertices), dtype=np.int32)
         deformation, controls = self.deformation()
         whole = stiv.concatenate([(deformation, ball)], self.positions())
@@ -130,7 +130,7 @@ class RandomSession(RuleBasedStateMachine):
         goal = self.session.controls.copy()
         if self.mode == "vertices":
             goal[rows] += shift
-        else:  # the centre, and a little turning or scaling
+        else:  # the centre, and a small rotation or scaling
             goal[0] += shift
             goal[1] *= 1 + 0.1 * shift[0]
         self.take(call(goal))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an edit settles for when the constraints that it kept lead far away."""
+"""Edits whose accumulated constraints lead far from the goal."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from blend_fixtures.scenes.sessions.lattice_stage import lattice_stage
 from blend_fixtures.scenes.sessions.tree_in_corner import tree_in_corner
 
 
-def test_nothing_is_thrown_farther_from_the_goal_than_it_started() -> None:
-    """Thousands of loose leaves grow in a corner: of 79 edits two ended at up to 3.5 times the energy of the start.
+def test_no_edit_ends_further_from_the_goal_than_it_started() -> None:
+    """Thousands of loose leaves grow in a corner. Two of 79 edits used to end at up to 3.5 times the initial
+    energy.
 
-    Constraints linearised at one candidate after the other can be met together only far away; none of these edits needs
-    to go there, since nothing pinned pushes.
+    Constraints linearised at successive candidates may only be satisfied together far away. None of these edits needs
+        to go there, because no pinned object pushes.
     """
     stage = lattice_stage(tree_in_corner())
     session = stiv.EditSession(stage.surface, stage.deformation, stage.controls)

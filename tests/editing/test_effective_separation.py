@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The distance that surfaces keep, for the scene and for pairs of bodies, measured by brute force after every edit."""
+"""The minimum distance of the scene and of pairs of bodies, measured by brute force after every edit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIZES = {("box", "sheet"): 0.05, ("ball", "sheet"): 0.11, ("ball", "box"): 0.02}
 
 
 def scene(seed: int) -> tuple[stiv.Surface, np.ndarray]:
-    """A box and a ball, turned at random, side by side above a sheet: faces, edges and corners come to meet."""
+    """A randomly rotated box and ball side by side above a sheet, with contacts of faces, edges and corners."""
     chance = np.random.default_rng(seed)
     shapes = [
         triangulated(box(1, (0.9, 0.8, 0.7))).turned(chance.normal(size=3)).moved((-0.75, 0.1, 0.9)),
@@ -39,8 +39,8 @@ def separations(surface: stiv.Surface, of_scene: float, pairs: dict[tuple[str, s
     return table
 
 
-def check_kept(surface: stiv.Surface, table: np.ndarray, begin: np.ndarray, end: np.ndarray) -> None:
-    """Pairs that began the session at their h or farther are so; others have the kept fraction of their distance."""
+def check_distances(surface: stiv.Surface, table: np.ndarray, begin: np.ndarray, end: np.ndarray) -> None:
+    """Pairs that started at least h apart stay so; others preserve the required fraction of their distance."""
     body, reach = surface.vertex_body, float(table.max())
     begun, ended = near_pairs(surface, begin, 1.01 * reach), near_pairs(surface, end, reach)
     for pair, distance in ended.items():
@@ -55,7 +55,7 @@ def check_kept(surface: stiv.Surface, table: np.ndarray, begin: np.ndarray, end:
 
 @pytest.mark.parametrize("pairs", [{}, SIZES], ids=["scene", "pairs"])
 @pytest.mark.parametrize("seed", range(6))
-def test_pairs_that_begin_apart_keep_their_separation(seed: int, pairs: dict[tuple[str, str], float]) -> None:
+def test_pairs_that_start_apart_respect_their_separation(seed: int, pairs: dict[tuple[str, str], float]) -> None:
     surface, start = scene(seed)
     options = stiv.EditOptions(separation=0.03, pair_separations=pairs)
     session = stiv.EditSession(surface, stiv.identity(len(start)), start, options)
@@ -67,12 +67,12 @@ def test_pairs_that_begin_apart_keep_their_separation(seed: int, pairs: dict[tup
         goal = session.controls + np.where(surface.vertex_body[:, None] == body, push, 0.0)
         result = session.edit(goal)
         touched += len(result.events)
-        check_kept(surface, table, start, result.surface)
+        check_distances(surface, table, start, result.surface)
     assert touched > 0
     assert session.least_distance().distance >= table.min() * (1 - 1e-6)
 
 
-def test_a_larger_separation_of_a_pair_holds_for_that_pair_alone() -> None:
+def test_a_larger_separation_of_a_pair_applies_only_to_that_pair() -> None:
     surface, start = scene(1)
     goal = start - np.where(surface.vertex_body[:, None] < 2, (0, 0, 1.0), 0.0)
     weights = np.where(surface.vertex_body < 2, 1.0, 0.0)
@@ -83,7 +83,7 @@ def test_a_larger_separation_of_a_pair_holds_for_that_pair_alone() -> None:
     assert 0.2 * (1 - 1e-6) <= heights[1] <= 0.45
 
 
-def test_pairs_nearer_than_the_separation_at_the_start_do_not_jump() -> None:
+def test_pairs_closer_than_the_separation_at_the_start_do_not_jump() -> None:
     surface, start = scene(2)
     low = start.copy()
     low[surface.vertex_body == 0, 2] -= start[surface.vertex_body == 0, 2].min() - 0.01
@@ -94,15 +94,15 @@ def test_pairs_nearer_than_the_separation_at_the_start_do_not_jump() -> None:
     assert session.controls[surface.vertex_body == 0] == pytest.approx(low[surface.vertex_body == 0], abs=1e-7)
     before = session.surface
     result = session.edit(session.controls - np.where(surface.vertex_body[:, None] == 0, (0, 0, 0.2), 0.0))
-    check_kept(surface, np.full((3, 3), 0.05), low, result.surface)
+    check_distances(surface, np.full((3, 3), 0.05), low, result.surface)
     moved = (result.surface - before)[surface.vertex_body == 0]
     assert np.linalg.norm(moved, axis=1).max() < 0.3
 
 
 @pytest.mark.parametrize("how", ["edit", "drag"])
 @pytest.mark.parametrize("seed", range(3))
-def test_pairs_that_begin_nearer_do_not_creep_together_and_come_back(seed: int, how: str) -> None:
-    """The box is pressed against the sheet, which it begins nearer to than the separation, in many edits."""
+def test_pairs_that_start_closer_do_not_creep_together_and_can_return(seed: int, how: str) -> None:
+    """Many edits press the box against the sheet, which it starts closer to than the separation."""
     surface, start = scene(seed)
     low = start.copy()
     low[surface.vertex_body == 0, 2] -= start[surface.vertex_body == 0, 2].min() - 0.02
@@ -114,14 +114,14 @@ def test_pairs_that_begin_nearer_do_not_creep_together_and_come_back(seed: int, 
         push = np.append(chance.normal(scale=0.05, size=2), -0.1)
         goal = goal + np.where(surface.vertex_body[:, None] == 0, push, 0.0)
         result = getattr(session, how)(goal)
-        check_kept(surface, table, low, result.surface)
+        check_distances(surface, table, low, result.surface)
     session.edit(low)
     session.settle()
-    assert np.abs(session.surface - low).max() < 0.01  # no pair is kept farther off than it was
+    assert np.abs(session.surface - low).max() < 0.01  # no pair is pushed further apart than it was
 
 
 @pytest.mark.parametrize("gap", [0.01, 0.04])
-def test_an_edit_elsewhere_moves_nothing_that_is_near(gap: float) -> None:
+def test_an_edit_elsewhere_does_not_move_close_pairs(gap: float) -> None:
     surface, start = scene(1)
     start[surface.vertex_body == 0, 2] -= start[surface.vertex_body == 0, 2].min() - gap
     start = start.astype(np.float32).astype(float)
@@ -132,7 +132,7 @@ def test_an_edit_elsewhere_moves_nothing_that_is_near(gap: float) -> None:
     assert np.abs(result.surface - start)[still].max() < 1e-6
 
 
-def test_separations_that_cannot_be_kept_and_bodies_that_there_are_not_are_refused() -> None:
+def test_impossible_separations_and_unknown_bodies_are_refused() -> None:
     surface, start = scene(0)
     for pairs, message in [
         ({("box", "lid"): 0.1}, "0 bodies"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starts that intersect, with the offending pairs excluded: they get no more, and nothing else ever meets."""
+"""Intersecting starts with excluded pairs: their number never grows, and no other pair intersects."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from blend_fixtures.scenes.shape import joined
 
 
 def spikes_through_sheet(seed: int) -> tuple[stiv.Surface, np.ndarray]:
-    """A sheet, a ball that stands in it, and a second ball above: all deformable, every vertex a control."""
+    """A sheet, a ball that intersects it, and a second ball above: all deformable, every vertex a control."""
     turn = np.random.default_rng(seed).normal(size=3)
     shapes = [
         triangulated(grid(9, 9, 4, 4)),
@@ -31,7 +31,7 @@ def pairs_of(surface: stiv.Surface, q: np.ndarray) -> set[tuple[int, int]]:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_no_pair_outside_the_excluded_ones_ever_meets_and_they_get_no_more(seed: int) -> None:
+def test_only_excluded_pairs_intersect_and_their_number_never_grows(seed: int) -> None:
     surface, start = spikes_through_sheet(seed)
     excluded = pairs_of(surface, start)
     assert len(excluded) > 10
@@ -52,7 +52,7 @@ def test_no_pair_outside_the_excluded_ones_ever_meets_and_they_get_no_more(seed:
     assert moved > 0
 
 
-def test_what_does_not_intersect_moves_freely_and_stays_guarded() -> None:
+def test_other_bodies_move_freely_and_stay_guarded() -> None:
     surface, start = spikes_through_sheet(1)
     session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
     free = surface.vertex_body == 2
@@ -65,15 +65,15 @@ def test_what_does_not_intersect_moves_freely_and_stays_guarded() -> None:
     assert not any(2 in (owners[a], owners[b]) for a, b in pairs_of(surface, result.surface))
 
 
-def test_all_of_it_may_move_together() -> None:
+def test_all_bodies_may_move_together() -> None:
     surface, start = spikes_through_sheet(2)
     session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
     assert session.edit(start + [0.5, -0.25, 2.0]).status == "reached"
 
 
-def test_a_tip_that_pierces_a_sheet_goes_back_and_does_not_come_again() -> None:
-    """All triangles around the tip intersect the sheet, so the tip is free to leave; once out, its pairs are excluded
-    still, but their number has fallen to none and may not grow again."""
+def test_a_tip_that_pierces_a_sheet_can_leave_but_not_return() -> None:
+    """All triangles around the tip intersect the sheet, so the tip may leave. Afterwards its pairs are still
+    excluded, but their number has fallen to zero and may not grow again."""
     sheet = np.array([[-1, -1, 0], [1, -1, 0], [0, 1.5, 0]], float)
     spike = np.array([[0, 0, -0.2], [0.1, 0, 1], [-0.1, 0.1, 1], [-0.1, -0.1, 1]], float)
     triangles = [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 4]]
@@ -91,7 +91,7 @@ def test_a_tip_that_pierces_a_sheet_goes_back_and_does_not_come_again() -> None:
     assert len(stiv.find_intersections(back.surface, surface)) == 0
 
 
-def test_a_start_with_other_intersections_is_refused_and_so_are_pairs_that_there_are_not() -> None:
+def test_other_intersections_at_the_start_and_unknown_pairs_are_refused() -> None:
     surface, start = spikes_through_sheet(0)
     some = stiv.find_intersections(start, surface)[1:]
     with pytest.raises(stiv.StartIntersectsError):

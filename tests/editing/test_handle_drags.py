@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags of a ball as rigid as possible into a sheet: no drag takes many times the median."""
+"""Drags of an as-rigid-as-possible ball into a sheet: no drag takes many times the median."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import stiv
 from benchmarks.handle_drags import ball_above_sheet, random_offsets
 
 
-def test_random_drags_are_free_and_take_no_more_rounds_than_ten_times_their_median() -> None:
+def test_random_drags_are_clear_and_take_at_most_ten_times_their_median_rounds() -> None:
     session, surface, start = ball_above_sheet()
     results = [session.drag(start + offset) for offset in random_offsets(20)]
     assert all(len(stiv.find_intersections(result.surface, surface)) == 0 for result in results)

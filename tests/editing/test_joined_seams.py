@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seams for programmers of the core: surfaces with coincident vertices joined, every face keeping its number."""
+"""Seams in the core: surfaces with joined coincident vertices, on which every face keeps its index."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def unwelded(count):
     return q[triangles].reshape(-1, 3), np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)
 
 
-def test_joined_seams_are_free_and_an_edit_keeps_them_closed():
+def test_joined_seams_are_clear_and_an_edit_keeps_them_closed():
     q, triangles = unwelded(6)
     wall = np.array([(-9, -9, 0.5), (9, -9, 0.5), (0, 9, 0.5)])
     positions = np.concatenate([q, wall])
@@ -44,7 +44,7 @@ def test_joined_seams_are_free_and_an_edit_keeps_them_closed():
     assert rational.find_intersections(result.surface, joined.surface.triangles) == set()
 
 
-def test_bodies_are_not_joined_to_each_other_and_doubled_faces_stay():
+def test_bodies_are_not_joined_to_each_other_and_duplicate_faces_remain():
     q = np.tile([(0, 0, 0), (1, 0, 0), (0, 1, 0)], (2, 1)).astype(float)
     triangles = np.arange(6).reshape(2, 3)
     same = stiv.join_seams(triangles, q)
@@ -55,7 +55,7 @@ def test_bodies_are_not_joined_to_each_other_and_doubled_faces_stay():
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
-def test_copies_that_differ_by_rounding_are_found_on_open_edges_alone(scale):
+def test_copies_that_differ_by_rounding_are_found_only_on_open_edges(scale):
     q, triangles = unwelded(8)
     random = np.random.default_rng(1)
     rounded = ((q + random.uniform(-1, 1, q.shape) * 2.0**-22) * scale).astype(np.float32)
@@ -70,12 +70,12 @@ def test_copies_that_differ_by_rounding_are_found_on_open_edges_alone(scale):
     assert find_seams(tiny, closed[:4], 2.0**-19).leaders.tolist() == [0, 1, 0, 0, 4, 5, 6]  # 1 is in a closed fan
 
 
-def test_an_open_mesh_far_from_its_origin_keeps_its_vertices():
+def test_vertices_of_an_open_mesh_far_from_its_origin_are_not_joined():
     q, triangles = grid(100)
     assert find_seams((50 * q + 1e6).astype(np.float32), triangles, 2.0**-19) is None
 
 
-def test_pairs_along_seams_are_those_that_share_a_place_and_no_vertex_there():
+def test_pairs_along_seams_share_a_position_but_no_vertex_there():
     q, triangles = unwelded(3)
     seams = find_seams(q, triangles)
     faces = np.arange(len(triangles), dtype=np.int32)
@@ -87,7 +87,7 @@ def test_pairs_along_seams_are_those_that_share_a_place_and_no_vertex_there():
     assert len(seam_pairs(None, triangles, faces)) == 0
 
 
-def test_seams_that_two_poses_have():
+def test_seams_of_two_poses():
     one = Seams.of(np.array([0, 1, 1, 0, 4, 4], np.int32))
     other = Seams.of(np.array([0, 1, 1, 3, 1, 1], np.int32))
     assert common_seams(one, other).leaders.tolist() == [0, 1, 1, 3, 4, 4]
@@ -100,22 +100,22 @@ FLAT = [(0, 0, 0), (4, 0, 0), (0, 4, 0)]
 @pytest.mark.parametrize(
     ("other", "expected"),
     [
-        ([(1, 0, 0), (3, 0, 0), (2, -1, 0)], True),  # a part of an edge, beside it
-        ([(1, 0, 0), (3, 0, 0), (2, 0, 1)], True),  # the same, upright
+        ([(1, 0, 0), (3, 0, 0), (2, -1, 0)], True),  # along a part of an edge
+        ([(1, 0, 0), (3, 0, 0), (2, 0, 1)], True),  # the same, perpendicular
         ([(-1, 0, 0), (3, 0, 0), (2, -1, 0)], True),  # edges that overlap in part
         ([(2, 2, 0), (5, 2, 1), (5, 3, 0)], True),  # a corner on an edge
         ([(1, 0, 0), (2, 0, 0), (3, 0, 0)], True),  # without area, on an edge
         ([(1, 0, 0), (3, 0, 0), (2, 1, 0)], False),  # overlap
         ([(1, 1, 0), (5, 1, 1), (5, 3, 1)], False),  # a corner inside
-        ([(1, -1, -1), (1, 1, 1), (1, -3, 1)], False),  # edges cross in a point inside of both
+        ([(1, -1, -1), (1, 1, 1), (1, -3, 1)], False),  # edges cross at an inner point of both
         ([(1, -1, 0), (1, 1, 0), (1, 2, 0)], False),  # without area, across an edge
         ([(1, 0, 0), (1, 1, 0), (1, 2, 0)], False),  # without area, from an edge inward
-        ([(0, 0, 0), (4, 0, 0), (0, 4, 0)], False),  # doubled
-        ([(0.5, 0.5, -1), (0.5, 0.5, 1), (9, 9, 0)], False),  # through
+        ([(0, 0, 0), (4, 0, 0), (0, 4, 0)], False),  # duplicate
+        ([(0.5, 0.5, -1), (0.5, 0.5, 1), (9, 9, 0)], False),  # crossing
     ],
 )
 @pytest.mark.parametrize("scale", [2.0**-24, 1.0, 2.0**24])
-def test_contacts_in_edges_alone_are_told_from_intersections(other, expected, scale):
+def test_contacts_along_edges_differ_from_intersections(other, expected, scale):
     q = np.array([*FLAT, *other], float) * scale
     triangles = np.arange(6).reshape(2, 3)
     assert stiv.find_intersections(q, triangles).tolist() == [[0, 1]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The method as published, as a preset: worse than the defaults, and accepted by the same test."""
+"""The preset of the published method: worse than the defaults, and accepted by the same test."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def answer(edit: Edit, options: stiv.EditOptions) -> stiv.EditResult:
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.__name__)
 @pytest.mark.parametrize("variant", VARIANTS, ids=str)
 @pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.name)
-def test_the_presets_are_accepted_by_the_exact_test_and_farther_from_the_goal(
+def test_the_presets_pass_the_exact_test_and_end_further_from_the_goal(
     edit: Edit, variant: dict[str, object], preset: Callable[..., stiv.EditOptions]
 ) -> None:
     published = answer(edit, preset(**{**edit.options, **variant}))
@@ -34,7 +34,7 @@ def test_the_presets_are_accepted_by_the_exact_test_and_farther_from_the_goal(
 
 
 @pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit.name)
-def test_the_whole_gradient_comes_nearer_than_a_stop_at_the_first_contact_and_than_the_frozen_one(edit: Edit) -> None:
+def test_the_full_gradient_ends_closer_than_a_stop_and_than_the_frozen_gradient(edit: Edit) -> None:
     start, goal = (edit.deformation.surface(p) for p in (edit.controls, edit.goal))
     time = stiv.Detector(edit.surface).earliest_time(start, goal)
     stopped = edit.deformation.surface(edit.controls + time * (edit.goal - edit.controls))
@@ -44,10 +44,11 @@ def test_the_whole_gradient_comes_nearer_than_a_stop_at_the_first_contact_and_th
 
 
 def test_one_vertex_against_a_wall_takes_the_step_of_algorithm_1() -> None:
-    """By hand: the contact is at T = 1/2, reported at t = T - 1/100, and V = A (1 - t) (-D) with D = 2.
+    """Computed by hand: the contact is at T = 1/2, reported at t = T - 1/100, and V = A (1 - t) (-D) with D =
+    2.
 
-    The whole gradient is A (1 - t + T) = 1.01 A: the step lifts the vertex by 0.51 / 1.01 D, just off the wall. The
-    frozen one is A (1 - t): it lifts the vertex by D, back to its start.
+    The full gradient is A (1 - t + T) = 1.01 A: the step lifts the vertex by 0.51 / 1.01 D, just off the wall. The
+        frozen gradient is A (1 - t): it lifts the vertex by D, back to its start.
     """
     vertices = np.array([[0.2, 0.2, 1.0], [0, 0, 0], [1, 0, 0], [0, 1, 0]])
     surface = stiv.Surface(

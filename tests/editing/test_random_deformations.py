@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What holds for every edit, of any deformation, mode, weights and separation.
+"""Properties of all edits, for any deformation, mode, weights and separation.
 
-A part of it here; 2,000 edits with STIV_LONG=1.
+A sample runs by default; STIV_LONG=1 runs 2,000 edits.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ import stiv
 from tests.editing.random_deformations import BUILDERS, Case, random_cases
 
 COUNT = 2000 if "STIV_LONG" in os.environ else 240
-CHUNK = 48  # edits a test
+CHUNK = 48  # edits per test
 
 
 def answered(session: stiv.EditSession, how: str, goal: np.ndarray) -> stiv.EditResult:
-    """Carry out a goal; a drag in five moves, of which the last counts."""
+    """Solve for a goal; a drag takes five moves, and the last result counts."""
     if how == "settle":
         session.edit(goal)
         return session.settle()
@@ -33,7 +33,7 @@ def answered(session: stiv.EditSession, how: str, goal: np.ndarray) -> stiv.Edit
 
 
 def motion_was_possible(case: Case, session: stiv.EditSession, goal: np.ndarray, separation: float) -> bool:
-    """Is a hundredth of the straight way to the goal free, and more than storing takes from it?"""
+    """Is a hundredth of the straight path to the goal clear, and longer than the rounding of storage?"""
     start = session.controls
     near = (start + 0.01 * (goal - start)).astype(np.float32).astype(float)
     if np.array_equal(near, start):
@@ -68,12 +68,12 @@ CASES = list(random_cases(COUNT, seed=11))
 
 
 @pytest.mark.parametrize("first", range(0, len(CASES), CHUNK // 4))
-def test_no_intersections_pins_stay_and_nothing_possible_is_refused(first: int) -> None:
+def test_no_intersections_pins_hold_and_possible_motions_are_accepted(first: int) -> None:
     for case in CASES[first : first + CHUNK // 4]:
         check(case)
 
 
-def test_all_deformations_take_part() -> None:
+def test_all_deformations_participate() -> None:
     assert {case.edit.name for case in CASES} == {build().name for build in BUILDERS}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edits of the scene families: free of intersections, free on the way, and near the goal."""
+"""Edits of the scene families: clear results, clear paths, and close to the goal."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from benchmarks.energy import truncated_energy
 from blend_fixtures.scenes import families
 from blend_fixtures.scenes.families import Edit
 
-# One edit of each family, and the largest share of a stop's energy at the first contact that it may leave: measured,
-# and a fifth more at most.
+# One edit of each family, and the largest energy that it may leave, relative to a stop at the first contact:
+# the measured value plus at most a fifth.
 CASES = [
     (families.spheres(1.0), 0.031),
     (families.sheets(0.4), 0.155),
@@ -32,13 +32,13 @@ IDS = [edit.name for edit, _ in CASES]
 
 
 def session_of(edit: Edit, **options: object) -> stiv.EditSession:
-    """A session with the edit's own options and others."""
+    """A session with the edit's own options and additional ones."""
     chosen = stiv.EditOptions(**{**edit.options, **options})
     return stiv.EditSession(edit.surface, edit.deformation, edit.controls, chosen)
 
 
 def path_is_free(edit: Edit, start: np.ndarray, result: stiv.EditResult, samples: int = 60) -> bool:
-    """No pair of triangles meets at any of many times of the way: found without any continuous test."""
+    """No pair of triangles intersects at any of many sampled times, found without a continuous test."""
     states = [start, *(edit.deformation.surface(controls) for controls in result.path)]
     assert np.array_equal(states[-1], result.surface)
     return all(
@@ -49,7 +49,7 @@ def path_is_free(edit: Edit, start: np.ndarray, result: stiv.EditResult, samples
 
 
 @pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
-def test_an_edit_is_free_and_near_the_goal(edit: Edit, share: float) -> None:
+def test_an_edit_is_clear_and_close_to_the_goal(edit: Edit, share: float) -> None:
     session = session_of(edit)
     start = session.surface
     result = session.edit(edit.goal)
@@ -73,7 +73,7 @@ def test_one_and_two_threads_give_the_same_bits(edit: Edit, share: float) -> Non
 
 
 @pytest.mark.parametrize(("edit", "share"), CASES, ids=IDS)
-def test_a_common_motion_of_all_changes_nothing(edit: Edit, share: float) -> None:
+def test_a_common_motion_of_all_bodies_changes_nothing(edit: Edit, share: float) -> None:
     everything = stiv.identity(edit.surface.vertex_count)
     start = edit.deformation.surface(edit.controls).astype(np.float32).astype(float)
     bodies = [stiv.Body(body.name) for body in edit.surface.bodies]

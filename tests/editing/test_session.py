@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The session as scripts use it: progress, cancelling, concurrent calls, bad input."""
+"""Sessions in scripts: progress, cancellation, concurrent calls, bad input."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def test_bare_triangles_make_a_surface() -> None:
     goal = points.copy()
     goal[3:, 2] = -1
     result = stiv.edit([[0, 1, 2], [3, 4, 5]], stiv.identity(6), points, goal)
-    assert result.status == "reached"  # on a way around the other, found by the edit's second sub-edit
+    assert result.status == "reached"  # around the other sheet; the second sub-edit finds this path
     assert result.rounds == result.counters["rounds"] > 0
     assert set(result.timings) == {"deformation", "detection", "volumes", "response", "acceptance", "total"}
     assert len(result.events) > 0
     assert result.patches >= 1
 
 
-def test_progress_is_called_and_its_exception_raised_again(session: stiv.EditSession, edit: families.Edit) -> None:
+def test_progress_is_called_and_its_exception_propagates(session: stiv.EditSession, edit: families.Edit) -> None:
     calls: list[tuple[str, float]] = []
 
     def fail_later(phase: str, fraction: float) -> None:
@@ -51,7 +51,7 @@ def test_progress_is_called_and_its_exception_raised_again(session: stiv.EditSes
     assert session.edit(edit.goal).status == "corrected"
 
 
-def test_cancelling_gives_the_state_before(session: stiv.EditSession, edit: families.Edit) -> None:
+def test_cancelling_restores_the_previous_state(session: stiv.EditSession, edit: families.Edit) -> None:
     token = stiv.CancelToken()
     result = session.edit(edit.goal, cancel=token, progress=lambda phase, fraction: token.cancel())
     assert result.status == "cancelled"
@@ -91,7 +91,7 @@ def test_all_pinned_is_blocked_and_names_the_bodies(edit: families.Edit) -> None
     assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
 
 
-def test_restore_takes_back(session: stiv.EditSession, edit: families.Edit) -> None:
+def test_restore_undoes_edits(session: stiv.EditSession, edit: families.Edit) -> None:
     start = session.controls
     session.edit(edit.goal)
     session.restore(start)
@@ -142,7 +142,7 @@ def test_a_goal_that_is_not_finite_names_object_and_control(session: stiv.EditSe
     assert np.array_equal(session.controls, edit.controls)
 
 
-def test_nothing_to_move_comes_back_unchanged(edit: families.Edit) -> None:
+def test_an_edit_without_movable_controls_returns_unchanged(edit: families.Edit) -> None:
     nothing = stiv.concatenate([], edit.controls)
     result = stiv.edit(edit.surface, nothing, np.zeros((0, 3)), np.zeros((0, 3)))
     assert result.status == "unchanged"
@@ -151,7 +151,7 @@ def test_nothing_to_move_comes_back_unchanged(edit: families.Edit) -> None:
     assert empty.status == "unchanged"
 
 
-def test_weights_are_shown_by_their_shape() -> None:
+def test_the_representation_shows_the_shape_of_weights() -> None:
     options = stiv.EditOptions(weights=np.ones((5000, 3)), smoothness=0.01)
     assert repr(options) == "EditOptions(smoothness=0.01, weights=<array of shape (5000, 3)>)"
     assert repr(stiv.EditOptions()) == "EditOptions()"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A typed value and a drag to the same total come to the same place, once both have settled."""
+"""A typed value and a drag with the same total end in the same place after settling."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOVES = 25
 
 
 def settled(session: stiv.EditSession) -> np.ndarray:
-    """Settle until nothing is gained any more, as resting and confirming do."""
+    """Settle until there is no further gain, as at rest and on confirmation."""
     energy = np.inf
     for _ in range(8):
         result = session.settle()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball above a wavy wall, 75,592 faces in all unless asked for less, moved by the ball's vertices."""
+"""A ball above a wavy wall, by default with 75,592 faces, moved by the ball's vertices."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Memory that runs out in the middle of an edit: an error, and the session is as it was."""
+"""Failed allocations during an edit: an error, and the session is unchanged."""
 
 import subprocess
 import sys
@@ -34,7 +34,7 @@ print(said)
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads its size from /proc")
 @pytest.mark.parametrize("megabytes", [2, 12])
-def test_an_edit_without_memory_leaves_the_session_as_it_was(megabytes):
+def test_an_edit_without_memory_does_not_change_the_session(megabytes):
     path = [str(Path(__file__).parent), str(Path(__file__).parents[2]), *sys.path]
     script = SCRIPT.format(path=path, spare=megabytes * 10**6)
     ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=600, check=False)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edits of 75,592 faces, cancelled from another thread at random moments: nothing is left of them.
+"""Edits of 75,592 faces, cancelled from another thread at random moments, leave no trace.
 
-`tests/long/cancelling.py` does it 200 times, and tells how long each took to come back.
+`tests/long/cancelling.py` repeats this 200 times and measures the response times.
 """
 
 import threading
@@ -14,7 +14,7 @@ import stiv
 SHIFT = (0.02, 0.01, -0.45)
 
 
-def test_cancelled_edits_leave_the_session_as_it_was_bit_by_bit():
+def test_cancelled_edits_leave_the_session_exactly_unchanged():
     chance = np.random.default_rng(5)
     editing, undisturbed = session(), session()
     goal = editing.controls + SHIFT
@@ -31,7 +31,7 @@ def test_cancelled_edits_leave_the_session_as_it_was_bit_by_bit():
 
 
 def cancelled(editing: stiv.EditSession, goal: np.ndarray, after: float) -> str:
-    """The status of a drag that is cancelled after so many seconds; one that had ended by then is taken back."""
+    """The status of a drag cancelled after this many seconds; a drag that ended earlier is undone."""
     controls, surface, token = editing.controls, editing.surface, stiv.CancelToken()
     timer = threading.Timer(after, token.cancel)
     timer.start()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A disk that is full (files limited to 200 bytes stand for it), folders that are not there: nothing is lost."""
+"""Full disks (simulated by a limit of 200 bytes per file) and missing folders: nothing is lost."""
 
 import json
 import subprocess
@@ -40,7 +40,7 @@ def mesh(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("option", ["--json", "--junit"])
-def test_a_report_that_does_not_fit_leaves_the_old_one(tmp_path, mesh, option):
+def test_a_report_that_does_not_fit_preserves_the_old_one(tmp_path, mesh, option):
     report = tmp_path / "report ü"
     report.write_text("old")
     ended = on_a_full_disk("check", mesh, option, report)
@@ -50,7 +50,7 @@ def test_a_report_that_does_not_fit_leaves_the_old_one(tmp_path, mesh, option):
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([mesh.name, report.name])
 
 
-def test_a_result_that_does_not_fit_leaves_the_old_one(tmp_path, mesh):
+def test_a_result_that_does_not_fit_preserves_the_old_one(tmp_path, mesh):
     edits, out = tmp_path / "edits.json", tmp_path / "out.npz"
     step = {"operator": "move", "objects": ["Above"], "values": {"value": [0, 0, -0.5]}}
     edits.write_text(json.dumps({"schema": "stiv-edits", "version": 1, "steps": [step]}))
@@ -61,6 +61,6 @@ def test_a_result_that_does_not_fit_leaves_the_old_one(tmp_path, mesh):
     assert len(list(tmp_path.iterdir())) == 3
 
 
-def test_a_folder_that_is_not_there_is_named_before_any_work(tmp_path, mesh, capsys):
+def test_a_missing_folder_is_named_before_any_work(tmp_path, mesh, capsys):
     assert program.run(["check", str(mesh), "--json", str(tmp_path / "nowhere/report.json")]) == 2
     assert "there is no folder" in capsys.readouterr().err

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rounding upward or flushing to zero, set by others, changes no bit; coordinates out of range are refused."""
+"""Rounding modes set by other code do not change results; coordinates out of range are refused."""
 
 import ctypes
 import ctypes.util
@@ -20,13 +20,13 @@ pytestmark = pytest.mark.skipif(
 
 Work = Callable[[], np.ndarray]
 
-UPWARD = 0x4000  # of the control and status register of vector code: round up
-FLUSH_TO_ZERO = 0x8040  # results and operands that are denormal count as 0
-REGISTER = 28  # its place in glibc's fenv_t, of 32 bytes
+UPWARD = 0x4000  # control and status register of SSE: round up
+FLUSH_TO_ZERO = 0x8040  # denormal results and operands become 0
+REGISTER = 28  # its offset in the 32 bytes of glibc's fenv_t
 
 
 def environment() -> bytearray:
-    """What glibc's fegetenv gives."""
+    """The result of glibc's fegetenv."""
     saved = ctypes.create_string_buffer(32)
     assert ctypes.CDLL(ctypes.util.find_library("m")).fegetenv(saved) == 0
     return bytearray(saved.raw)
@@ -38,7 +38,7 @@ def register() -> int:
 
 @contextmanager
 def processor_mode(bits: int) -> Iterator[None]:
-    """The register with these bits set."""
+    """Set these bits of the register within the scope."""
     library, before = ctypes.CDLL(ctypes.util.find_library("m")), environment()
     changed = bytearray(before)
     struct.pack_into("<I", changed, REGISTER, register() | bits)
@@ -64,7 +64,7 @@ def ball_into_wall() -> Work:
 
 
 def crossing_pairs() -> Work:
-    """Of triangles so small that their boxes, in single precision, have denormal sides."""
+    """Pairs of triangles so small that their boxes have denormal sides in single precision."""
     corners = np.random.default_rng(3).random((300, 3)) * 1e-40
     faces = np.arange(300).reshape(-1, 3)
     assert 0 < len(stiv.find_intersections(corners, faces)) < 4950
@@ -79,7 +79,7 @@ def impacts() -> Work:
 
 @pytest.mark.parametrize("prepared", [ball_into_wall, crossing_pairs, impacts])
 @pytest.mark.parametrize("bits", [UPWARD, FLUSH_TO_ZERO], ids=["upward", "flush to zero"])
-def test_a_mode_set_by_others_changes_no_bit_and_stays(bits: int, prepared: Callable[[], Work]) -> None:
+def test_a_mode_set_by_other_code_changes_no_bit_and_persists(bits: int, prepared: Callable[[], Work]) -> None:
     work = prepared()
     expected = work()
     with processor_mode(bits):
@@ -90,7 +90,7 @@ def test_a_mode_set_by_others_changes_no_bit_and_stays(bits: int, prepared: Call
 
 
 @pytest.mark.parametrize(("coordinate", "fault"), [(0.9e-70, "below 1e-70"), (-1.1e70, "above 1e70"), (1e-320, "")])
-def test_coordinates_that_exact_signs_do_not_hold_for_are_refused_by_row(coordinate: float, fault: str) -> None:
+def test_coordinates_out_of_range_are_refused_by_row(coordinate: float, fault: str) -> None:
     corners = np.random.default_rng(5).random((6, 3))
     faces, beyond = np.arange(6).reshape(-1, 3), corners.copy()
     beyond[4, 1] = coordinate
@@ -105,7 +105,7 @@ def test_coordinates_that_exact_signs_do_not_hold_for_are_refused_by_row(coordin
         stiv.time_of_impact("vf", corners[[[0, 1, 2, 3], [1, 2, 3, 4]]], beyond[[[0, 1, 2, 3], [1, 2, 3, 4]]])
 
 
-def test_coordinates_that_weights_made_too_small_count_as_0() -> None:
+def test_coordinates_that_weights_make_too_small_become_0() -> None:
     weights = np.array([[1, 0], [1, 0], [1, 0], [1, 1e-90]])
     deformation = stiv.linear(weights, np.array([[1, 0, 0], [0, 1, 0], [1, 1, 0], [2, 2, 0.0]]))
     controls = np.zeros((2, 3))

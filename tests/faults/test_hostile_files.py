@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random and mutated bytes as files: each is read, or refused by name, without a crash and without hanging."""
+"""Random and mutated files are read, or refused by name, without a crash or hang."""
 
 import contextlib
 import faulthandler
@@ -21,7 +21,7 @@ from stiv.command_line import program
 from stiv.edit_scripts import read_edit_script
 from stiv.mesh_files import read_mesh
 
-HANG = 60  # seconds: other tests run beside; the fuzzer, which runs alone, waits for ten
+HANG = 60  # seconds, because other tests run in parallel; the fuzzer runs alone and allows ten
 CORPUS = Path(__file__).parent / "hostile_files"
 FEW = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -59,7 +59,7 @@ VALID = {
 
 @contextlib.contextmanager
 def hang_guard():
-    """A file that is read for so long ends the test run, with the place where it hangs."""
+    """End the test run, with a traceback, if reading a file takes this long."""
     faulthandler.dump_traceback_later(HANG, exit=True, file=sys.__stderr__)
     try:
         yield
@@ -79,7 +79,7 @@ def read(suffix: str, data: bytes) -> None:
 
 
 @pytest.mark.parametrize("suffix", VALID)
-def test_what_is_mutated_is_valid_to_begin_with(suffix, tmp_path):
+def test_inputs_are_valid_before_mutation(suffix, tmp_path):
     path = tmp_path / f"good{suffix}"
     path.write_bytes(VALID[suffix][1])
     VALID[suffix][0](path)
@@ -99,13 +99,13 @@ def test_mutated_files(suffix):
 
 
 @pytest.mark.parametrize("path", sorted(CORPUS.iterdir()), ids=lambda path: path.name)
-def test_what_the_fuzzer_kept(path):
-    """Inputs that reached all there is to reach in the readers (tests/long/file_fuzzing.py)."""
+def test_the_corpus_of_the_fuzzer(path):
+    """Inputs that together reach all code that fuzzing reached (tests/long/file_fuzzing.py)."""
     read("".join(path.suffixes), path.read_bytes())
 
 
 def mutated(data: bytes, changes) -> bytes:
-    """Bytes replaced, put in, cut off, or a part said twice."""
+    """Bytes replaced, inserted, truncated or repeated."""
     for place, kind, piece in changes:
         head, tail = data[:place], data[place:]
         data = [head + piece + tail[len(piece) :], head + piece + tail, head + piece, head + tail[:9] + tail][kind]
@@ -121,7 +121,7 @@ def mutated(data: bytes, changes) -> bytes:
         ("index.obj", "v 0 0 0\nf 1 2 99999999999999999999\n"),
     ],
 )
-def test_the_command_refuses_what_is_made_to_harm_with_exit_code_2(tmp_path, capsys, name, data):
+def test_the_command_refuses_malicious_files_with_exit_code_2(tmp_path, capsys, name, data):
     path = tmp_path / name
     if data == "pickle":
         np.savez(path, vertices=np.array([Harm()], dtype=object), triangles=np.zeros((0, 3), int))
@@ -133,7 +133,7 @@ def test_the_command_refuses_what_is_made_to_harm_with_exit_code_2(tmp_path, cap
 
 
 class Harm:
-    """Unpickled, it would end the process."""
+    """Ends the process when unpickled."""
 
     def __reduce__(self):
         return (exit, (77,))
@@ -146,7 +146,7 @@ def test_a_job_nested_too_deeply_is_refused(tmp_path):
         read_job(path)
 
 
-def test_infinite_numbers_are_no_time_limit(tmp_path):
+def test_infinite_time_limits_are_refused(tmp_path):
     path = tmp_path / "job.json"
     path.write_text('{"schema": "stiv-batch", "version": 1, "entries": [], "time_limit": Infinity}')
     with pytest.raises(stiv.InputError, match="time_limit"):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""75,592 faces moved by ten diagonals at once, in a process that may use 2 GB and no more.
+"""75,592 faces moved by ten diagonals in one step, in a process limited to 2 GB.
 
-STIV_LONG=1 moves them along a slant too, which takes minutes: the ball slides along the wall as far as it goes.
+STIV_LONG=1 also moves them at an angle, which takes minutes: the ball slides along the wall to the end.
 """
 
 import os

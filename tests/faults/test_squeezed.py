@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A box in a slot between two fixed plates, asked to turn or to grow further than it can."""
+"""A box in a slot between two fixed plates, rotated or scaled further than possible."""
 
 import numpy as np
 import pytest
@@ -7,14 +7,14 @@ import pytest
 import stiv
 from blend_fixtures.scenes.primitives import box, grid, triangulated
 
-GAP = 0.1  # on either side of the box, of width 1
+GAP = 0.1  # on either side of the box, whose width is 1
 BOX = triangulated(box(2, (1, 1, 1)))
 PLATE = triangulated(grid(4, 4, 4, 4))
 NAMES = ("Böx", "Below", "Above")
 
 
 def in_a_slot(turning: bool, **options: object) -> stiv.EditSession:
-    """Rigid, controls centre and rotation vector; or scaled, controls centre and factors."""
+    """Rigid, with centre and rotation vector as controls; or scaled, with centre and factors."""
     parts = [BOX, PLATE.moved((0, 0, -0.5 - GAP)), PLATE.moved((0, 0, 0.5 + GAP))]
     start = np.vstack([part.vertices for part in parts])
     begin = np.cumsum([0, *(len(part.vertices) for part in parts)])
@@ -35,7 +35,7 @@ def in_a_slot(turning: bool, **options: object) -> stiv.EditSession:
 
 
 @pytest.mark.parametrize("turning", [True, False])
-def test_what_is_squeezed_stops_at_the_last_clear_state(turning):
+def test_a_squeezed_box_stops_at_the_last_clear_state(turning):
     session = in_a_slot(turning)
     goal = session.controls
     goal[1] = (0.8, 0, 0) if turning else (3, 3, 3)
@@ -44,11 +44,11 @@ def test_what_is_squeezed_stops_at_the_last_clear_state(turning):
     assert result.status in ("corrected", "blocked")
     assert len(stiv.find_intersections(result.surface, session._topology)) == 0
     assert heights.min() > -0.5 - GAP and heights.max() < 0.5 + GAP
-    assert heights.max() - heights.min() > 1 + GAP  # it went as far as there was room, and not back
+    assert heights.max() - heights.min() > 1 + GAP  # it moved as far as possible and stayed there
 
 
 @pytest.mark.parametrize("turning", [True, False])
-def test_what_may_not_give_way_is_blocked_and_names_what_it_met(turning):
+def test_a_box_that_cannot_yield_is_blocked_and_names_the_obstacle(turning):
     session = in_a_slot(turning, weights=np.zeros(2))
     before = session.surface
     goal = session.controls

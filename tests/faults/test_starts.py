@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starts that touch, starts nearer than the separation, and scales at the ends of what single precision holds."""
+"""Starts in contact, starts closer than the separation, and extreme scales in single precision."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def session(vertices, triangles, **options) -> stiv.EditSession:
 
 
 @pytest.mark.parametrize("case", ["coincident sheets", "duplicate faces", "touching corner"])
-def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
+def test_contact_at_the_start_is_refused_with_its_pairs(case):
     vertices, triangles = sheets(0.0), np.vstack([FACES, ABOVE])
     if case == "duplicate faces":
         vertices, triangles = SHEET.vertices, np.vstack([FACES, FACES[:1]])
@@ -39,7 +39,7 @@ def test_what_touches_at_the_start_is_refused_with_its_pairs(case):
 
 @pytest.mark.parametrize(("separation", "least_slide"), [(0.5, 0.0), (0.3, 0.1), (0.2, 0.2), (0.15, 0.2), (0.1, 0.29)])
 def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(separation, least_slide):
-    """With 0.5 all but no slide is possible: every vertex starts 0.5001 above the sides of the next squares."""
+    """With 0.5, hardly any slide is possible: every vertex starts 0.5001 above the sides of the next squares."""
     vertices, triangles = sheets(0.01), np.vstack([FACES, ABOVE])
     editing = session(vertices, triangles, separation=separation)
     goal = vertices.copy()
@@ -52,7 +52,7 @@ def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
-def test_small_and_large_scenes_are_solved_alike(scale):
+def test_small_and_large_scenes_have_the_same_results(scale):
     triangles = np.vstack([FACES, ABOVE])
     vertices = sheets(0.5, scale)
     goal = vertices.copy()
@@ -64,13 +64,13 @@ def test_small_and_large_scenes_are_solved_alike(scale):
 
 
 def test_a_tiny_object_far_away_is_refused_with_the_least_separation():
-    """In single precision all of it is one point."""
+    """In single precision, the whole object is one point."""
     vertices, triangles = sheets(0.5, 1e-7, 1e7), np.vstack([FACES, ABOVE])
     with pytest.raises(stiv.InputError, match=r"the least that can be kept here is 4, .*move the scene nearer"):
         session(vertices, triangles, separation=1e-9)
 
 
-def test_tiny_and_huge_objects_take_part_in_one_scene():
+def test_tiny_and_huge_objects_work_in_one_scene():
     plate, ball = SHEET.scaled(1e7), icosphere(1, 1.0).moved((0, 0, 30))
     vertices = np.vstack([plate.vertices, ball.vertices])
     triangles = np.vstack([FACES, ball.triangles() + len(plate.vertices)])
@@ -85,7 +85,7 @@ def test_tiny_and_huge_objects_take_part_in_one_scene():
 
 
 def test_non_manifold_soup_with_loose_parts_is_edited():
-    """Three sheets that share an edge, an edge without faces and a lone vertex above a plate."""
+    """Three sheets that share an edge, a loose edge and a loose vertex above a plate."""
     plate = SHEET.vertices
     fan = np.array([[-0.5, 0, 1], [0.5, 0, 1], [-0.5, 1, 1.2], [0.5, -1, 1.2], [0, 0, 2]])
     loose = np.array([[0.7, 0.7, 1], [0.9, 0.6, 1.3], [-0.7, -0.7, 0.9]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/faults.md names tests that exist."""
+"""Tests named in docs/faults.md exist."""
 
 import re
 from pathlib import Path

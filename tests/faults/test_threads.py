@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions in several threads: each gives what it gives alone, and one session serves one call at a time."""
+"""Sessions in several threads give their serial results, and a session accepts one call at a time."""
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -19,7 +19,7 @@ def solved(shift: tuple[float, ...]) -> list[np.ndarray]:
     return [editing.drag(goal).controls, editing.settle().controls, editing.edit(goal + (0.2, 0, 0)).controls]
 
 
-def test_four_sessions_at_once_equal_the_serial_ones_bit_by_bit():
+def test_four_parallel_sessions_equal_serial_ones_exactly():
     serial = [solved(shift) for shift in SHIFTS]
     with ThreadPoolExecutor(len(SHIFTS)) as pool:
         at_once = list(pool.map(solved, SHIFTS))
@@ -50,7 +50,7 @@ def test_a_second_call_on_a_session_in_use_is_refused():
     assert len(stiv.find_intersections(editing.surface, session(levels=2, side=40)._topology)) == 0
 
 
-def test_an_exception_in_progress_cancels_and_comes_back():
+def test_an_exception_in_progress_cancels_and_propagates():
     editing = session(levels=2, side=40)
     before = editing.controls
 

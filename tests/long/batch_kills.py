@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kills workers and the parent of a batch at random moments, again and again, and compares with an undisturbed run.
+"""Kill workers and the parent of a batch at random moments, and compare with an undisturbed run.
 
     python tests/long/batch_kills.py [--scenes 200] [--kills 50] [--seed 1]
 
-Every second kill is of a worker, the others of the parent, after which the job is resumed. Ends with 1 if an output is
-not what an undisturbed run gives, to the byte, or if the job does not finish. Needs /proc.
-"""
+Kills alternate between a worker and the parent, after which the job is resumed. The exit code is 1 if an
+output differs from that of an undisturbed run, or if the job does not finish. Needs /proc."""
 
 import argparse
 import os
@@ -40,7 +39,7 @@ def workers_of(parent: int) -> list[int]:
 
 
 def disturb(job: Path, kills: int, longest: float, chance: random.Random) -> tuple[int, int]:
-    """Runs the job with kills until it finishes by itself: how often a worker, and the parent, were killed."""
+    """Run the job with kills until it finishes; returns the numbers of killed workers and parents."""
     killed_workers = killed_parents = 0
     while True:
         parent = start(job, "--resume")
@@ -61,12 +60,12 @@ def disturb(job: Path, kills: int, longest: float, chance: random.Random) -> tup
         code = parent.wait()
         if code == 0:
             return killed_workers, killed_parents
-        if code not in (-signal.SIGKILL, 3):  # 3: a scene lost its worker twice, and is run again
+        if code not in (-signal.SIGKILL, 3):  # 3: a scene lost its worker twice, and runs again
             raise SystemExit(f"the job ended with {code}")
 
 
 def main() -> int:
-    """Runs, kills, compares."""
+    """Run, kill and compare."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenes", type=int, default=200)
     parser.add_argument("--kills", type=int, default=50)

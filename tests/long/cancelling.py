@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cancels edits of 75,592 faces from another thread at random moments, and tells how long each took to come back.
+"""Cancel edits of 75,592 faces from another thread at random moments, and measure the response times.
 
     python tests/long/cancelling.py [--times 200] [--seed 1] [--threads 1]
 
-A drag, an edit, and what is left of a drag that was confirmed (settle), in turn; a third of them is cancelled by the
-progress callback instead. Ends with 1 if a cancelled call changed a bit of controls or surface, if a session that was
-cancelled so often gives another result than one that never was, or if a call took more than 100 ms of processor time to
-come back. Other work on the machine adds to wall times; the processor time that this process used in the meantime,
-with one thread, tells what the code itself takes.
-"""
+It alternates between drags, edits and settling; the progress callback cancels a third of them. The exit code
+is 1 in three cases: a cancelled call changed a bit of the controls or the surface, the cancelled session
+later gives other results than an uncancelled one, or a call took more than 100 ms of processor time to
+return. Other programs add to wall times; with one thread, the processor time of this process shows the cost
+of the code itself."""
 
 import argparse
 import hashlib
@@ -38,7 +37,7 @@ CALLS: dict[str, Callable[..., stiv.EditResult]] = {
 
 @dataclass
 class Moment:
-    """When somebody asks to cancel, in seconds from now; `asked`: both clocks when it was done."""
+    """The time of a cancel request, in seconds from now; `asked`: both clocks at the request."""
 
     after: float
     token: stiv.CancelToken
@@ -49,7 +48,7 @@ class Moment:
         self.token.cancel()
 
     def ask_if_due(self, begin: float) -> None:
-        """For progress callbacks."""
+        """Request it if it is due, in progress callbacks."""
         if self.asked is None and time.perf_counter() - begin >= self.after:
             self.ask()
 
@@ -60,17 +59,17 @@ def clocks() -> tuple[float, float]:
 
 
 def digest(editing: stiv.EditSession) -> str:
-    """Of all that a session shows."""
+    """Digest of the visible state of a session."""
     return hashlib.sha256(editing.controls.tobytes() + editing.surface.tobytes()).hexdigest()
 
 
 def begin(editing: stiv.EditSession, name: str, start: np.ndarray, goal: np.ndarray) -> None:
-    """The state from which a call is made: for `settle` the start with the goal still to be reached."""
+    """Prepare the state before a call: for `settle`, the start with a pending goal."""
     editing.restore(start, goal if name == "settle" else start)
 
 
 def cancelled(editing: stiv.EditSession, name: str, goal: np.ndarray, moment: Moment, by_progress: bool) -> str:
-    """Status of a call that is cancelled at a moment."""
+    """Status of a call cancelled at this moment."""
     execution = {"cancel": moment.token}
     if by_progress:
         begun = time.perf_counter()
@@ -84,7 +83,7 @@ def cancelled(editing: stiv.EditSession, name: str, goal: np.ndarray, moment: Mo
 
 
 def main() -> int:
-    """Cancels, compares, prints the delays."""
+    """Cancel, compare and print the delays."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--times", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presses Esc at random moments of drags of 75,592 faces in Blender, and tells how long each took to come back.
+"""Press Esc at random moments of drags of 75,592 faces in Blender, and measure the response times.
 
     python tests/long/cancelling_in_blender.py [--times 200] [--seed 1]
 
-A ball's vertices are dragged in Edit Mode through a wall as the add-on does it, with its limit to the time of each
-solve, but without a window: the mouse moves for a second and rests for half of one. Esc is heard when the solve that
-runs, and its writing and testing, are done; then everything is restored. The delay is from the key to the end of that.
-Ends with 1 if the scene is not as it was, to the last bit, or if a drag took more than 100 ms of the main thread's
-processor time to come back: other work on the machine adds to wall times, and Blender's own threads to the time of the
-process. Needs Blender as a Python module, and the add-on as `stiv_addon`.
-"""
+The vertices of a ball are dragged through a wall in Edit Mode, like in the add-on and with its time limit per
+solve, but without a window. The mouse moves for a second and rests for half a second. Esc takes effect after
+the current solve, writing and testing; then everything is restored. The delay is the time from the key to the
+end of the restore. The exit code is 1 if the scene changed by a bit, or if a drag took more than 100 ms of
+the main thread's processor time to return. Other programs add to wall times, and Blender's own threads to the
+time of the process. Needs Blender as a Python module, and the add-on as `stiv_addon`."""
 
 import argparse
 import hashlib
@@ -43,7 +42,7 @@ MOST = 100.0  # milliseconds
 
 
 def make_scene() -> None:
-    """Ball and wall as two objects; the ball in Edit Mode with all its vertices selected."""
+    """Create ball and wall as two objects, with the ball in Edit Mode and all its vertices selected."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     surface, positions, ball = ball_above_wall()
     first = ball[0]
@@ -55,12 +54,12 @@ def make_scene() -> None:
 
 
 def digest() -> str:
-    """Of everything in the scene that an edit might touch."""
+    """Digest of everything in the scene that an edit might change."""
     return hashlib.sha256(repr(building.snapshot()).encode()).hexdigest()
 
 
 def new_drag(threads: int) -> Drag:
-    """A drag as the add-on begins it, toward SHIFT times a thousandth of the pointer's x."""
+    """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
     return Drag(
         lambda request: begin_nearby(bpy.context, settings, kind=request.kind),
@@ -71,13 +70,13 @@ def new_drag(threads: int) -> Drag:
 
 
 def clocks() -> tuple[float, float]:
-    """Seconds of wall time, and of processor time of the main thread, whoever asks."""
+    """Seconds of wall time, and of processor time of the main thread."""
     main_thread = threading.main_thread().ident
     return time.perf_counter(), time.clock_gettime(time.pthread_getcpuclockid(main_thread))
 
 
 def cancelled_after(seconds: float, drag: Drag) -> SimpleNamespace:
-    """Drag until somebody presses Esc: milliseconds, wall and processor, until it was heard, and until all was done."""
+    """Drag until Esc; returns milliseconds of both clocks until it took effect, and until the end."""
     pressed: list[tuple[float, float]] = []
     timer = threading.Timer(seconds, lambda: pressed.append(clocks()))
     begin = time.perf_counter()
@@ -97,7 +96,7 @@ def cancelled_after(seconds: float, drag: Drag) -> SimpleNamespace:
 
 
 def main() -> int:
-    """Drags, presses Esc, compares, prints the delays."""
+    """Drag, press Esc, compare and print the delays."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--times", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
@@ -126,4 +125,4 @@ def main() -> int:
 if __name__ == "__main__":
     code = main()
     sys.stdout.flush()
-    os._exit(code)  # Blender may hang when Python ends
+    os._exit(code)  # Blender may hang when Python exits

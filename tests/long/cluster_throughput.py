@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same job on a local Dask cluster of one worker and of two, in turn: how much sooner it is done.
+"""Speedup of a job on a local Dask cluster with two workers compared with one.
 
     python tests/long/cluster_throughput.py [--scenes 40] [--repeats 3]
 
-Prints scenes a second of wall time, the processor seconds that a scene costs (of all worker processes), and the ratio.
-Ends with 1 if the results differ by a byte, or the median ratio is below 1.7. Two workers need two idle processors; on
-a busy machine they only compete better with what else runs. Needs /proc.
-"""
+Prints scenes per second of wall time, processor seconds per scene (over all worker processes), and the ratio.
+The exit code is 1 if the results differ, or if the median ratio is below 1.7. Two workers need two idle
+processors; on a busy machine, they only take time from other programs. Needs /proc."""
 
 import argparse
 import os
@@ -31,7 +30,7 @@ WANTED = 1.7
 
 
 def children(parent: int) -> list[int]:
-    """Processes below one, of all generations; processes and threads may end while this looks."""
+    """All descendants of a process; processes and threads may end during the search."""
     found = []
     for task in glob(f"/proc/{parent}/task/*/children"):
         with suppress(OSError):
@@ -41,7 +40,7 @@ def children(parent: int) -> list[int]:
 
 
 def processor_seconds() -> float:
-    """User and system time of all processes below this one that are alive."""
+    """User and system time of all living descendants of this process."""
     ticks = 0
     for pid in children(os.getpid()):
         with suppress(OSError):
@@ -51,7 +50,7 @@ def processor_seconds() -> float:
 
 
 def run(job: Path, scheduler: str) -> tuple[float, float]:
-    """Seconds of the clock and of processors for a job on a cluster."""
+    """Wall and processor seconds for a job on a cluster."""
     begin, used = time.perf_counter(), processor_seconds()
     with redirect_stdout(StringIO()):
         code = program.run(["batch", str(job), "--scheduler", scheduler])
@@ -61,12 +60,12 @@ def run(job: Path, scheduler: str) -> tuple[float, float]:
 
 
 def cluster(workers: int) -> LocalCluster:
-    """Processes of one thread each."""
+    """A cluster of single-threaded processes."""
     return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None)
 
 
 def main() -> int:
-    """Both clusters, in turn."""
+    """Measure both clusters alternately."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenes", type=int, default=40)
     parser.add_argument("--repeats", type=int, default=3)

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fuzzes the readers of mesh files, edit scripts, jobs and baselines: what they cannot read they refuse by name.
+"""Fuzz the readers of mesh files, edit scripts, jobs and baselines: they must name the files that they
+reject.
 
     python tests/long/file_fuzzing.py [--seconds 30] [--formats .obj .npz ...] [--seed 1] [--corpus FOLDER]
 
-The readers are Python, so libFuzzer does not see them; this does what it does, with the interpreter's own tracing:
-inputs are mutated, and those that reach a pair of lines that none did before are kept and mutated further. Meshes that
-are read go through the exact test as well. Ends with 1, and leaves the input, when a reader raises anything but
-InputError with the file's name, or takes longer than ten seconds; memory is limited to 4 GB.
-"""
+The readers are written in Python, so libFuzzer cannot trace them. This program does the same with the
+interpreter's own tracing: it mutates inputs, and adds those that reach a new pair of lines to the corpus.
+Meshes that can be read also run through the exact test. The exit code is 1, and the input is saved, if a
+reader raises anything but InputError with the file's name, or takes longer than ten seconds. Memory is
+limited to 4 GB."""
 
 import argparse
 import faulthandler
@@ -34,7 +35,7 @@ PACKAGE = str(Path(stiv.__file__).parent)
 HANG = 10  # seconds
 MOST_BYTES = 4096
 MEMORY = 4 * 2**30
-MOST_FACES = 2000  # of meshes that go through the exact test
+MOST_FACES = 2000  # faces of meshes that run through the exact test
 
 Arc = tuple[str, int, int]
 Chance = np.random.Generator
@@ -59,7 +60,7 @@ WORDS: dict[str, list[bytes]] = {
 
 @dataclass
 class Target:
-    """One kind of file: its reader, the inputs that reached something new, and what was reached."""
+    """A file format: its reader, the corpus, and the pairs of lines reached so far."""
 
     suffix: str
     reader: Callable[[Path], object]
@@ -69,11 +70,11 @@ class Target:
 
 
 class FindingError(Exception):
-    """A reader did what it must not."""
+    """A forbidden outcome of a reader."""
 
 
 def traced(call: Callable[[], object]) -> tuple[object, set[Arc]]:
-    """What a call returns, and the pairs of lines of the package that followed each other."""
+    """The result of a call, and the pairs of consecutive lines of the package that it executed."""
     arcs: set[Arc] = set()
 
     def follow(frame: FrameType) -> Callable:
@@ -125,12 +126,12 @@ def execute(target: Target, data: bytes, path: Path) -> set[Arc]:
 
 
 def words_for(suffix: str) -> list[bytes]:
-    """What files of this kind are made of."""
+    """Tokens of files of this format."""
     return WORDS["number"] + WORDS["json" if suffix.endswith(".json") else suffix]
 
 
 def mutated_bytes(chance: Chance, data: bytes, words: list[bytes], other: bytes) -> bytes:
-    """One change: a byte, a word, a piece taken out, doubled or moved, or the tail of another input."""
+    """One change: a byte, a token, a piece removed, duplicated or moved, or the tail of another input."""
     at = int(chance.integers(len(data) + 1))
     end = at + int(chance.integers(1, 20))
     word = words[chance.integers(len(words))]
@@ -146,7 +147,7 @@ def mutated_bytes(chance: Chance, data: bytes, words: list[bytes], other: bytes)
 
 
 def mutated_archive(chance: Chance, data: bytes, words: list[bytes], other: bytes) -> bytes:
-    """An archive whose members are changed before they are packed, so that their checksums are right."""
+    """An archive whose members are mutated before packing, so that their checksums are valid."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = {name: archive.read(name) for name in archive.namelist()}
@@ -162,7 +163,7 @@ def mutated_archive(chance: Chance, data: bytes, words: list[bytes], other: byte
 
 
 def mutated(chance: Chance, target: Target) -> bytes:
-    """A few changes of an input that was kept."""
+    """An input of the corpus with a few changes."""
     data, words = target.inputs[chance.integers(len(target.inputs))], words_for(target.suffix)
     for _ in range(2 ** int(chance.integers(4))):
         other = target.inputs[chance.integers(len(target.inputs))]
@@ -172,7 +173,7 @@ def mutated(chance: Chance, target: Target) -> bytes:
 
 
 def fuzz(target: Target, seconds: float, chance: Chance, folder: Path) -> None:
-    """Reads inputs for so long; keeps those that reach something new. Raises FindingError."""
+    """Read mutated inputs for this long, and extend the corpus. Raises FindingError."""
     path = folder / f"input{target.suffix}"
     for data in target.inputs:
         target.reached |= execute(target, data, path)
@@ -187,7 +188,7 @@ def fuzz(target: Target, seconds: float, chance: Chance, folder: Path) -> None:
 
 
 def keep(target: Target, corpus: Path) -> int:
-    """Write the fewest inputs, small ones first, that reach all that was reached; how many."""
+    """Write a minimal corpus that reaches the same pairs of lines, small inputs first; returns its size."""
     path = corpus / f"input{target.suffix}"
     left, number = set(target.reached), 0
     for old in corpus.glob(f"[0-9]*{target.suffix}"):
@@ -203,7 +204,7 @@ def keep(target: Target, corpus: Path) -> int:
 
 
 def limit_memory() -> None:
-    """So that a file that makes a reader allocate without end fails here, and not the machine."""
+    """Limit the memory, so that endless allocation fails in this process only."""
     try:
         import resource
     except ImportError:  # not a POSIX system
@@ -212,7 +213,7 @@ def limit_memory() -> None:
 
 
 def main() -> int:
-    """Fuzzes format after format."""
+    """Fuzz all formats in turn."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=30, help="for each format (default 30)")
     parser.add_argument("--formats", nargs="+", choices=list(VALID), default=list(VALID))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random steps of editing sessions until there were so many, every one checked.
+"""Random steps of editing sessions, each checked, up to the given number.
 
     python tests/long/random_sessions.py [--steps 20000]
 
-A failure is shrunk by hypothesis to the fewest steps, and printed.
+Hypothesis shrinks a failure to the fewest steps and prints it.
 """
 
 import argparse
@@ -22,7 +22,7 @@ SETTINGS = settings(max_examples=100, stateful_step_count=100, deadline=None, su
 
 
 def main() -> None:
-    """Runs machine after machine."""
+    """Run random sessions."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=20_000)
     steps, begin = parser.parse_args().steps, time.process_time()

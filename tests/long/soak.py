@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ten thousand drags in the scenes of the ogre's dressing, the exact test after each move.
+"""Ten thousand drags in the scenes of the ogre's dressing, with the exact test after each move.
 
     python tests/long/soak.py [--drags 10000] [--moves 2] [--seed 1]
 
-One session for each stage of the dressing, alive all along. Blocks of random drags alternate with one block that is
-always the same, from the same start: its results must be the same to the last bit, the processor time that it takes
-tells whether edits become slower, and the bytes that are allocated after it, in the same state each time, tell
-whether something is kept that nobody needs. What the process has of the machine's memory can only be that or more: it
-is told after the first pass over all stages, after the first tenth, and at the end.
+Each stage of the dressing has one session for the whole run. Blocks of random drags alternate with a constant
+block from the same start. The results of the constant block must be identical each time. Its processor time
+shows whether edits become slower, and the bytes allocated after it show whether memory leaks. The resident
+memory of the process is an upper bound; it is reported after the first pass over all stages, after the first
+tenth, and at the end.
 
-Ends with 1 if something intersects, if a repeated block differs, if either memory grew by 1 % or more after the first
-tenth, or if the repeated block became slower by 10 % or more. Needs /proc and a C library with mallinfo2 (glibc 2.33).
-"""
+The exit code is 1 if surfaces intersect, if a constant block differs, if either memory grows by 1 % or more
+after the first tenth, or if the constant block becomes slower by 10 % or more. Needs /proc and mallinfo2
+(glibc 2.33)."""
 
 import argparse
 import ctypes
@@ -32,13 +32,13 @@ from blend_fixtures.scenes.sessions import dressing
 from blend_fixtures.scenes.sessions.session import Stage
 
 BLOCK = 60  # drags, over all stages in turn
-LONGEST = 0.05  # of a drag, in diagonals of what may move
+LONGEST = 0.05  # of a drag, in diagonals of the movable surface
 MOST_GROWTH, MOST_DRIFT = 0.01, 0.10
 
 
 @dataclass
 class Scene:
-    """A stage of the dressing with its session and the controls from which each block starts."""
+    """A stage of the dressing, its session, and the initial controls of each block."""
 
     stage: Stage
     session: stiv.EditSession
@@ -48,7 +48,7 @@ class Scene:
 
 @dataclass
 class Memory:
-    """Bytes after so many drags: of the process in memory, and allocated."""
+    """Resident and allocated bytes after this many drags."""
 
     drags: int
     resident: int
@@ -56,7 +56,7 @@ class Memory:
 
 
 class AllocatorState(ctypes.Structure):
-    """What mallinfo2 gives of the main thread's allocations, in the order of malloc.h; the sessions use one thread."""
+    """The result of mallinfo2 for the main thread, in the order of malloc.h; the sessions use one thread."""
 
     _fields_ = (
         *((name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks")),
@@ -66,7 +66,7 @@ class AllocatorState(ctypes.Structure):
 
 @dataclass
 class Account:
-    """What was seen."""
+    """Recorded results."""
 
     drags: int = 0
     intersections: int = 0
@@ -77,7 +77,7 @@ class Account:
 
 
 def scenes() -> list[Scene]:
-    """Every stage, its controls where the dressing left them: in contact."""
+    """All stages, with controls at the end of the dressing, in contact."""
     found, stages = [], dressing.session().stages()
     stage = next(stages)
     while True:
@@ -96,7 +96,7 @@ def scenes() -> list[Scene]:
 
 
 def random_goal(chance: np.random.Generator, scene: Scene) -> np.ndarray:
-    """Controls about a random one moved, less the farther from it; a rigid body moved and turned."""
+    """Controls around a random one moved with falloff; a rigid body moved and rotated."""
     goal = scene.session.controls
     shift = chance.normal(size=3)
     shift *= chance.uniform(0, LONGEST) * scene.diagonal / np.linalg.norm(shift)
@@ -108,18 +108,18 @@ def random_goal(chance: np.random.Generator, scene: Scene) -> np.ndarray:
 
 
 def all_follow(away: np.ndarray) -> np.ndarray:
-    """Share of a motion at a distance, in radii: everything moves, if ever so little."""
+    """Falloff at a distance in radii that never reaches zero."""
     return np.exp(-(away**2))
 
 
 def only_near_follow(away: np.ndarray) -> np.ndarray:
-    """Share of a motion at a distance, in radii: as proportional editing has it, nothing beyond the radius."""
+    """Falloff at a distance in radii that is zero beyond the radius, as in proportional editing."""
     near = np.maximum(1 - away, 0)
     return near * near * (3 - 2 * near)
 
 
 def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account) -> None:
-    """One drag in a few moves; what each shows is tested."""
+    """One drag in a few moves; each result is tested."""
     begin = scene.session.controls
     goal = random_goal(chance, scene)
     for move in range(1, moves + 1):
@@ -130,7 +130,7 @@ def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account
 
 
 def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> tuple[float, str]:
-    """One block from the start on: processor seconds, and a hash of where it ended."""
+    """One block from the start: processor seconds, and a hash of the result."""
     chance, begin = np.random.default_rng(seed), time.process_time()
     for scene in all_scenes:
         scene.session.restore(scene.start)
@@ -141,7 +141,7 @@ def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> t
 
 
 def memory_after(drags: int) -> Memory:
-    """What is in use now, without what Python has yet to find that nobody uses: each random generator is some of it."""
+    """Memory in use after a garbage collection, which frees the random generators."""
     gc.collect()
     resident = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
     mallinfo2 = ctypes.CDLL(None).mallinfo2
@@ -151,7 +151,7 @@ def memory_after(drags: int) -> Memory:
 
 
 def run(drags: int, seed: int, moves: int) -> Account:
-    """Blocks until there were so many drags."""
+    """Run blocks up to this number of drags."""
     account, all_scenes = Account(), scenes()
     while account.drags < drags:
         block(all_scenes, seed, moves, account)
@@ -165,29 +165,29 @@ def run(drags: int, seed: int, moves: int) -> Account:
 
 
 def told(memory: Memory) -> str:
-    """A line of a report."""
+    """A line of the report."""
     return f"{memory.drags} drags: {memory.resident / 1e6:.2f} MB resident, {memory.allocated / 1e6:.2f} MB allocated"
 
 
 def growth_of_memory(account: Account) -> float:
-    """From what was in use after the first tenth to what is at the end, of the kind of memory that grew more."""
+    """Growth from the first tenth to the end, for the kind of memory that grew more."""
     settled, end = account.memory[settled_by(account)], account.memory[-1]
     return max(end.resident / settled.resident, end.allocated / settled.allocated) - 1
 
 
 def settled_by(account: Account) -> int:
-    """The number of the measurement after the first tenth."""
+    """The index of the measurement after the first tenth."""
     return next(number for number, memory in enumerate(account.memory) if 10 * memory.drags >= account.drags)
 
 
 def drift_of_time(account: Account) -> float:
-    """The least time of the repeated block in the last fifth against the first: other work only ever adds to it."""
+    """Minimum time of the constant block in the last fifth relative to the first; other programs only add time."""
     count = max(1, len(account.repeated_seconds) // 5)
     return min(account.repeated_seconds[-count:]) / min(account.repeated_seconds[:count]) - 1
 
 
 def main() -> int:
-    """Drags, tests, compares."""
+    """Drag, test and compare."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--drags", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading NPZ files, harmless and hostile."""
+"""Reading NPZ files, valid and hostile."""
 
 import io
 import pickle
@@ -16,7 +16,7 @@ TRIANGLES = np.array([[0, 1, 2], [0, 1, 3]])
 
 
 def with_member(path, name, data):
-    """An archive with good vertices and triangles, but `name` replaced by these bytes."""
+    """An archive with valid vertices and triangles, except that these bytes replace `name`."""
     with zipfile.ZipFile(path, "w") as archive:
         for key, value in {"vertices": VERTICES, "triangles": TRIANGLES}.items():
             stream = io.BytesIO()
@@ -45,7 +45,7 @@ def test_arrays_are_read(tmp_path, save):
         ({"vertices": VERTICES, "triangles": TRIANGLES, "triangle_object": np.array([0, 4])}, "do not fit"),
     ],
 )
-def test_arrays_that_do_not_fit_are_named(tmp_path, arrays, message):
+def test_mismatched_arrays_are_named(tmp_path, arrays, message):
     path = tmp_path / "bad.npz"
     np.savez(path, **arrays)
     with pytest.raises(stiv.InputError, match=message):
@@ -53,7 +53,7 @@ def test_arrays_that_do_not_fit_are_named(tmp_path, arrays, message):
 
 
 class Trap:
-    """Raises when it is unpickled."""
+    """Raises when unpickled."""
 
     def __reduce__(self):
         return (exec, ("raise SystemError('the trap went off')",))
@@ -70,7 +70,7 @@ def test_pickles_are_never_loaded(tmp_path):
 
 
 @pytest.mark.parametrize("shape", ["(1000000000000, 3)", "(10, 3)", "(-4, 3)"])
-def test_a_header_that_promises_too_much_is_refused(tmp_path, shape):
+def test_a_header_with_too_large_a_shape_is_refused(tmp_path, shape):
     path = tmp_path / "bomb.npz"
     text = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
     with_member(path, "vertices", b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + bytes(96))
@@ -85,7 +85,7 @@ def archive_member(dtype, shape, data):
 
 @pytest.mark.parametrize("code", [0x110000, 0xFFFFFFFF, 0xD800])
 @pytest.mark.parametrize("order", ["little", "big"])
-def test_names_of_no_characters_are_refused(tmp_path, code, order):
+def test_names_with_invalid_characters_are_refused(tmp_path, code, order):
     path = tmp_path / "names.npz"
     np.savez(path, vertices=VERTICES, triangles=TRIANGLES)
     with zipfile.ZipFile(path, "a") as archive:
@@ -118,7 +118,7 @@ def test_noise_is_refused(tmp_path):
         read_mesh(path)
 
 
-def test_members_whose_names_are_no_text_are_refused(tmp_path):
+def test_members_with_undecodable_names_are_refused(tmp_path):
     path = tmp_path / "names.npz"
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("vertices ä.npy", b"")

@@ -25,7 +25,7 @@ f -3 -2 -1
 """
 
 
-def test_polygons_become_fans_and_keep_their_objects(tmp_path):
+def test_polygons_become_fans_with_their_objects(tmp_path):
     path = tmp_path / "zwei Körper.OBJ"
     path.write_text(TWO_OBJECTS, encoding="utf-8")
     mesh = read_mesh(path)
@@ -71,7 +71,7 @@ def test_bad_lines_are_named(tmp_path, text, message):
     assert str(path) in str(caught.value)
 
 
-def test_bytes_that_are_no_text_are_an_error_or_nothing(tmp_path):
+def test_undecodable_bytes_are_an_error_or_ignored(tmp_path):
     path = tmp_path / "noise.obj"
     path.write_bytes(np.random.default_rng(1).bytes(5000))
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Choosing the reader."""
+"""Choice of the reader."""
 
 import pytest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Written mesh files, read back; and copies in which only positions differ."""
+"""Written mesh files, read back, and copies with other positions."""
 
 import struct
 
@@ -34,7 +34,7 @@ def mesh(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".ply", ".npz"])
-def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, mesh, suffix):
+def test_written_meshes_are_read_back_exactly(tmp_path, mesh, suffix):
     path = tmp_path / f"out ü{suffix}"
     write_mesh(path, mesh)
     back = read_mesh(path)
@@ -52,7 +52,7 @@ def test_an_unknown_suffix_is_refused(tmp_path):
         require_writer(tmp_path / "a.stl")
 
 
-def test_welding_keeps_polygons_and_drops_what_becomes_nothing(tmp_path):
+def test_welding_keeps_polygons_and_drops_degenerate_ones(tmp_path):
     path = tmp_path / "a.obj"
     path.write_text(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nv -0 1 0\nv 1 1 0\nf 1 2 3 4\nf 5 2 7 6\nf 1 5 2\nf 2 3 7 4\n"
@@ -70,7 +70,7 @@ PLY = (
 
 
 @pytest.mark.parametrize("kind", ["ascii", "binary_little_endian", "binary_big_endian"])
-def test_other_positions_in_a_ply_leave_the_rest(tmp_path, kind):
+def test_other_positions_in_a_ply_leave_the_rest_unchanged(tmp_path, kind):
     points = [(0.0, 0.0, 0.5), (1.0, 0.0, 0.5), (0.0, 1.0, 0.5)]
     if kind == "ascii":
         body = b"".join(b"7 %g %g %g\n" % p for p in points) + b"3 0 1 2\n42\n"
@@ -92,7 +92,7 @@ def test_other_positions_in_a_ply_leave_the_rest(tmp_path, kind):
         assert again == source.read_bytes()
 
 
-def test_a_ply_of_whole_numbers_has_no_room(tmp_path):
+def test_a_ply_with_integer_positions_is_refused(tmp_path):
     source = tmp_path / "a.ply"
     source.write_bytes((PLY % b"ascii").replace(b"float z", b"int z") + b"7 0 0 1\n7 1 0 1\n7 0 1 1\n3 0 1 2\n1\n")
     with pytest.raises(stiv.InputError, match='"z" is a whole number'):

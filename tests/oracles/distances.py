@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances of all primitives of a surface at rest that are near each other, by brute force."""
+"""Distances of all nearby primitives of a static surface, by brute force."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Pair = tuple[str, int, int, int, int]
 
 
 def near_pairs(surface: stiv.Surface, q: NDArray[np.float64], reach: float) -> dict[Pair, float]:
-    """Return the distances of all pairs of a vertex and a face, or of two edges, that are nearer than `reach`.
+    """Return the distances of all vertex-face and edge-edge pairs that are closer than `reach`.
 
-    Named by kind and vertices; those that share a vertex are left out.
+    Keys are the kind and the vertices. Pairs that share a vertex are omitted.
     """
     near: dict[Pair, float] = {}
     for kind, pairs in _pairs_in_reach(surface.triangles, surface.loose_edges, q, q, reach):

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """First contact of a moving pair in integer arithmetic: an oracle that shares nothing with the library.
 
-Two primitives touch for the first time at 0, or when a polynomial in time changes sign or touches zero: the volume of
-the four points (cubic), or, for pairs that stay in one plane, an area of three of them (quadratic). At each root,
-isolated to 2^-160, the squared distance is compared. Doubles are integers over a common power of two.
-"""
+Two primitives touch for the first time at 0, or when a polynomial in time changes sign or touches zero: the
+volume of the four points (cubic), or, for pairs that stay in one plane, an area of three of them (quadratic).
+At each root, isolated to 2^-160, the squared distance is compared. Doubles are integers over a common power
+of two."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, pairwise
 from math import comb, gcd, lcm
 
-Polynomial = list[int]  # lowest power first, no zeros last
+Polynomial = list[int]  # lowest power first, no trailing zeros
 Vector = tuple[int, int, int]
 
 BITS = 160
@@ -53,7 +53,7 @@ def primitive(p: Polynomial) -> Polynomial:
 
 
 def square_free(p: Polynomial) -> Polynomial:
-    """Divide by the greatest common divisor with the derivative, which leaves each root once."""
+    """Divide by the greatest common divisor with the derivative, which makes every root simple."""
     a, b = primitive(p), primitive(derivative(p))
     while b:
         a, b = b, remainder(a, b)
@@ -69,7 +69,7 @@ def square_free(p: Polynomial) -> Polynomial:
 
 
 def one_sign_in_the_unit_interval(p: Polynomial) -> bool:
-    """Tell whether all Bernstein coefficients have one sign: there is no root then."""
+    """Tell whether all Bernstein coefficients have the same sign, so that there is no root."""
     degree = len(p) - 1
     signs = {
         sum(comb(degree - i, k - i) * p[i] for i in range(k + 1)) > 0  # times comb(degree, k)
@@ -80,7 +80,7 @@ def one_sign_in_the_unit_interval(p: Polynomial) -> bool:
 
 
 def roots(p: Polynomial) -> list[int]:
-    """Roots in [0, 1] of a polynomial that is not zero, times 2^BITS, each from below by less than 1."""
+    """Roots in [0, 1] of a nonzero polynomial, times 2^BITS, each too small by less than 1."""
     if len(p) <= 1 or one_sign_in_the_unit_interval(p):
         return []
     return simple_roots(square_free(p))
@@ -135,7 +135,7 @@ def to_segment(p: Vector, a: Vector, b: Vector) -> tuple[int, int]:
 
 
 def squared_distances(kind: str, x: Sequence[Vector]) -> Iterable[tuple[int, int]]:
-    """Squared distances, as numerators and denominators, of which the least is that of the primitives."""
+    """Squared distances, as numerators and denominators; the least is that of the primitives."""
     if kind == "vf":
         yield from (to_segment(x[0], x[a], x[b]) for a, b in ((1, 2), (2, 3), (3, 1)))
         u, v, r = subtract(x[2], x[1]), subtract(x[3], x[1]), subtract(x[0], x[1])
@@ -207,7 +207,7 @@ def cross_paths(p: Path, q: Path) -> tuple[Vector, Vector, Vector]:
 def first_contact(
     kind: str, start: Iterable[Iterable[Fraction | float | int]], end: Iterable[Iterable[Fraction | float | int]]
 ) -> Fraction | None:
-    """Time of the first contact, from below by less than WIDTH; None if there is none."""
+    """Time of the first contact, too early by less than WIDTH; None if there is none."""
     points, _ = integers([*start, *end])
     first, step = points[:4], [subtract(b, a) for a, b in zip(points[:4], points[4:], strict=True)]
     size = max(abs(c) for point in points for c in point) or 1

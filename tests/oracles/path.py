@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether anything comes into contact along a linear step: sorted boxes, no trees and no roots.
+"""Contacts along a linear step, found with sorted boxes instead of trees and root finding.
 
-Two convex sets are apart if some direction tells them apart. Seen along a fixed direction, the difference of two
-vertices in linear motion is linear in time, so that its values at the two ends of an interval bound all others: any
-direction that works at both ends proves the whole interval free. Which direction is tried decides the speed, not the
-answer. Where an interval shorter than RESOLUTION cannot be proven free, a contact is reported.
-"""
+Two convex sets are disjoint if some direction separates them. Along a fixed direction, the difference of two
+vertices in linear motion is linear in time, so its values at the ends of an interval bound all others. A
+direction that separates at both ends thus proves the whole interval clear. The choice of directions affects
+the speed but not the result. If an interval shorter than RESOLUTION cannot be proven clear, a contact is
+reported."""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -18,13 +18,13 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 RESOLUTION = 2.0**-26
-GUARD = 2.0**-45  # relative to the extent: more than 100 times what rounding can do to one height
-ROWS = 4096  # pairs examined at a time, which bounds the memory
+GUARD = 2.0**-45  # relative to the extent: more than 100 times the rounding error of one height
+ROWS = 4096  # pairs examined at a time, to limit the memory
 PAIRS = 1_000_000  # boxes compared at a time
 
 
 class Contacts(NamedTuple):
-    """Pairs that meet, or come nearer than can be told, sorted by kind and vertices."""
+    """Pairs in contact, or too close to decide, sorted by kind and vertices."""
 
     kind: list[str]
     """ "vf" or "ee" """
@@ -47,15 +47,15 @@ def find_contacts(
     meets: ArrayLike | None = None,
     recut_faces: Iterable[Iterable[int]] = (),
 ) -> Contacts:
-    """Return all pairs of a vertex and a face, or of two edges, that come too near along a linear step.
+    """Return all vertex-face and edge-edge pairs that come too close along a linear step.
 
-    triangles    (F, 3), loose_edges (L, 2); pairs that share a vertex are left out
-    start, end   (N, 3)
-    separation   what is too near, for pairs that are as far apart at the reference; for others, that fraction `keep`
-                 of their distance there; for pairs that start nearer, their distance at the start
-    reference    (N, 3), the start if not given
-    vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
-    recut_faces  vertices of faces that come in several cuts; pairs within one of them are left out
+    triangles    (F, 3), loose_edges (L, 2); pairs that share a vertex are omitted
+        start, end   (N, 3)
+    separation   minimum distance of pairs that are at least as far apart at the reference; for others, the fraction
+                     `keep` of their distance there; for pairs that start closer, their distance at the start
+        reference    (N, 3), the start if not given
+        vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
+    recut_faces  vertices of faces with several triangulations; pairs within one of them are omitted
     """
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
     centre = (first.min(axis=0) + first.max(axis=0)) / 2 if len(first) else 0
@@ -89,7 +89,7 @@ def unique_edges(triangles: ArrayLike, loose_edges: ArrayLike = ()) -> Integers:
 def first_contacts(
     kind: str, start: Floats, end: Floats, reference: Floats, separation: float, keep: float, guard: float
 ) -> Floats:
-    """Return for pairs (M, 4, 3) the beginning of the first interval not proven free, inf where there is none."""
+    """Return for pairs (M, 4, 3) the start of the first interval not proven clear, inf if there is none."""
     time = np.full(len(start), np.inf)
     for begin in range(0, len(start), ROWS):
         part = slice(begin, begin + ROWS)
@@ -100,14 +100,14 @@ def first_contacts(
 
 
 def kept_distances(distances: Floats, separation: float, keep: float) -> Floats:
-    """Return what pairs of these distances at the reference keep."""
+    """Return the minimum distances of pairs with these distances at the reference."""
     return np.where(distances >= (1 - 2.0**-24) * separation, separation, keep * distances)
 
 
 def _pairs_in_reach(
     triangles: Integers, loose_edges: ArrayLike, start: Floats, end: Floats, clearance: float
 ) -> Iterator[tuple[str, Integers]]:
-    """Yield pairs (K, 4) of primitives whose swept boxes come within the clearance, a few rows of them at a time."""
+    """Yield pairs (K, 4) of primitives whose swept boxes come within the clearance, in batches."""
     edges = unique_edges(triangles, loose_edges)
     faces = triangles.reshape(-1, 3)
     for kind, queries, others in (("vf", np.arange(len(start))[:, None], faces), ("ee", edges, edges)):
@@ -126,8 +126,8 @@ def _overlapping(
 ) -> Iterator[tuple[Integers, Integers]]:
     """Yield the rows of all boxes (low, high) that come within the clearance of each other.
 
-    Along one axis, boxes that reach a query begin below its end, and at most the widest one's width below its begin.
-    """
+    Along one axis, boxes that overlap a query begin below its end, and at most the largest width below its
+    start."""
     (low, high), (others_low, others_high) = boxes, others
     if not len(low) or not len(others_low):
         return
@@ -156,7 +156,7 @@ def _slices(sizes: Integers, most: int) -> Iterator[slice]:
 
 
 def _swept_boxes(primitives: Integers, start: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return low and high corners, (P, 3) each, of all that the primitives pass."""
+    """Return low and high corners, (P, 3) each, of the swept primitives."""
     corners = np.concatenate([start[primitives], end[primitives]], axis=1)
     return corners.min(axis=1), corners.max(axis=1)
 
@@ -164,7 +164,7 @@ def _swept_boxes(primitives: Integers, start: Floats, end: Floats) -> tuple[Floa
 def _outline(kind: str, x: Floats) -> Floats:
     """Return the differences of the two sides' vertices, (M, 3 or 4, 3), in order around their convex hull.
 
-    The two primitives meet where that triangle or parallelogram holds the origin; its distance is theirs.
+    The primitives touch if that triangle or parallelogram contains the origin; its distance is theirs.
     """
     if kind == "vf":
         return x[:, :1] - x[:, 1:]
@@ -172,9 +172,10 @@ def _outline(kind: str, x: Floats) -> Floats:
 
 
 def _directions(outline: Floats) -> Floats:
-    """Return unit directions (M, D, 3), among them that from the origin to the nearest point of the outline's hull.
+    """Return unit directions (M, D, 3), among them that from the origin to the nearest point of the outline's
+    hull.
 
-    It is a corner, perpendicular to an edge, or perpendicular to the whole.
+    The nearest point is a corner, lies on an edge, or lies inside.
     """
     sides = np.roll(outline, -1, axis=1) - outline
     length = np.maximum((sides**2).sum(axis=2, keepdims=True), np.finfo(float).tiny)
@@ -191,7 +192,7 @@ def _distances(outline: Floats) -> Floats:
 
 
 def _proven_free(begin: Floats, end: Floats, clearance: Floats) -> NDArray[np.bool_]:
-    """Tell for which outlines (M, m, 3) in linear motion some fixed direction keeps them off the origin."""
+    """Tell for which outlines (M, m, 3) in linear motion some fixed direction separates them from the origin."""
     directions = _directions((begin + end) / 2).transpose(0, 2, 1)
     heights = np.concatenate([begin @ directions, end @ directions], axis=1)
     apart = np.maximum(heights.min(axis=1), -heights.max(axis=1)).max(axis=1)
@@ -199,7 +200,7 @@ def _proven_free(begin: Floats, end: Floats, clearance: Floats) -> NDArray[np.bo
 
 
 def _march(start: Floats, end: Floats, clearance: Floats) -> Floats:
-    """Advance each pair from time 0 by intervals proven free: halved after a failure, doubled after a success."""
+    """Advance each pair from time 0 by intervals proven clear: halved after a failure, doubled after a success."""
     contact = np.full(len(start), np.inf)
     row, time, width = np.arange(len(start)), np.zeros(len(start)), np.ones(len(start))
     while len(row):

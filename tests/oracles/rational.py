@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether triangles meet, in rational arithmetic: slow, and right by construction.
+"""Intersections of triangles in rational arithmetic: slow, and correct by construction.
 
-It clips the parameter domain of one triangle by the linear constraints that describe the other; nothing is shared with
-the core but the definition. Works for doubles of any size, for triangles without area too.
-"""
+It clips the parameter domain of one triangle by the linear constraints that describe the other, and shares
+only the definition with the core. It works for doubles of any size, and for triangles without area."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -54,7 +53,7 @@ def constraints_of_segment(a: Vector, b: Vector) -> list[Constraint]:
 
 
 def constraints_of_triangle(corners: Sequence[Vector]) -> list[Constraint]:
-    """Describe the hull of three points, whatever its dimension."""
+    """Constraints of the hull of three points, whatever its dimension."""
     a, b, c = corners
     normal = cross(minus(b, a), minus(c, a))
     if any(normal):
@@ -69,7 +68,7 @@ def constraints_of_triangle(corners: Sequence[Vector]) -> list[Constraint]:
 
 
 def clip(polygon: list[Vector], constraint: Constraint) -> list[Vector]:
-    """Return what is left of a convex polygon, given by its vertices in order (a segment or point as well)."""
+    """Return the clipped convex polygon (or segment or point), given by its vertices in order."""
     height = [dot(constraint.normal, point) - constraint.offset for point in polygon]
     left: list[Vector] = []
     for k, point in enumerate(polygon):
@@ -95,14 +94,15 @@ def common_points(first: Sequence[Vector], second: Sequence[Vector]) -> list[Vec
 
 
 def in_hull(point: Vector, shared: Sequence[Vector]) -> bool:
-    """Tell whether a point belongs to the hull of no, one or two points."""
+    """Tell whether a point belongs to the hull of zero, one or two points."""
     if len(shared) < 2:
         return bool(shared) and point == shared[0]
     return all(dot(normal, point) >= offset for normal, offset in constraints_of_triangle([*shared, shared[0]]))
 
 
 def triangles_intersect(first: Sequence[int], second: Sequence[int], vertices: ArrayLike) -> bool:
-    """Tell whether two triangles meet in a point off the hull of the corners that they share by index.
+    """Tell whether two triangles have a common point outside the hull of the corners that they share by
+    index.
 
     first, second  corner indices, three each
     vertices       (N, 3)
@@ -117,7 +117,7 @@ def triangles_intersect(first: Sequence[int], second: Sequence[int], vertices: A
 
 
 def find_intersections(vertices: ArrayLike, triangles: ArrayLike) -> set[tuple[int, int]]:
-    """Return all pairs of triangles that intersect; only those with disjoint boxes are not looked at."""
+    """Return all pairs of intersecting triangles; pairs with disjoint boxes are skipped."""
     q, faces = np.asarray(vertices, np.float64), np.asarray(triangles)
     low, high = q[faces].min(axis=1), q[faces].max(axis=1)
     found = set()

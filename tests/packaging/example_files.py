@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run by test_examples in a process of its own: writes the scenes and meshes that the documents' examples name.
+"""Write the scenes and meshes that the examples in the documents use; test_examples runs this in a
+subprocess.
 
 Usage: example_files.py DOCUMENTS   with the folder of the documents; the files go into the working directory.
 """
@@ -18,7 +19,7 @@ LAST = 120
 
 
 def cube(name: str, location: tuple[float, float, float], half: float = 0.5) -> Any:
-    """A cube with its faces cut once, so that it can give way."""
+    """A cube with subdivided faces, so that it can deform."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata([tuple(half * x for x in corner) for corner in CUBE], [], FACES)
     ob = bpy.data.objects.new(name, mesh)
@@ -29,14 +30,14 @@ def cube(name: str, location: tuple[float, float, float], half: float = 0.5) -> 
 
 
 def saved(name: str) -> None:
-    """Save the scene, and begin an empty one."""
+    """Save the scene, and start an empty one."""
     Path(name).parent.mkdir(exist_ok=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(name).absolute()))
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
 def walk(name: str, height: float) -> None:
-    """A cube that crosses the place of another one at this height."""
+    """A cube that passes the position of another one at this height."""
     cube("Stone", (0, 0, 0))
     walker = cube("Walker", (-3, 0, height))
     for frame, x in ((1, -3.0), (LAST, 3.0)):
@@ -47,7 +48,7 @@ def walk(name: str, height: float) -> None:
 
 
 def overlapping(name: str, first: str, second: str) -> None:
-    """Two cubes, one in a corner of the other."""
+    """Two cubes that overlap at a corner."""
     cube(first, (0, 0, 0))
     cube(second, (0.95, 0.9, 0.85))
     saved(name)
@@ -65,7 +66,7 @@ def shoots(name: str) -> None:
 
 
 def main(documents: Path) -> None:
-    """Write everything."""
+    """Write all files."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     walk("assets/walk.blend", 2.0)
     walk("walk.blend", 0.8)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run by test_extension in a process of its own: install a zip, enable it, and say where its parts come from."""
+"""Install a zip, enable it, and report the origin of its parts; test_extension runs this in a subprocess."""
 
 import os
 import sys

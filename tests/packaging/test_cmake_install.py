@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`cmake --install` and find_package(stiv): the example for C++ users compiles against what was installed, and runs."""
+"""`cmake --install` and find_package(stiv): the example for C++ users compiles against the installation and runs."""
 
 import os
 import shutil
@@ -40,13 +40,13 @@ def test_library_headers_and_licenses_are_installed(prefix):
     assert {Path(name).name for name in installed} >= {"libstiv.a", "stivConfig.cmake", "LICENSE", "OpenSubdiv.txt"}
 
 
-def test_nothing_of_this_machine_is_in_what_cmake_reads(prefix):
+def test_the_installed_cmake_files_contain_no_local_path(prefix):
     for path in prefix.rglob("*.cmake"):
         assert str(ROOT) not in path.read_text() and str(BUILD) not in path.read_text()
 
 
 def test_the_example_compiles_against_the_installed_library_and_runs(prefix, tmp_path):
-    source = tmp_path / "two_sheets"  # a copy: nothing beside the example is in reach
+    source = tmp_path / "two_sheets"  # a copy, so that the example cannot use neighbouring files
     shutil.copytree(ROOT / "native/examples/two_sheets", source)
     run("cmake", "-S", source, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release")
     run("cmake", "--build", tmp_path / "build")

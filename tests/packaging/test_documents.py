@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The check of the documents finds what it is for, at its line, and nothing in what is exempt."""
+"""The check of the documents reports each kind of finding at its line, and nothing in exempt text."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -56,14 +56,14 @@ def test_words_of_the_dialect_are_found_in_code(text: str, found: list[int]) -> 
         (check_documents.long_lines, "\n" + "word " * 23, "\n| " + "word " * 23),
     ],
 )
-def test_sentences_and_lines_that_are_too_long_are_found(
+def test_too_long_sentences_and_lines_are_found(
     check: Callable[[str], Iterator[tuple[int, str]]], bad: str, good: str
 ) -> None:
     assert lines(check(bad)) == [2]
     assert lines(check(good)) == []
 
 
-def test_wrapping_breaks_long_lines_and_nothing_else() -> None:
+def test_wrapping_changes_only_long_lines() -> None:
     code = "```\n" + "code " * 30 + "\n```\n\n| " + "cell " * 30 + "|\n\n$$\na +\n" + "b " * 70 + "$$\n"
     text = f"# Title\n\n- {'word ' * 21}`a span of code` - and $x + y$\n  more\n\n{code}"
     wrapped = wrap_documents.wrapped(text)
@@ -78,13 +78,13 @@ def test_wrapping_keeps_every_word(path: Path) -> None:
     assert wrap_documents.wrapped(text).split() == text.split()
 
 
-def test_links_to_nothing_are_found(tmp_path: Path) -> None:
+def test_broken_links_are_found(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text("[itself](page.md)\n[none](gone.md#x) [web](https://example.org/gone.md)\n")
     assert list(check_documents.broken_links(page)) == [(2, "there is no gone.md")]
 
 
-def test_references_to_sections_and_equations_that_are_gone_are_found(tmp_path: Path) -> None:
+def test_references_to_missing_sections_and_equations_are_found(tmp_path: Path) -> None:
     page = "mathematics.md"
     (tmp_path / page).write_text("## The loop\n\n$$x \\tag{2}$$\n")
     good = f'/// ({page}, "The\n/// loop") [P4; {page},\n/// "The loop"] ({page}, Eq. 2)'
@@ -93,14 +93,14 @@ def test_references_to_sections_and_equations_that_are_gone_are_found(tmp_path: 
     assert lines(check_documents.broken_references(bad, tmp_path)) == [2, 3]
 
 
-def test_the_code_does_refer_to_the_mathematics() -> None:
+def test_the_code_cites_the_mathematics() -> None:
     texts = [path.read_text(encoding="utf-8") for path in check_documents.files(".hpp", ".cpp")]
     assert sum(len(check_documents.REFERENCE.findall(text)) for text in texts) > 30
     assert not [text for text in texts if "DESIGN" in text]
 
 
 @pytest.mark.parametrize("folder", ["python/stiv/blender", "addon"])
-def test_the_map_names_what_is_there(folder: str) -> None:
+def test_the_map_names_existing_modules(folder: str) -> None:
     """Each name in the architecture's map of a folder is a module or a folder in it."""
     text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
     table = text.split(f"### `{folder}`")[1].split("\n#")[0]

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every example of every document, exactly as printed: from the wheel that pip installed, in processes of its own.
+"""Every example in every document runs exactly as printed, with the wheel installed by pip, in a subprocess.
 
-Python blocks run as scripts (as tests, where they use the fixture of the pytest plugin), lines of commands in a shell,
-in the folder of the files that they name.
-"""
+Python blocks run as scripts, or as tests if they use the fixture of the pytest plugin. Command lines run in a
+shell, in the folder of their files."""
 
 import os
 import re
@@ -40,14 +39,14 @@ PRINTED = {
     "scripting": [r"corrected \[.*\] \(0\.99\d+, .*\)", r"(corrected|budget) True 0\nTrue \(.*\) 0\.99\d+"],
     "checks": [r"1 passed"],
 }
-ONE_BLENDER = Path(sys.prefix).resolve() == (ROOT / "build/venv-blender").resolve()  # the demo's
+ONE_BLENDER = Path(sys.prefix).resolve() == (ROOT / "build/venv-blender").resolve()  # the Blender of the demo
 needs_blender = pytest.mark.skipif(find_spec("bpy") is None, reason="needs Blender as a Python module (bpy)")
 once = pytest.mark.skipif(not ONE_BLENDER, reason="commands of documents are run with the demo's Blender only")
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The environment of a user who has nothing but the wheel, beside the packages that it needs."""
+    """The environment of a user with only the wheel and its dependencies."""
     wheels = sorted(ROOT.glob("build/wheel/stiv-*.whl"))
     if not wheels:
         pytest.skip("no wheel in build/wheel")
@@ -62,7 +61,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 def run(command: list[str], folder: Path, environment: dict[str, str]) -> str:
-    """Standard output of a process that has to end well."""
+    """Standard output of a process that must succeed."""
     ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, f"{shlex.join(command)}: {ended.returncode}\n{ended.stdout}{ended.stderr}"
     return ended.stdout
@@ -70,7 +69,7 @@ def run(command: list[str], folder: Path, environment: dict[str, str]) -> str:
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory, installed: dict[str, str]) -> Path:
-    """The files that the examples name."""
+    """The files that the examples use."""
     made = tmp_path_factory.mktemp("files")
     run([sys.executable, str(Path(__file__).with_name("example_files.py")), str(ROOT / "docs")], made, installed)
     return made
@@ -78,12 +77,12 @@ def files(tmp_path_factory: pytest.TempPathFactory, installed: dict[str, str]) -
 
 @pytest.fixture
 def folder(tmp_path: Path, files: Path) -> Path:
-    """A copy of them."""
+    """A copy of these files."""
     return shutil.copytree(files, tmp_path / "here", symlinks=True)
 
 
 def expected(number: int) -> str:
-    """What a script prints."""
+    """The expected output of a script."""
     name, _ = SCRIPTS[number]
     return PRINTED[name][[each for each, _ in SCRIPTS[:number]].count(name)]
 
@@ -120,7 +119,7 @@ def test_commands(name: str, installed: dict[str, str], folder: Path) -> None:
 @needs_blender
 @once
 def test_commands_within_the_text(installed: dict[str, str], folder: Path) -> None:
-    """Those of README that name files are run; they use SCENE.blend, which starts free."""
+    """Run the commands of the README that name files; they use SCENE.blend, which starts clear."""
     run_commands("edit_scripts", ["stiv replay SCENE.blend EDITS.json -o OUT.blend"], folder, installed)
     commands = [f"stiv {found}" for found in INLINE.findall(DOCUMENTS["README"]) if "SCENE.blend" in found]
     assert len(commands) == 2
@@ -136,7 +135,7 @@ def run_commands(name: str, commands: list[str], folder: Path, environment: dict
         run(["stiv", "check", *free], folder, environment)
 
 
-def test_every_command_within_the_text_is_understood() -> None:
+def test_every_command_within_the_text_is_valid() -> None:
     for name, text in DOCUMENTS.items():
         for found in INLINE.findall(text):
             words = shlex.split(re.sub("|".join(PLACEHOLDERS), lambda match: PLACEHOLDERS[match[0]], found))
@@ -144,6 +143,6 @@ def test_every_command_within_the_text_is_understood() -> None:
                 assert parser().parse_args(words), name
 
 
-def test_no_document_has_examples_that_are_not_run() -> None:
+def test_every_example_runs() -> None:
     assert {name for name, _ in SCRIPTS} == PRINTED.keys()
     assert COMMANDS.keys() | {"edit_scripts"} == WRITTEN.keys()

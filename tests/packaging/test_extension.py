@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zip itself, installed into a Blender that has never seen the source tree, registers and finds its own wheel."""
+"""The zip, installed into a Blender without the source tree, registers and finds its own wheel."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ INSTALL_SCRIPT = Path(__file__).with_name("install_extension.py")
 
 @pytest.fixture(scope="module")
 def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The zip that the tests run from, made by `make`; from the wheel of this tree where there is none."""
+    """The zip under test from `make`, or else one built from the wheel of this tree."""
     named = ROOT / "build/extension"
     if named.is_file():
         return ROOT / named.read_text().strip()
@@ -32,7 +32,7 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def site_packages_without_stiv(folder: Path) -> Path:
-    """Links to all that this environment has, except the package under test, which must come from the zip."""
+    """Links to all packages of this environment except stiv, which must come from the zip."""
     for entry in Path(sysconfig.get_path("purelib")).iterdir():
         if not entry.name.startswith("stiv"):
             (folder / entry.name).symlink_to(entry)
@@ -44,7 +44,7 @@ def test_zip_passes_blenders_own_validation(extension: Path) -> None:
     assert run.returncode == 0, run.stdout + run.stderr
 
 
-def test_installed_zip_registers_and_brings_its_own_core(extension: Path, tmp_path: Path) -> None:
+def test_installed_zip_registers_and_uses_its_own_core(extension: Path, tmp_path: Path) -> None:
     packages = tmp_path / "packages"
     packages.mkdir()
     environment = {

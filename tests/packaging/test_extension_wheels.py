@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wheels in the extension's zip: for old systems, whole, and bit for bit what the core's tests test."""
+"""The wheels in the extension's zip: portable, complete, and with the same bits as the tested core."""
 
 import csv
 import hashlib
@@ -22,7 +22,7 @@ OLDEST = (2, 17)
 
 @pytest.fixture(scope="module")
 def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The wheels of the zip, unpacked from it."""
+    """The unpacked wheels of the zip."""
     if not NAMED.is_file():
         pytest.skip("the extension was not built for all Pythons (make extension)")
     folder = tmp_path_factory.mktemp("zip")
@@ -37,7 +37,7 @@ def unpacked(wheel: Path, folder: Path) -> Path:
     return folder
 
 
-def test_there_is_a_wheel_for_this_python_and_each_is_named_by_its_module(wheels: list[Path], tmp_path: Path) -> None:
+def test_there_is_a_wheel_for_this_python_and_each_matches_its_module(wheels: list[Path], tmp_path: Path) -> None:
     tags = {wheel.name.split("-")[2] for wheel in wheels}
     assert f"cp{sys.version_info.major}{sys.version_info.minor}" in tags
     for wheel in wheels:
@@ -45,7 +45,7 @@ def test_there_is_a_wheel_for_this_python_and_each_is_named_by_its_module(wheels
         assert portable_wheels.python_tag(module) == wheel.name.split("-")[2]
 
 
-def test_modules_need_the_c_library_alone_in_an_old_version(wheels: list[Path], tmp_path: Path) -> None:
+def test_modules_need_only_an_old_c_library(wheels: list[Path], tmp_path: Path) -> None:
     for wheel in wheels:
         (module,) = unpacked(wheel, tmp_path / wheel.name).glob("stiv/_native*.so")
         assert exported_names(module) == {"PyInit__native"}
@@ -91,7 +91,7 @@ print(digest, result.rounds, len(result.events.kind))
 
 
 def run(folder: Path | None) -> str:
-    """Digest of an edit's result, with the package of a folder or the one installed."""
+    """Digest of an edit's result, with the package of a folder or the installed one."""
     environment = os.environ | ({"PYTHONPATH": str(folder)} if folder else {})
     done = subprocess.run(
         [sys.executable, "-c", EDIT], env=environment, capture_output=True, text=True, check=True, timeout=300
@@ -100,7 +100,7 @@ def run(folder: Path | None) -> str:
     return done.stdout
 
 
-def test_an_edit_gives_the_same_bits_as_the_module_that_the_other_tests_use(wheels: list[Path], tmp_path: Path) -> None:
+def test_an_edit_gives_the_same_bits_as_the_tested_module(wheels: list[Path], tmp_path: Path) -> None:
     tag = f"cp{sys.version_info.major}{sys.version_info.minor}"
     (wheel,) = [wheel for wheel in wheels if wheel.name.split("-")[2] == tag]
     assert run(unpacked(wheel, tmp_path / "wheel")) == run(None)
@@ -117,7 +117,7 @@ def made_wheel(folder: Path) -> Path:
     return path
 
 
-def test_a_module_takes_the_place_of_the_one_in_a_wheel(tmp_path: Path) -> None:
+def test_a_module_replaces_the_one_in_a_wheel(tmp_path: Path) -> None:
     module = tmp_path / "_native.cpython-313-x86_64-linux-gnu.so"
     module.write_bytes(b"new")
     portable_wheels.main(made_wheel(tmp_path), tmp_path / "out", "manylinux_2_17_x86_64", [module])
@@ -132,6 +132,6 @@ def test_a_module_takes_the_place_of_the_one_in_a_wheel(tmp_path: Path) -> None:
     assert hashlib.sha256(made.read_bytes()).digest() == first
 
 
-def test_a_file_that_is_no_module_is_refused(tmp_path: Path) -> None:
+def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="not the name"):
         portable_wheels.python_tag(tmp_path / "_native.so")

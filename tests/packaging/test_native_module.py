@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The compiled module shows nothing but its entry point and needs nothing but the system's own libraries.
+"""The compiled module exports only its entry point and needs only system libraries.
 
-Blender loads its own OpenSubdiv and TBB; a visible symbol of ours could bind to theirs, or theirs to ours.
+Blender loads its own OpenSubdiv and TBB; a visible symbol could bind to theirs, or theirs to ours.
 """
 
 import importlib.util

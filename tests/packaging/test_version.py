@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The version is written in pyproject.toml alone; CMake and the extension's manifest take it from there."""
+"""Only pyproject.toml contains the version; CMake and the extension's manifest read it from there."""
 
 import re
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the installed wheel and the source archive hold."""
+"""Contents of the installed wheel and the source archive."""
 
 import importlib.metadata
 import shutil
@@ -20,33 +20,34 @@ def installed_files() -> set[str]:
     return {file.as_posix() for file in files or []}
 
 
-def test_wheel_holds_every_module_of_the_package(installed_files: set[str]) -> None:
+def test_wheel_contains_every_module_of_the_package(installed_files: set[str]) -> None:
     sources = {path.relative_to(ROOT / "python").as_posix() for path in (ROOT / "python").rglob("*.py")}
     assert sources
     assert sources <= installed_files
     assert "stiv/py.typed" in installed_files
 
 
-def test_wheel_holds_the_scene_of_the_demo(installed_files: set[str]) -> None:
+def test_wheel_contains_the_scene_of_the_demo(installed_files: set[str]) -> None:
     assert installed_files >= {"stiv/demo/plant_in_vase.blend", "stiv/demo/plant_in_vase.edits.json"}
 
 
-def test_wheel_holds_the_addon_as_a_package(installed_files: set[str]) -> None:
+def test_wheel_contains_the_addon_as_a_package(installed_files: set[str]) -> None:
     sources = {f"stiv_addon/{path.relative_to(ROOT / 'addon').as_posix()}" for path in (ROOT / "addon").rglob("*.py")}
     assert sources
     assert sources <= installed_files
 
 
-def test_wheel_holds_the_licenses_of_what_is_linked(installed_files: set[str]) -> None:
+def test_wheel_contains_the_licenses_of_linked_libraries(installed_files: set[str]) -> None:
     names = {Path(name).name for name in installed_files if "/licenses/" in name}
     assert names >= {"LICENSE", "Eigen.txt", "Highway.txt", "OpenSubdiv.txt", "OpenSubdiv-NOTICE.txt", "pybind11.txt"}
 
 
 @pytest.fixture
 def copied_tree(tmp_path: Path) -> Path:
-    """The source tree with something built in it. Not the tree itself: the backend's search for files may go into
-    `build/` in spite of what is ignored, and follows links there, of a Debian folder in use into all of the machine.
-    """
+    """A copy of the source tree with a build folder.
+
+    In the real tree, the backend's search for files may enter `build/` although it is ignored, and follow
+    links of a mounted Debian folder out of the tree."""
     tree = tmp_path / "tree"
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", "dist", ".git", "__pycache__", ".*_cache"))
     for name in ("build/native/log.txt", "dist/stiv.zip", "python/stiv/_native.so"):
@@ -56,7 +57,7 @@ def copied_tree(tmp_path: Path) -> Path:
     return tree
 
 
-def test_source_archive_holds_what_a_build_needs(
+def test_source_archive_contains_everything_that_a_build_needs(
     copied_tree: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     backend = pytest.importorskip("scikit_build_core.build", reason="the build backend is in build/venv only")
@@ -73,7 +74,7 @@ def test_source_archive_holds_what_a_build_needs(
     assert not any(name.startswith(("build/", "dist/")) or name.endswith(".so") for name in names)
 
 
-def test_wheel_holds_no_measurements(installed_files: set[str]) -> None:
+def test_wheel_contains_no_measurements(installed_files: set[str]) -> None:
     names = {Path(name).stem for name in installed_files if name.endswith(".py")}
     measured = {path.stem for path in (ROOT / "benchmarks/sessions").glob("*.py")} - {"__init__"}
     assert names & measured == set()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bodies that stand in each other, with their pairs excluded, go no deeper; they may go out. Two closed ones by the
-volume that they have in common, an open one by its area inside of a closed one."""
+"""Intersecting bodies with excluded pairs may part but never go deeper.
+
+Two closed bodies are limited by their common volume, an open body by its area inside a closed one.
+"""
 
 from __future__ import annotations
 
@@ -30,12 +32,12 @@ def tetrahedra(*corners: Array) -> tuple[stiv.Surface, Array]:
 
 
 def tip_in_block(depth: float) -> tuple[stiv.Surface, Array]:
-    """A tip that points down and stands in the face of a block, and goes in by `depth`."""
+    """A downward tip that enters the face of a block by `depth`."""
     tip = APEX * (1, -1, -1) + (0.02, 0.05, 2.0 - depth)
     return tetrahedra(tip, BASE)
 
 
-def part_behind(polygon: Array, plane: Array) -> Array:
+def clipped_behind(polygon: Array, plane: Array) -> Array:
     """The part of a polygon (k, 3) behind the plane of three points."""
     normal = np.cross(plane[1] - plane[0], plane[2] - plane[0])
     height = (polygon - plane[0]) @ normal
@@ -49,20 +51,20 @@ def part_behind(polygon: Array, plane: Array) -> Array:
 
 
 def common_volume(first: Array, second: Array) -> float:
-    """What two tetrahedra have in common, from the faces of each cut by the planes of the other."""
+    """Common volume of two tetrahedra, from the faces of each, clipped by the planes of the other."""
     volume = 0.0
     for one, other in ((first, second), (second, first)):
         for corners in outward(one):
             polygon = corners
             for plane in outward(other):
-                polygon = part_behind(polygon, plane)
+                polygon = clipped_behind(polygon, plane)
             for k in range(2, len(polygon)):
                 volume += polygon[0] @ np.cross(polygon[k - 1], polygon[k]) / 6
     return volume
 
 
 def outward(corners: Array) -> list[Array]:
-    """The faces (3, 3) of a tetrahedron, turned to the outside however its vertices lie."""
+    """The faces (3, 3) of a tetrahedron, oriented outward for any order of its vertices."""
     faces = []
     for face in FACES:
         middle, points = corners.mean(axis=0), corners[face]
@@ -72,7 +74,7 @@ def outward(corners: Array) -> list[Array]:
 
 
 def rounding_of(volume_of: Array) -> float:
-    """How much a volume changes where every vertex moves by four units in the last place of what is stored."""
+    """Change of a volume if every vertex moves by four units in the last place of single precision."""
     area = sum(np.linalg.norm(np.cross(f[1] - f[0], f[2] - f[0])) / 2 for f in volume_of[FACES])
     return float(2 * area * 4 * np.spacing(np.float32(np.abs(volume_of).max())))
 
@@ -110,20 +112,20 @@ def test_no_random_edit_makes_the_common_volume_larger(seed: int) -> None:
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
-def test_a_tip_goes_no_deeper_but_out_all_the_way(scale: float) -> None:
+def test_a_tip_cannot_go_deeper_but_can_leave(scale: float) -> None:
     surface, start = tip_in_block(0.8)
     start = (scale * start).astype(np.float32).astype(float)
     upward = np.array([0, 0, scale]) * (np.arange(8) < 4)[:, None]
     deeper = session_of(surface, start).edit(start - 0.3 * upward)
     assert deeper.status == "blocked"
-    assert np.abs(deeper.controls - start).max() < 1e-4 * scale  # what rounding may hide
+    assert np.abs(deeper.controls - start).max() < 1e-4 * scale  # tolerance for rounding
     for lift in (0.1, 0.5, 1.5):
         out = session_of(surface, start).edit(start + lift * upward)
         assert out.status == "reached"
         assert (len(stiv.find_intersections(out.surface, surface)) == 0) == (lift > 0.8)
 
 
-def test_a_drag_that_comes_back_reaches_the_start_again() -> None:
+def test_a_drag_that_returns_reaches_the_start() -> None:
     surface, start = tip_in_block(0.8)
     upward = np.array([0, 0, 1.0]) * (np.arange(8) < 4)[:, None]
     session = session_of(surface, start)
@@ -132,7 +134,7 @@ def test_a_drag_that_comes_back_reaches_the_start_again() -> None:
     assert np.array_equal(session.controls, start)
 
 
-def test_both_may_move_and_turn_together() -> None:
+def test_both_bodies_may_move_and_rotate_together() -> None:
     surface, start = tip_in_block(0.8)
     turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
     session = session_of(surface, start)
@@ -142,7 +144,7 @@ def test_both_may_move_and_turn_together() -> None:
         assert session.edit(start @ turn.T + np.array([3.0, 2, 1]) * step).status == "reached"
 
 
-def test_other_bodies_move_while_these_stand_in_each_other() -> None:
+def test_other_bodies_move_freely() -> None:
     far = APEX + (8, 0, 0)
     both = tip_in_block(0.8)[1]
     surface, start = tetrahedra(both[:4], both[4:], far)
@@ -151,7 +153,7 @@ def test_other_bodies_move_while_these_stand_in_each_other() -> None:
 
 
 def bodies_of(named: dict[str, tuple[Array, Array]]) -> tuple[stiv.Surface, Array]:
-    """Bodies by name, each with its triangles and vertices, side by side."""
+    """Named bodies with their triangles and vertices, concatenated."""
     counts = [len(vertices) for _, vertices in named.values()]
     firsts = np.cumsum([0, *counts])
     surface = stiv.Surface(
@@ -164,7 +166,7 @@ def bodies_of(named: dict[str, tuple[Array, Array]]) -> tuple[stiv.Surface, Arra
 
 
 def sheet_in_block(depth: float, tilt: float = 0.0) -> tuple[stiv.Surface, Array]:
-    """An upright sheet of two triangles, that goes into the upper face of a block, a tetrahedron, by `depth`."""
+    """An upright sheet of two triangles that enters the upper face of a tetrahedron by `depth`."""
     sheet = np.array([[-0.2, 0, -0.7], [0.4, 0, -0.7], [0.4, 0, 1.3], [-0.2, 0, 1.3]]) + (0, 0.3, 0.7 - depth)
     sheet[:, 1] += tilt * sheet[:, 2]
     return bodies_of({"sheet": (np.array([[0, 1, 2], [0, 2, 3]]), sheet), "block": (FACES, BASE)})
@@ -176,30 +178,30 @@ def area_of(polygon: Array) -> float:
 
 
 def area_inside(start: Array, now: Array, triangles: Array, planes: Sequence[Array]) -> float:
-    """How much of triangles lies behind planes, each counted with its area at the start."""
+    """Area of triangles behind all planes, in areas at the start."""
     area = 0.0
     for corners in triangles:
         polygon = now[corners]
         for plane in planes:
-            polygon = part_behind(polygon, plane)
+            polygon = clipped_behind(polygon, plane)
         if len(polygon) > 2:
             area += area_of(start[corners]) * area_of(polygon) / area_of(now[corners])
     return area
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
-def test_a_sheet_goes_no_deeper_but_out_and_along(scale: float) -> None:
+def test_a_sheet_cannot_go_deeper_but_can_leave_and_slide(scale: float) -> None:
     surface, start = sheet_in_block(0.8)
     start = (scale * start).astype(np.float32).astype(float)
     moving = scale * (np.arange(8) < 4)[:, None]
     deeper = session_of(surface, start).edit(start - 0.3 * moving * (0, 0, 1))
     assert deeper.status == "blocked"
-    assert np.abs(deeper.controls - start).max() < 1e-4 * scale  # what rounding may hide
+    assert np.abs(deeper.controls - start).max() < 1e-4 * scale  # tolerance for rounding
     for way in ((0, 0, 0.3), (0, 0, 1.5), (0.1, 0.2, 0), (-0.1, 0.1, 0.1)):
         assert session_of(surface, start).edit(start + moving * way).status == "reached"
 
 
-def test_a_sheet_that_is_dragged_in_and_out_never_is_in_deeper_than_at_the_start() -> None:
+def test_a_sheet_dragged_in_and_out_is_never_deeper_than_at_the_start() -> None:
     surface, start = sheet_in_block(0.8)
     upward = np.array([0, 0, 1.0]) * (np.arange(8) < 4)[:, None]
     session = session_of(surface, start)
@@ -210,7 +212,7 @@ def test_a_sheet_that_is_dragged_in_and_out_never_is_in_deeper_than_at_the_start
     assert np.array_equal(session.controls, start)
 
 
-def test_a_sheet_may_stretch_where_it_is() -> None:
+def test_a_sheet_may_stretch_in_place() -> None:
     surface, start = sheet_in_block(0.8)
     wider = start.copy()
     wider[:4, 0] = 1.2 * start[:4, 0]
@@ -235,14 +237,14 @@ def test_no_random_edit_makes_the_area_inside_larger(seed: int) -> None:
 
 
 def shirt_cut_by_torso() -> tuple[stiv.Surface, Array]:
-    """A ball that sticks out of an open tube of twelve long panels around it on one side."""
+    """A ball that protrudes on one side from an open tube of twelve long panels."""
     torso, panels = icosphere(1), triangulated(grid(12, 1, 12, 1.6))
     angle, height = panels.vertices[:24, 0] * np.pi / 6, panels.vertices[:24, 1]
     shirt = np.stack([1.25 * np.cos(angle) + 0.5, 1.25 * np.sin(angle) + 0.03, height + 0.04], axis=1)
     return bodies_of({"torso": (torso.triangles(), torso.vertices), "shirt": (panels.triangles() % 24, shirt)})
 
 
-def test_a_shirt_goes_no_deeper_into_a_torso_but_off_it() -> None:
+def test_a_shirt_cannot_go_deeper_into_a_torso_but_can_leave() -> None:
     surface, start = shirt_cut_by_torso()
     worn = (surface.vertex_body == 1)[:, None]
     deeper = session_of(surface, start).edit(start + worn * (0.01, 0, 0))
@@ -256,7 +258,7 @@ def test_a_shirt_goes_no_deeper_into_a_torso_but_off_it() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_random_drag_makes_more_of_a_shirt_be_in_a_torso(seed: int) -> None:
+def test_no_random_drag_makes_the_area_of_a_shirt_inside_a_torso_larger(seed: int) -> None:
     chance = np.random.default_rng(seed)
     surface, start = shirt_cut_by_torso()
     worn = (surface.vertex_body == 1)[:, None]
@@ -274,7 +276,7 @@ def test_no_random_drag_makes_more_of_a_shirt_be_in_a_torso(seed: int) -> None:
 
 
 @pytest.mark.parametrize("closed", [False, True])
-def test_what_lies_on_a_block_is_not_pressed_into_it_but_slides_and_leaves(closed: bool) -> None:
+def test_a_sheet_on_a_block_is_not_pressed_in_but_slides_and_leaves(closed: bool) -> None:
     upper = np.array([[-0.5, -0.5, 1], [0.5, -0.5, 1], [0.0, 0.5, 1], [0, 0, 2]])
     lower = np.array([[-3.0, -3, 1], [3, -3, 1], [0, 3, 1], [0, 0, -2]])
     surface, start = bodies_of({"lying": (FACES if closed else FACES[:1], upper), "block": (FACES[:, ::-1], lower)})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repair, contraction, expansion and welding as scripts use them, on the tangles of the scene library."""
+"""Repair, contraction, expansion and welding from Python, on the tangles of the scene library."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from blend_fixtures.scenes import tangled
 from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.tangled import Tangle
 
-# What each may deviate by at most, in diagonals. Two tubes of radius 0.32 whose axes are 0.45 apart overlap by 0.19:
-# flattening the legs alone where they overlap takes 0.012.
+# The largest allowed deviation of each tangle, in diagonals. Two tubes of radius 0.32 whose axes are 0.45
+# apart overlap by 0.19: flattening the legs alone where they overlap takes 0.012.
 CASES = [
     (tangled.hairpin(0.25, rings=40, sides=8), 0.01),
     (tangled.hairpin(0.32, rings=40, sides=8), 0.015),
@@ -53,7 +53,7 @@ def test_repair_does_not_depend_on_size(tube: Tangle, scale: float) -> None:
 
 
 def winding_numbers(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """How often triangles (F, 3, 3) wind around each point: solid angles by van Oosterom and Strackee."""
+    """Winding number of triangles (F, 3, 3) around each point: solid angles by van Oosterom and Strackee."""
     a, b, c = (corners[None, :, k] - points[:, None] for k in range(3))
     length_a, length_b, length_c = (np.linalg.norm(side, axis=2) for side in (a, b, c))
     volume = (a * np.cross(b, c)).sum(axis=2)
@@ -61,7 +61,7 @@ def winding_numbers(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return np.arctan2(volume, length_a * length_b * length_c + turned).sum(axis=1) / (2 * np.pi)
 
 
-def test_the_whole_shirt_ends_outside_of_the_torso() -> None:
+def test_the_whole_shirt_ends_outside_the_torso() -> None:
     tangle = tangled.shirt_cut_by_torso(cuts=13, cells=28)
     result = stiv.repair(tangle.surface, tangle.positions)
     assert result.contracted == "torso"
@@ -81,7 +81,7 @@ def test_coincident_spheres_are_refused_unchanged() -> None:
     assert np.array_equal(result.pairs, stiv.find_intersections(tangle.positions, tangle.surface))
 
 
-def test_what_is_not_freed_is_said_in_words(tube: Tangle) -> None:
+def test_remaining_intersections_are_reported_in_words(tube: Tangle) -> None:
     options = stiv.RepairOptions(contraction=stiv.ContractionOptions(max_steps=0))
     result = stiv.repair(tube.surface, tube.positions, options)
     assert result.status == "refused"
@@ -90,7 +90,7 @@ def test_what_is_not_freed_is_said_in_words(tube: Tangle) -> None:
 
 
 def test_a_mesh_with_open_seams_is_repaired_after_welding(tube: Tangle) -> None:
-    seam = tube.surface.triangles.ravel()  # every triangle with corners of its own
+    seam = tube.surface.triangles.ravel()  # each triangle has its own corners
     loose, loose_positions = np.arange(len(seam)).reshape(-1, 3), tube.positions[seam]
     assert len(stiv.find_intersections(loose_positions, loose)) > len(tube.surface.edges)  # sides touch
     result = stiv.repair(loose, loose_positions, stiv.RepairOptions(weld=True))
@@ -101,7 +101,7 @@ def test_a_mesh_with_open_seams_is_repaired_after_welding(tube: Tangle) -> None:
     assert np.linalg.norm(moved, axis=1).max() < 0.1 * np.linalg.norm(np.ptp(loose_positions, axis=0))
 
 
-def test_only_what_may_move_is_moved(tube: Tangle) -> None:
+def test_only_movable_vertices_move(tube: Tangle) -> None:
     half = np.arange(len(tube.positions)) < len(tube.positions) // 2
     stored = tube.positions.astype(np.float32).astype(float)
     result = stiv.repair(tube.surface, stored, stiv.RepairOptions(moves=half))
@@ -152,7 +152,7 @@ def test_expansion_toward_another_shape() -> None:
     assert np.array_equal(result.surface, target.astype(np.float32))
 
 
-def test_a_contraction_shrinks_by_and_by() -> None:
+def test_a_contraction_shrinks_gradually() -> None:
     ball = icosphere(2)
     positions, radius = ball.vertices, 1.0
     for step in range(4):
@@ -164,7 +164,7 @@ def test_a_contraction_shrinks_by_and_by() -> None:
     assert np.array_equal((moved == ball.vertices).all(axis=1), still)
 
 
-def test_a_cancelled_contraction_gives_the_start(tube: Tangle) -> None:
+def test_a_cancelled_contraction_restores_the_start(tube: Tangle) -> None:
     token = stiv.CancelToken()
     token.cancel()
     result = stiv.contract(tube.surface, tube.positions, cancel=token)
@@ -199,7 +199,7 @@ def test_welding_closes_seams_and_keeps_bodies_apart() -> None:
     assert welded.surface.vertex_body.tolist() == [0] * len(cube.vertices) + [1] * len(cube.vertices)
 
 
-def test_welding_drops_what_collapses_and_what_is_there_twice() -> None:
+def test_welding_drops_collapsed_and_duplicate_faces() -> None:
     positions = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -0.0], [1, 0, 0], [2, 0, 0]]
     surface = stiv.Surface([[0, 1, 2], [3, 2, 4], [0, 3, 1], [2, 5, 1]], 6, [[0, 3], [3, 5], [0, 5]])
     welded = stiv.weld(surface, positions)

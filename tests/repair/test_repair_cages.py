@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contraction, expansion and repair of cages: what intersects is the subdivided surface, what moves is the cage."""
+"""Contraction, expansion and repair of cages: the subdivided surface intersects, and the cage moves."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LEVELS = 1
 
 
 class CagedHairpin:
-    """A bent tube as the cage of a Catmull-Clark surface, thick enough that the legs of the surface meet."""
+    """A bent tube as the cage of a Catmull-Clark surface, thick enough for its legs to intersect."""
 
     def __init__(self) -> None:
         tube = hairpin(0.28, rings=24, sides=8)
@@ -32,7 +32,7 @@ def tube() -> CagedHairpin:
     return CagedHairpin()
 
 
-def test_a_cage_is_repaired_and_its_surface_is_free(tube: CagedHairpin) -> None:
+def test_a_cage_is_repaired_and_its_surface_is_clear(tube: CagedHairpin) -> None:
     assert tube.pairs(tube.controls) > 60
     result = stiv.repair(tube.triangles, tube.controls, deformation=tube.deformation, cage=tube.cage)
     assert result.status == "repaired"
@@ -57,7 +57,7 @@ def test_contraction_counts_pairs_of_the_surface(tube: CagedHairpin) -> None:
     assert tube.pairs(back.controls) == 0
 
 
-def test_controls_that_may_not_move_stay(tube: CagedHairpin) -> None:
+def test_fixed_controls_stay(tube: CagedHairpin) -> None:
     moves = np.arange(len(tube.controls)) >= len(tube.controls) // 2
     options = stiv.RepairOptions(moves=moves)
     result = stiv.repair(tube.triangles, tube.controls, options, deformation=tube.deformation, cage=tube.cage)
@@ -65,8 +65,8 @@ def test_controls_that_may_not_move_stay(tube: CagedHairpin) -> None:
     assert (tube.pairs(result.positions) == 0) == (result.status == "repaired")
 
 
-def test_a_cage_beside_what_stays() -> None:
-    """Two spheres, one of them a cage, the other in the way; the deformations side by side as Blender's objects are."""
+def test_a_cage_next_to_a_fixed_object() -> None:
+    """Two spheres, a cage and a fixed obstacle, with concatenated deformations like Blender's objects."""
     ball = icosphere(1)
     faces = tuple(map(tuple, ball.faces))
     deformation, triangles = stiv.catmull_clark(stiv.Cage.of_faces(faces), 1)
@@ -86,7 +86,7 @@ def test_a_cage_beside_what_stays() -> None:
     assert np.array_equal(after[count:], still)
 
 
-def test_what_does_not_fit_is_refused_in_words(tube: CagedHairpin) -> None:
+def test_mismatched_input_is_refused_in_words(tube: CagedHairpin) -> None:
     with pytest.raises(stiv.InputError, match="cage: the triangles of the controls are needed"):
         stiv.repair(tube.triangles, tube.controls, deformation=tube.deformation)
     with pytest.raises(stiv.InputError, match="cage: goes with a deformation"):
