@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of array arguments: what comes out is safe to hand to the native core."""
+"""Checks of arguments. Their results are safe to pass to the native core."""
 
-from typing import Any
+from enum import Enum
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,7 @@ from stiv._native import InputError
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int32]
+Choice = TypeVar("Choice", bound=Enum)
 
 
 def _as_array(value: ArrayLike, name: str) -> NDArray[Any]:
@@ -33,16 +35,16 @@ def _check_shape(array: NDArray[Any], name: str, shape: tuple[int | None, ...]) 
 
 
 def as_reals(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
-    """Return `value` as a contiguous float64 array of a shape in which None is any size: itself if it is one.
+    """Return `value` as a contiguous float64 array with a shape in which None is any size, without a copy if it is one.
 
-    Its numbers may be anything: for what the core looks at itself.
+    Numbers that are not finite pass: the core checks them.
     """
     array = _as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: dtype is {array.dtype}, expected real numbers")
     _check_shape(array, name, shape)
     result: Floats = np.ascontiguousarray(array, np.float64)
-    return result if result.flags.aligned else result.copy()  # the core reads it where it is
+    return result if result.flags.aligned else result.copy()  # the core reads it in place
 
 
 def check_finite(array: Floats, name: str) -> None:
@@ -54,7 +56,7 @@ def check_finite(array: Floats, name: str) -> None:
 
 
 def as_floats(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Floats:
-    """Return `value` as a contiguous float64 array of a shape in which None is any size.
+    """Return `value` as a contiguous float64 array with a shape in which None is any size.
 
     Raises InputError naming the first row with a number that is not finite.
     """
@@ -64,9 +66,9 @@ def as_floats(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> Flo
 
 
 def as_indices(value: ArrayLike, name: str, shape: tuple[int | None, ...], count: int | None = None) -> Indices:
-    """Return `value` as a contiguous int32 array of a shape in which None is any size.
+    """Return `value` as a contiguous int32 array with a shape in which None is any size.
 
-    Raises InputError naming the first row with an index outside 0..count-1 (None: negative, or too large for int32).
+    Raises InputError naming the first row with an index outside 0..count-1; None: with one that does not fit int32.
     """
     array = _as_array(value, name)
     if array.size == 0 and array.ndim != len(shape):
@@ -83,7 +85,7 @@ def as_indices(value: ArrayLike, name: str, shape: tuple[int | None, ...], count
 
 
 def as_number(value: float, name: str, low: float = -np.inf) -> float:
-    """Return `value` as a finite float that is not below `low`."""
+    """Return `value` as a finite float of at least `low`."""
     try:
         number = float(value)
     except (TypeError, ValueError) as error:
@@ -95,7 +97,14 @@ def as_number(value: float, name: str, low: float = -np.inf) -> float:
 
 
 def as_count(value: int, name: str) -> int:
-    """Return `value` as an integer of int32 that is not negative."""
+    """Return `value` as a non-negative integer of int32."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 0 <= value < 2**31:
-        raise InputError(f"{name}: expected an integer that is not negative, not {value!r}")
+        raise InputError(f"{name}: expected a non-negative integer, not {value!r}")
     return int(value)
+
+
+def as_choice(value: str, name: str, choices: type[Choice]) -> Choice:
+    """Return the member of an enum of the core with the name `value`."""
+    if value not in choices.__members__:
+        raise InputError(f"{name}: {value!r} is none of {', '.join(map(repr, choices.__members__))}")
+    return choices[value]

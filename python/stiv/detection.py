@@ -1,31 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finding interference along linear steps."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
 from stiv._native import InputError
-from stiv.arrays import Floats, Indices, as_count, as_floats, as_indices, as_number, as_reals, check_finite
+from stiv.arrays import Floats, Indices, as_choice, as_count, as_floats, as_indices, as_number, as_reals, check_finite
 from stiv.surface import Surface, as_surface
-
-KINDS: Mapping[str, _native.EventKind] = {"vf": _native.EventKind.vf, "ee": _native.EventKind.ee}
-BROAD_PHASES: Mapping[str, _native.BroadPhase] = {
-    "bvh": _native.BroadPhase.bvh,
-    "hash_grid": _native.BroadPhase.hash_grid,
-    "brute_force": _native.BroadPhase.brute_force,
-}
-NARROW_PHASES: Mapping[str, _native.NarrowPhase] = {
-    "conservative": _native.NarrowPhase.conservative,
-    "polynomial": _native.NarrowPhase.polynomial,
-}
-
-Choice = TypeVar("Choice")
 
 
 @dataclass(frozen=True)
@@ -56,13 +42,7 @@ class Events:
     @property
     def kind_names(self) -> NDArray[np.str_]:
         """(K,) "vf" or "ee"."""
-        return np.array(list(KINDS))[self.kind]
-
-
-def _choose(choices: Mapping[str, Choice], value: str, name: str) -> Choice:
-    if value not in choices:
-        raise InputError(f"{name}: there is no {value!r}, only " + ", ".join(map(repr, choices)))
-    return choices[value]
+        return np.array(list(_native.EventKind.__members__))[self.kind]
 
 
 def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: float = 0.0, *, threads: int = 0) -> Floats:
@@ -77,7 +57,7 @@ def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: floa
     Raises InputError naming the row for wrong shapes, numbers that are not finite, and coordinates that are neither 0
     nor of magnitude 1e-70 to 1e70.
     """
-    event_kind = _choose(KINDS, kind, "kind")
+    event_kind = as_choice(kind, "kind", _native.EventKind)
     first = as_floats(start, "start", (None, 4, 3))
     last = as_floats(end, "end", (len(first), 4, 3))
     return _native.times_of_impact(
@@ -114,8 +94,8 @@ class Detector:
         threads: int = 0,
     ) -> None:
         """Check the arguments; trees are built at the first step."""
-        self._broad_phase = _choose(BROAD_PHASES, broad_phase, "broad_phase")
-        self._narrow_phase = _choose(NARROW_PHASES, narrow_phase, "narrow_phase")
+        self._broad_phase = as_choice(broad_phase, "broad_phase", _native.BroadPhase)
+        self._narrow_phase = as_choice(narrow_phase, "narrow_phase", _native.NarrowPhase)
         self._threads = as_count(threads, "threads")
         self._surface = surface if isinstance(surface, Surface) else as_indices(surface, "triangles", (None, 3))
         self._native: _native.Detector | None = None

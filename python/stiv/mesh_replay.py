@@ -22,7 +22,7 @@ from stiv.mesh_files import Mesh
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int32]
-SETTINGS = {"separation": float, "smoothness": float, "threads": int}  # those of stiv.EditOptions that scripts may give
+SETTINGS = ("separation", "smoothness", "threads")  # options of stiv.EditOptions that a script may set
 
 
 def replay_on_mesh(
@@ -115,7 +115,7 @@ def _options(settings: Mapping[str, Any]) -> dict[str, Any]:
             raise InputError(f'setting "{name}": of mesh files there are {", ".join(SETTINGS)}')
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise InputError(f'setting "{name}": {value!r} is not a number')
-    return {name: SETTINGS[name](value) for name, value in settings.items()}
+    return {name: type(getattr(stiv.EditOptions, name))(value) for name, value in settings.items()}
 
 
 def _point_map(step: EditStep, points: Floats) -> tuple[stiv.Deformation, Floats, Floats]:

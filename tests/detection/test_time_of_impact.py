@@ -115,7 +115,7 @@ def test_shapes_and_results() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("vertex", np.zeros((1, 4, 3)), np.zeros((1, 4, 3))), "kind: there is no 'vertex', only 'vf', 'ee'"),
+        (("vertex", np.zeros((1, 4, 3)), np.zeros((1, 4, 3))), "kind: 'vertex' is none of 'vf', 'ee'"),
         (("vf", np.zeros((1, 4, 2)), np.zeros((1, 4, 3))), "start: shape is"),
         (("vf", np.zeros((2, 4, 3)), np.zeros((1, 4, 3))), "end: shape is"),
         (("vf", np.array([[[0.0] * 3] * 4, [[np.nan] * 3] * 4]), np.zeros((2, 4, 3))), "start, row 1: "),

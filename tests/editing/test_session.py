@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 import stiv
 from blend_fixtures.scenes import families
+from stiv.edit_options import native_options
 
 
 @pytest.fixture
@@ -156,3 +158,9 @@ def test_the_representation_shows_the_shape_of_weights() -> None:
     assert repr(options) == "EditOptions(smoothness=0.01, weights=<array of shape (5000, 3)>)"
     assert repr(stiv.EditOptions()) == "EditOptions()"
     assert len(repr(stiv.EditOptions(weights=[1.0] * 5000))) < 100
+
+
+def test_the_defaults_are_those_of_the_core() -> None:
+    core, ours = stiv._native.EditOptions(), native_options(stiv.EditOptions())
+    for option in fields(stiv.EditOptions):
+        assert np.array_equal(getattr(core, option.name), getattr(ours, option.name)), option.name

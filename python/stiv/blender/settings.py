@@ -8,6 +8,7 @@ from typing import Literal
 from stiv import InputError
 from stiv.blender.scene.exclusions import Exclusions
 from stiv.choices import BOUNDARIES, DEFORMATIONS, GUARDS, OBJECT_RESPONSES, OPERATORS, RESPONDERS, RESTS, ROLES
+from stiv.edit_options import SharedOptions
 
 Kind = Literal["move", "rotate", "scale"]
 
@@ -81,11 +82,10 @@ class LoopSurface:
 
 
 @dataclass(frozen=True)
-class EditSettings:
-    """Choices for one edit.
+class EditSettings(SharedOptions):
+    """Choices for one edit. `stiv.EditOptions` describes separation, smoothness, constraints, time_budget and threads.
 
     Attributes:
-        separation: distance that surfaces keep, world units; 0 chooses one.
         pair_separations: distances that pairs of objects keep instead, by their names; twice the same name for an
             object with itself. Objects that show nothing do not count.
         interference: False: nothing gives way and nothing is tested, surfaces may go through each other;
@@ -110,13 +110,8 @@ class EditSettings:
         excluded: pairs of faces that intersect already and may go on to; all others are guarded.
         guard: what is kept free of intersections: what the "viewport" shows (in Edit Mode what Object Mode shows too),
             what is rendered ("render"), or "both"; "auto": both where they differ and the surface stays small enough.
-        smoothness: damping of the response; 0.1 smooth, 0.01 tight.
-        constraints: "per_patch" or "single".
-        threads: 0 for all.
-        time_budget: seconds for each solve, 0 for none.
     """
 
-    separation: float = 0.0
     pair_separations: tuple[tuple[str, str, float], ...] = ()
     interference: bool = True
     responders: str = "selected"
@@ -129,10 +124,6 @@ class EditSettings:
     ignored_pairs: tuple[tuple[str, str], ...] = ()
     excluded: Exclusions = field(default_factory=Exclusions)
     guard: str = "auto"
-    smoothness: float = 0.1
-    constraints: str = "per_patch"
-    threads: int = 0
-    time_budget: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse unknown choices."""

@@ -55,17 +55,13 @@ def make_session(
         first += len(part.controls)
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
-        separation=settings.separation,
+        **settings.shared(),
         pair_separations=pair_separations_of(assembly, settings),
-        smoothness=settings.smoothness,
         weights=weights_of_all(weights),
         weight_axes=axes_of_all(parts),
         exclude=settings.excluded.triangles(assembly, q, settings.threads),
-        constraints=settings.constraints,
         single_precision=bool(frames),
         storage=frames,
-        time_budget=settings.time_budget,
-        threads=settings.threads,
     )
     try:
         return stiv.EditSession(assembly.surface, deformation, controls, options)

@@ -117,15 +117,11 @@ class Reshaped:
         """How an edit of all controls that may move is solved."""
         given = weights_of_all([part.given for part in self.parts])
         return stiv.EditOptions(
-            separation=self.settings.separation,
+            **self.settings.shared(),
             pair_separations=pair_separations_of(self.assembly, self.settings),
-            smoothness=self.settings.smoothness,
             weights=point_weights(self.moves, 1.0, 0.0, given),
             weight_axes=axes_of_all(self.parts),
-            constraints=self.settings.constraints,
             storage=self.frames,
-            time_budget=self.settings.time_budget,
-            threads=self.settings.threads,
         )
 
     def world(self, locals_: Sequence[Singles | None]) -> Floats:
