@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The check of the documents reports each kind of finding at its line, and nothing in exempt text."""
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -99,12 +100,22 @@ def test_the_code_cites_the_mathematics() -> None:
     assert not [text for text in texts if "DESIGN" in text]
 
 
-@pytest.mark.parametrize("folder", ["python/stiv/blender", "addon"])
-def test_the_map_names_existing_modules(folder: str) -> None:
-    """Each name in the architecture's map of a folder is a module or a folder in it."""
+@pytest.mark.parametrize("folder", ["native", "python/stiv/blender", "addon"])
+def test_the_map_names_existing_files_and_folders(folder: str) -> None:
     text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
     table = text.split(f"### `{folder}`")[1].split("\n#")[0]
-    named = [name for row in table.splitlines() if row.startswith("|") for name in row.split("`")[1::2]]
-    present = {path.stem for path in (ROOT / folder).rglob("*") if path.suffix in ("", ".py")}
+    named = {name for row in table.splitlines() if row.startswith("| `") for name in re.findall(r"`(\w+)`", row)}
     assert len(named) > 5
-    assert {name for name in named if "." not in name} <= present
+    assert named - {"f"} <= {path.stem for path in (ROOT / folder).rglob("*")}
+
+
+def test_the_map_names_every_room() -> None:
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    for parent in ("native/src", "python/stiv", "python/stiv/blender", "addon"):
+        rooms = {path.parent.name for path in (ROOT / parent).glob("*/*") if path.suffix in (".py", ".cpp")}
+        assert {room for room in rooms if f"`{room}`" not in text} <= {
+            "__pycache__",
+            "vector",
+            "translations",
+            "schemas",
+        }
