@@ -80,7 +80,7 @@ std::shared_ptr<Deformation> stored_mesh(const std::shared_ptr<Deformation>& mes
 py::object tuple_of(const std::optional<NearestTriangles>& nearest) {
   if (!nearest) return py::none();
   Positions points(2, 3);
-  for (Index k = 0; k < 2; ++k) points.row(k) = nearest->points[static_cast<std::size_t>(k)].transpose();
+  for (Index k = 0; k < 2; ++k) points.row(k) = nearest->points[at(k)].transpose();
   return py::make_tuple(nearest->distance, nearest->triangles, points);
 }
 

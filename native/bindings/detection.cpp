@@ -91,7 +91,7 @@ py::tuple arrays_of(const Events& events) {
   py::array_t<Index> vertices({count, py::ssize_t{4}});
   py::array_t<double> time(count), weights({count, py::ssize_t{4}}), normal({count, py::ssize_t{3}}), distance(count);
   for (py::ssize_t row = 0; row < count; ++row) {
-    const Event& event = events[static_cast<std::size_t>(row)];
+    const Event& event = events[at(row)];
     kind.mutable_at(row) = static_cast<std::uint8_t>(event.kind);
     time.mutable_at(row) = event.time;
     distance.mutable_at(row) = event.start_distance;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace stiv {
 
 /// Index of a vertex, edge, triangle, control or body.
 using Index = std::int32_t;
+
+/// An index as a subscript of standard containers.
+constexpr std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
 
 using Vector3 = Eigen::Vector3d;
 

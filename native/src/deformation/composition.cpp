@@ -68,10 +68,10 @@ class Chain final : public HandleDeformation {
   std::vector<Index> support(Index control) const override {
     std::vector<unsigned char> moves(static_cast<std::size_t>(vertex_count()), 0);
     for (const Index vertex : inner_->support(control))
-      for (const Index moved : outer_->support(vertex)) moves[static_cast<std::size_t>(moved)] = 1;
+      for (const Index moved : outer_->support(vertex)) moves[at(moved)] = 1;
     std::vector<Index> vertices;
     for (Index vertex = 0; vertex < vertex_count(); ++vertex)
-      if (moves[static_cast<std::size_t>(vertex)] != 0) vertices.push_back(vertex);
+      if (moves[at(vertex)] != 0) vertices.push_back(vertex);
     return vertices;
   }
 

@@ -72,10 +72,10 @@ SparseField sorted(SparseField field) {
 std::vector<SparseField> split(const SparseField& field, const Places& places, std::size_t part_count) {
   std::vector<SparseField> pieces(part_count);
   for (std::size_t k = 0; k < field.index.size(); ++k) {
-    const auto at = static_cast<std::size_t>(field.index[k]);
-    if (places.part[at] < 0) continue;
-    SparseField& piece = pieces[static_cast<std::size_t>(places.part[at])];
-    piece.index.push_back(places.row[at]);
+    const std::size_t row = at(field.index[k]);
+    if (places.part[row] < 0) continue;
+    SparseField& piece = pieces[at(places.part[row])];
+    piece.index.push_back(places.row[row]);
     piece.value.push_back(field.value[k]);
   }
   for (SparseField& piece : pieces) piece = sorted(std::move(piece));
@@ -222,10 +222,10 @@ class Concatenation final : public Deformation {
   }
 
   std::vector<Index> support(Index control) const override {
-    const auto at = static_cast<std::size_t>(control);
-    const DeformationPart& part = parts_[static_cast<std::size_t>(control_places_.part[at])];
-    std::vector<Index> vertices = part.deformation->support(control_places_.row[at]);
-    for (Index& vertex : vertices) vertex = part.vertices[static_cast<std::size_t>(vertex)];
+    const std::size_t row = at(control);
+    const DeformationPart& part = parts_[at(control_places_.part[row])];
+    std::vector<Index> vertices = part.deformation->support(control_places_.row[row]);
+    for (Index& vertex : vertices) vertex = part.vertices[at(vertex)];
     std::sort(vertices.begin(), vertices.end());
     return vertices;
   }
@@ -242,7 +242,7 @@ class Concatenation final : public Deformation {
     constexpr Index rows_per_chunk = 8192;
     const std::vector<Index>& vertices = parts_[part].vertices;
     execution.for_chunks(static_cast<Index>(piece.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
-      for (Index row = begin; row < end; ++row) whole.row(vertices[static_cast<std::size_t>(row)]) = piece.row(row);
+      for (Index row = begin; row < end; ++row) whole.row(vertices[at(row)]) = piece.row(row);
     });
   }
 

@@ -15,8 +15,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 void lower(std::atomic<double>& minimum, double value) {
   double seen = minimum.load(std::memory_order_relaxed);
   while (value < seen && !minimum.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {

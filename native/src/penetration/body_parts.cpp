@@ -12,8 +12,6 @@ namespace {
 
 using Edge = std::array<Index, 2>;
 
-std::size_t at(Index k) { return static_cast<std::size_t>(k); }
-
 std::vector<Index> triangles_of(const Surface& surface, Index body) {
   std::vector<Index> triangles;
   for (Index triangle = 0; triangle < static_cast<Index>(surface.triangles().rows()); ++triangle)

@@ -47,8 +47,7 @@ void BodyPenetrations::add_parts(Index body, const Positions& start) {
 
 void BodyPenetrations::add_part(Index body, bool closed, std::vector<Index> triangles, const Positions& start) {
   const auto number = static_cast<Index>(parts_.size());
-  for (std::size_t k = 0; k < triangles.size(); ++k)
-    places_[static_cast<std::size_t>(triangles[k])] = {number, static_cast<Index>(k)};
+  for (std::size_t k = 0; k < triangles.size(); ++k) places_[at(triangles[k])] = {number, static_cast<Index>(k)};
   Part& added = parts_.emplace_back(Part{body, closed, body_mesh(*surface_, std::move(triangles)), {}, 1});
   const PlacedBody placed(added.mesh, start);
   added.start_areas = areas_of(placed);
@@ -75,7 +74,7 @@ std::vector<BodyPenetrations::Pair> BodyPenetrations::pairs() const {
 void BodyPenetrations::update(std::vector<Penetration>& penetrations, const std::vector<unsigned char>& displaced,
                               const Positions& q, const IndexPairs& intersecting) const {
   const std::vector<IndexPairs> meeting = meeting_by_pair(intersecting);
-  const auto is_displaced = [&](Index number) { return displaced[static_cast<std::size_t>(part(number).body)] != 0; };
+  const auto is_displaced = [&](Index number) { return displaced[at(part(number).body)] != 0; };
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (is_displaced(pairs_[k][0]) || is_displaced(pairs_[k][1])) penetrations[k] = measured(pairs_[k], meeting[k], q);
 }
@@ -90,7 +89,7 @@ std::vector<IndexPairs> BodyPenetrations::meeting_by_pair(const IndexPairs& inte
     const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), parts);
     if (found == pairs_.end() || *found != parts) continue;
     if (first.part != parts[0]) std::swap(first, second);
-    meeting[static_cast<std::size_t>(found - pairs_.begin())].emplace_back(first.triangle, second.triangle);
+    meeting[at(found - pairs_.begin())].emplace_back(first.triangle, second.triangle);
   }
   return meeting;
 }

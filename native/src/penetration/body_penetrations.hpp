@@ -52,8 +52,8 @@ class BodyPenetrations {
 
   void add_parts(Index body, const Positions& start);
   void add_part(Index body, bool closed, std::vector<Index> triangles, const Positions& start);
-  const Part& part(Index number) const { return parts_[static_cast<std::size_t>(number)]; }
-  const Place& place(Index triangle) const { return places_[static_cast<std::size_t>(triangle)]; }
+  const Part& part(Index number) const { return parts_[at(number)]; }
+  const Place& place(Index triangle) const { return places_[at(triangle)]; }
   std::array<Index, 2> ordered(Index a, Index b) const;
   bool is_measurable(const std::array<Index, 2>& parts) const;
   std::vector<IndexPairs> meeting_by_pair(const IndexPairs& intersecting) const;

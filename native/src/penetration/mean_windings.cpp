@@ -22,10 +22,10 @@ std::vector<double> mean_windings(const Crossings& crossings, std::size_t side) 
   std::vector<double> means;
   for (Index k = 0; k < body.triangle_count(); ++k) {
     const auto& corners = body.corners(k);
-    means.push_back(crossings.mean_along(side, corners[1], corners[2], numbers[static_cast<std::size_t>(corners[1])]));
+    means.push_back(crossings.mean_along(side, corners[1], corners[2], numbers[at(corners[1])]));
   }
   for (const Cut& cut : crossings.cuts())
-    means[static_cast<std::size_t>(cut.triangles[side])] += side == 0 ? swept(cut.ends[0]) : -swept(cut.ends[1]);
+    means[at(cut.triangles[side])] += side == 0 ? swept(cut.ends[0]) : -swept(cut.ends[1]);
   return means;
 }
 

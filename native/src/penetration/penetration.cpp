@@ -16,7 +16,7 @@ void add_side(const Crossings& crossings, std::size_t side, double rounding, Pen
   const Vector3 origin = crossings.body(0).point(0);
   const std::vector<double> means = mean_windings(crossings, side);
   for (Index k = 0; k < body.triangle_count(); ++k) {
-    const double mean = means[static_cast<std::size_t>(k)];
+    const double mean = means[at(k)];
     if (mean == 0) continue;
     const Vector3 area = body.area_vector(k);
     sum.amount += mean * area.dot(body.point(body.corners(k)[0]) - origin) / 6;
@@ -44,8 +44,7 @@ Penetration nudged_area_inside(const Crossings& crossings, const std::vector<dou
   const std::vector<double> means = mean_windings(crossings, 0);
   for (std::size_t k = 0; k < areas.size(); ++k) sum.amount += areas[k] * means[k];
   std::vector<double> passed(areas.size(), 0);
-  for (const Cut& cut : crossings.cuts())
-    passed[static_cast<std::size_t>(cut.triangles[0])] += part_passed(crossings, cut, rounding);
+  for (const Cut& cut : crossings.cuts()) passed[at(cut.triangles[0])] += part_passed(crossings, cut, rounding);
   for (std::size_t k = 0; k < areas.size(); ++k) sum.uncertainty += areas[k] * std::min(passed[k], 1.0);
   return sum;
 }

@@ -14,10 +14,8 @@ class PlacedBody {
 
   const BodyMesh& mesh() const { return mesh_; }
   Index triangle_count() const { return static_cast<Index>(mesh_.triangles.size()); }
-  const std::array<Index, 3>& corners(Index triangle) const {
-    return mesh_.corners[static_cast<std::size_t>(triangle)];
-  }
-  const Vector3& point(Index vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
+  const std::array<Index, 3>& corners(Index triangle) const { return mesh_.corners[at(triangle)]; }
+  const Vector3& point(Index vertex) const { return points_[at(vertex)]; }
   Triangle triangle(Index triangle) const;
   const Eigen::AlignedBox3d& box() const { return box_; }
 

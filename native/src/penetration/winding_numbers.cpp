@@ -42,7 +42,7 @@ int winding_number(const PlacedBody& closed, const Vector3& point, int nudge) {
 std::vector<int> winding_numbers(const Crossings& crossings, std::size_t side) {
   const PlacedBody& body = crossings.body(side);
   std::vector<int> numbers(body.mesh().vertices.size(), 0);
-  const auto number = [&](Index vertex) -> int& { return numbers[static_cast<std::size_t>(vertex)]; };
+  const auto number = [&](Index vertex) -> int& { return numbers[at(vertex)]; };
   for (const Index seed : body.mesh().seeds)
     number(seed) = winding_number(crossings.body(1 - side), body.point(seed), crossings.nudge(side));
   for (const auto& [from, to] : body.mesh().walk) number(to) = number(from) + crossings.gained(side, from, to);

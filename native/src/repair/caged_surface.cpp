@@ -20,7 +20,7 @@ std::vector<unsigned char> controls_moving(const std::vector<unsigned char>& ver
   std::vector<unsigned char> controls(supports.size());
   for (std::size_t control = 0; control < supports.size(); ++control)
     controls[control] = std::any_of(supports[control].begin(), supports[control].end(),
-                                    [&](Index vertex) { return vertices[static_cast<std::size_t>(vertex)] != 0; });
+                                    [&](Index vertex) { return vertices[at(vertex)] != 0; });
   return controls;
 }
 
@@ -29,7 +29,7 @@ std::vector<unsigned char> moved_by(const std::vector<unsigned char>& controls,
   std::vector<unsigned char> vertices(static_cast<std::size_t>(vertex_count), 0);
   for (std::size_t control = 0; control < supports.size(); ++control)
     if (controls[control] != 0)
-      for (const Index vertex : supports[control]) vertices[static_cast<std::size_t>(vertex)] = 1;
+      for (const Index vertex : supports[control]) vertices[at(vertex)] = 1;
   return vertices;
 }
 

@@ -9,8 +9,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 void append_triangle(const Surface& surface, Index triangle, std::vector<Index>& vertices) {
   for (const Index vertex : surface.triangles().row(triangle)) vertices.push_back(vertex);
 }

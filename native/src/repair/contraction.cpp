@@ -93,7 +93,7 @@ ContractionSystem contraction_system(const Surface& surface, const Positions& q,
                      std::to_string(surface.vertex_count()) + " vertices");
   ContractionSystem system{cotangent_laplacian(surface, q), surface.vertex_areas(q), {}};
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
-    if (moves.empty() || moves[static_cast<std::size_t>(vertex)] != 0) system.moving.push_back(vertex);
+    if (moves.empty() || moves[at(vertex)] != 0) system.moving.push_back(vertex);
   return system;
 }
 

@@ -84,7 +84,7 @@ std::vector<ContractionTry> contraction_tries(const CagedSurface& caged, const S
   std::vector<ContractionTry> tries;
   if (bodies.size() > 1)
     for (const Index body : bodies_in_all_pairs(surface, vertices)) {
-      const std::string& name = surface.bodies()[static_cast<std::size_t>(body)].name;
+      const std::string& name = surface.bodies()[at(body)].name;
       tries.push_back({name, part(marks_of_bodies(surface, {body}, movable.vertices))});
     }
   tries.push_back({"all", part(marks_of_bodies(surface, bodies, movable.vertices))});

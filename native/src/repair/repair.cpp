@@ -24,7 +24,7 @@ Movable movable_of(const CagedSurface& caged, const Marks& asked) {
                      std::to_string(count) + " controls");
   const Surface& surface = *caged.surface;
   const auto is_deformable = [&](Index vertex) {
-    return surface.bodies()[static_cast<std::size_t>(surface.body_of(vertex))].mobility == Mobility::deformable;
+    return surface.bodies()[at(surface.body_of(vertex))].mobility == Mobility::deformable;
   };
   Movable movable{Marks(count), {}, supports_of(*caged.deformation)};
   for (std::size_t k = 0; k < count; ++k) {
@@ -41,7 +41,7 @@ bool any_coincide(const Surface& surface, const Positions& q, const StaticPairs&
     std::array<std::array<double, 3>, 3> places;
     for (Index k = 0; k < 3; ++k) {
       const auto row = q.row(surface.triangles()(triangle, k));
-      places[static_cast<std::size_t>(k)] = {row[0], row[1], row[2]};
+      places[at(k)] = {row[0], row[1], row[2]};
     }
     std::sort(places.begin(), places.end());
     return places;
@@ -51,7 +51,7 @@ bool any_coincide(const Surface& surface, const Positions& q, const StaticPairs&
 }
 
 bool any_held(const Surface& surface, const StaticPairs& pairs, const Marks& movable) {
-  const auto moves = [&](Index vertex) { return movable[static_cast<std::size_t>(vertex)] != 0; };
+  const auto moves = [&](Index vertex) { return movable[at(vertex)] != 0; };
   const auto vertices = vertices_of_pairs(surface, pairs);
   return std::any_of(vertices.begin(), vertices.end(),
                      [&](const auto& pair) { return std::none_of(pair.begin(), pair.end(), moves); });
@@ -63,7 +63,7 @@ double relative_deviation(const Positions& from, const Positions& to, const Mark
   Eigen::RowVector3d low = Eigen::RowVector3d::Constant(infinity), high = -low;
   double sum = 0, count = 0;
   for (Index vertex = 0; vertex < from.rows(); ++vertex) {
-    if (marks[static_cast<std::size_t>(vertex)] == 0) continue;
+    if (marks[at(vertex)] == 0) continue;
     low = low.cwiseMin(from.row(vertex));
     high = high.cwiseMax(from.row(vertex));
     sum += (to.row(vertex) - from.row(vertex)).squaredNorm();

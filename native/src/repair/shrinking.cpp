@@ -15,7 +15,7 @@ using PairVertices = std::vector<std::vector<Index>>;
 
 /// Pairs of which some vertices belong to a part and some do not.
 Index crossing(const PairVertices& pairs, const Marks& part) {
-  const auto is_marked = [&](Index vertex) { return part[static_cast<std::size_t>(vertex)] != 0; };
+  const auto is_marked = [&](Index vertex) { return part[at(vertex)] != 0; };
   return static_cast<Index>(std::count_if(pairs.begin(), pairs.end(), [&](const std::vector<Index>& pair) {
     return std::any_of(pair.begin(), pair.end(), is_marked) && !std::all_of(pair.begin(), pair.end(), is_marked);
   }));
@@ -26,14 +26,14 @@ Controls shrunk(const Controls& p, const Marks& controls, double factor) {
   Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
   double count = 0;
   for (Index row = 0; row < p.rows(); ++row)
-    if (controls[static_cast<std::size_t>(row)] != 0) {
+    if (controls[at(row)] != 0) {
       middle += p.row(row);
       count += 1;
     }
   middle /= count;
   Controls nearer = p;
   for (Index row = 0; row < p.rows(); ++row)
-    if (controls[static_cast<std::size_t>(row)] != 0) nearer.row(row) = middle + factor * (p.row(row) - middle);
+    if (controls[at(row)] != 0) nearer.row(row) = middle + factor * (p.row(row) - middle);
   return nearer;
 }
 

@@ -19,8 +19,6 @@ constexpr double least_squared_length = 1e-24;
 
 constexpr Index steps_per_chunk = 8;
 
-std::size_t place(Index k) { return static_cast<std::size_t>(k); }
-
 }  // namespace
 
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
@@ -32,7 +30,7 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
   for (const Stiv& stiv : stivs) gradients.push_back(stiv.gradient);
   std::vector<SparseField> rows = deformation.pull_back_all(p, gradients, shared), steps(rows.size());
   shared.for_chunks(static_cast<Index>(rows.size()), steps_per_chunk, [&](Index begin, Index end, Index) {
-    for (Index k = begin; k < end; ++k) steps[place(k)] = metric.apply_inverse(metric_at, rows[place(k)]);
+    for (Index k = begin; k < end; ++k) steps[at(k)] = metric.apply_inverse(metric_at, rows[at(k)]);
   });
   std::vector<ControlConstraint> constraints;
   for (std::size_t k = 0; k < stivs.size(); ++k) {
@@ -63,9 +61,9 @@ void ConstraintSet::complete_gram(const Execution& execution) {
     StepTile::Products products;
     for (Index row = 0; row < after; ++row) {
       if (row >= before && row < first) continue;  // the tile of that row's step has the products
-      steps.multiply(constraints_[place(row)].row, products);
+      steps.multiply(constraints_[at(row)].row, products);
       for (Index column = first; column < last; ++column)
-        if (row < before || row >= column) gram(row, column) = gram(column, row) = products[place(column - first)];
+        if (row < before || row >= column) gram(row, column) = gram(column, row) = products[at(column - first)];
     }
   });
   gram_ = std::move(gram);

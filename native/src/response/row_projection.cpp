@@ -47,7 +47,7 @@ Controls project_by_rows(const std::vector<ControlConstraint>& constraints, cons
   make_as_long(multipliers, static_cast<Eigen::Index>(constraints.size()));
   Controls p = from;
   for (Eigen::Index r = 0; r < multipliers.size(); ++r)
-    if (multipliers[r] > 0) add_scaled(p, multipliers[r], constraints[static_cast<std::size_t>(r)].step);
+    if (multipliers[r] > 0) add_scaled(p, multipliers[r], constraints[at(r)].step);
   for (int k = 0; k < options.max_sweeps; ++k) {
     if (options.execution != nullptr) options.execution->check();
     const double change = sweep(constraints, p, multipliers);

@@ -20,7 +20,7 @@ inline double dot_with_run(const SparseField& a, const SparseField& run) {
   const auto begin = std::lower_bound(a.index.begin(), a.index.end(), first);
   for (auto k = static_cast<std::size_t>(begin - a.index.begin()); k < a.index.size(); ++k) {
     if (a.index[k] > run.index.back()) break;
-    sum += a.value[k].dot(run.value[static_cast<std::size_t>(a.index[k] - first)]);
+    sum += a.value[k].dot(run.value[at(a.index[k] - first)]);
   }
   return sum;
 }

@@ -72,7 +72,7 @@ RowControls::RowControls(const std::vector<ControlConstraint>& constraints) {
     if (numbers_.size() <= static_cast<std::size_t>(controls.back()))
       numbers_.resize(static_cast<std::size_t>(controls.back()) + 1, -1);
     for (const Index control : controls) {
-      Index& number = numbers_[static_cast<std::size_t>(control)];
+      Index& number = numbers_[at(control)];
       if (number < 0) number = static_cast<Index>(count_++);
     }
   }

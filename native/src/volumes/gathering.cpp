@@ -15,7 +15,7 @@ std::vector<Stiv> StivGathering::stivs() {
     return std::tie(a.patch, a.vertex) < std::tie(b.patch, b.vertex);
   });
   for (const Entry& entry : entries_) {
-    SparseField& field = stivs_[static_cast<std::size_t>(entry.patch)].gradient;
+    SparseField& field = stivs_[at(entry.patch)].gradient;
     if (!field.index.empty() && field.index.back() == entry.vertex) {
       field.value.back() += entry.value;
     } else {

@@ -13,7 +13,7 @@ class StivGathering {
   /// @param labels patch of each region, 0, 1, ...
   explicit StivGathering(const std::vector<Index>& labels);
 
-  void add_volume(Index patch, double volume) { stivs_[static_cast<std::size_t>(patch)].volume += volume; }
+  void add_volume(Index patch, double volume) { stivs_[at(patch)].volume += volume; }
   void add_gradient(Index patch, Index vertex, const Vector3& value) { entries_.push_back({patch, vertex, value}); }
 
   /// The STIVs, a patch each; once.

@@ -29,12 +29,12 @@ class Partition {
 
 void join_neighbours(const Surface& surface, const std::vector<Region>& regions, Partition& partition) {
   std::vector<Index> place(static_cast<std::size_t>(surface.vertex_count()), -1);  // of each vertex's region
-  for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) place[static_cast<std::size_t>(regions[k].vertex)] = k;
+  for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) place[at(regions[k].vertex)] = k;
   for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) {
     const Index vertex = regions[k].vertex;
     for (const Index* other = surface.neighbours_begin(vertex); other != surface.neighbours_end(vertex); ++other) {
       if (*other >= vertex) break;  // each pair once: neighbours ascend
-      const Index neighbour = place[static_cast<std::size_t>(*other)];
+      const Index neighbour = place[at(*other)];
       if (neighbour >= 0 && !regions[k].rigid && !regions[neighbour].rigid) partition.join(k, neighbour);
     }
   }

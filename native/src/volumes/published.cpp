@@ -19,7 +19,7 @@ struct Side {
 };
 
 Side side_of(const Events& events, Index number, int begin, int end, const Positions& displacement) {
-  const Event& event = events[static_cast<std::size_t>(number)];
+  const Event& event = events[at(number)];
   Side side{{0, number, false}, {begin, end, Vector3::Zero()}};
   double heaviest = -1;
   for (int corner = begin; corner < end; ++corner) {
@@ -37,19 +37,19 @@ Side side_of(const Events& events, Index number, int begin, int end, const Posit
 std::vector<Side> earliest_sides(const Events& events, const Positions& displacement) {
   std::vector<Side> sides;
   for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
-    const int split = first_side_size(events[static_cast<std::size_t>(k)].kind);
+    const int split = first_side_size(events[at(k)].kind);
     sides.push_back(side_of(events, k, 0, split, displacement));
     sides.push_back(side_of(events, k, split, 4, displacement));
   }
   const auto key = [&](const Side& side) {
     const Region& region = side.region;
-    return std::make_tuple(region.vertex, events[static_cast<std::size_t>(region.event)].time, region.event);
+    return std::make_tuple(region.vertex, events[at(region.event)].time, region.event);
   };
   std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return key(a) < key(b); });
   const auto same_region = [](const Side& a, const Side& b) { return a.region.vertex == b.region.vertex; };
   sides.erase(std::unique(sides.begin(), sides.end(), same_region), sides.end());
   std::erase_if(sides, [&](const Side& side) {
-    return side.contact.displacement.dot(events[static_cast<std::size_t>(side.region.event)].normal) == 0;
+    return side.contact.displacement.dot(events[at(side.region.event)].normal) == 0;
   });
   return sides;
 }
@@ -70,7 +70,7 @@ std::vector<Stiv> published_volumes(const Surface& surface, const Events& events
   StivGathering gathering(labels);
   for (std::size_t number = 0; number < sides.size(); ++number) {
     const Side& side = sides[number];
-    const Event& event = events[static_cast<std::size_t>(side.region.event)];
+    const Event& event = events[at(side.region.event)];
     const double area = areas[side.region.vertex], along = side.contact.displacement.dot(event.normal);
     const Vector3 normal = along < 0 ? event.normal : Vector3(-event.normal);
     gathering.add_volume(labels[number], -area * (1 - event.time) * std::abs(along));

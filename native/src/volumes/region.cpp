@@ -31,11 +31,11 @@ bool normal_is_steady(const Event& event, const Positions& start, const Position
   for (const double weight : event.weights)
     if (std::abs(weight) < least_share) return false;
   if (event.kind == EventKind::vertex_face) return true;
-  const auto at = [&](int k) -> Vector3 {
+  const auto contact_corner = [&](int k) -> Vector3 {
     const Index vertex = event.vertices[k];
     return start.row(vertex) + event.time * (end.row(vertex) - start.row(vertex));
   };
-  const Vector3 first = at(1) - at(0), second = at(3) - at(2);
+  const Vector3 first = contact_corner(1) - contact_corner(0), second = contact_corner(3) - contact_corner(2);
   return first.cross(second).norm() > least_sine * first.norm() * second.norm();
 }
 
@@ -107,14 +107,14 @@ std::vector<Region> thinned(const Surface& surface, const Events& events, const 
 
 /// The regions on either side of the chosen events; of those of one vertex the earliest, of equals the first.
 std::vector<Region> earliest_of(const Surface& surface, const Events& events, const std::vector<Index>& chosen) {
-  std::vector<Index> place(static_cast<std::size_t>(surface.vertex_count()), -1);  // of each vertex's region
+  std::vector<Index> region_of_vertex(at(surface.vertex_count()), -1);
   std::vector<Region> regions;
   const auto add = [&](Index vertex, Index event, bool rigid) {
-    Index& at = place[static_cast<std::size_t>(vertex)];
-    if (at < 0) {
-      at = static_cast<Index>(regions.size());
+    Index& known = region_of_vertex[at(vertex)];
+    if (known < 0) {
+      known = static_cast<Index>(regions.size());
       regions.push_back({vertex, event, rigid});
-    } else if (Region& region = regions[static_cast<std::size_t>(at)];
+    } else if (Region& region = regions[at(known)];
                std::tie(events[event].time, event) < std::tie(events[region.event].time, region.event)) {
       region = {vertex, event, rigid};
     }

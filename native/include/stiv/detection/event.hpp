@@ -39,8 +39,7 @@ inline constexpr int first_side_size(EventKind kind) { return kind == EventKind:
 template <class Field>
 Vector3 weighted_sum(const Event& event, const Field& d) {
   Vector3 sum = Vector3::Zero();
-  for (int k = 0; k < 4; ++k)
-    sum += event.weights[static_cast<std::size_t>(k)] * d.row(event.vertices[static_cast<std::size_t>(k)]).transpose();
+  for (int k = 0; k < 4; ++k) sum += event.weights[at(k)] * d.row(event.vertices[at(k)]).transpose();
   return sum;
 }
 

@@ -14,8 +14,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t place(Index k) { return static_cast<std::size_t>(k); }
-
 double squared_gap(const PackedBox& a, const PackedBox& b) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -77,7 +75,7 @@ class Search {
     for (std::size_t k = 0; k < count && pairs[k].bound < squared_best_; ++k) {
       const Part &x = first.parts[pairs[k].a], &y = second.parts[pairs[k].b];
       if (x.level < 0 && y.level < 0)
-        examine(tree_.order()[place(x.node)], tree_.order()[place(y.node)], pairs[k].bound == 0);
+        examine(tree_.order()[at(x.node)], tree_.order()[at(y.node)], pairs[k].bound == 0);
       else
         visit(x, y);
     }
@@ -90,19 +88,19 @@ class Search {
   }
 
   Parts children(const Part& part) const {
-    const Bvh::Level& level = tree_.levels()[place(part.level)];
-    const Bvh::Node& node = level.nodes[place(part.node)];
-    const Index below = part.level > 0 ? static_cast<Index>(tree_.levels()[place(part.level - 1)].nodes.size())
+    const Bvh::Level& level = tree_.levels()[at(part.level)];
+    const Bvh::Node& node = level.nodes[at(part.node)];
+    const Index below = part.level > 0 ? static_cast<Index>(tree_.levels()[at(part.level - 1)].nodes.size())
                                        : static_cast<Index>(tree_.order().size());
     Parts parts;
     for (Index lane = 0; lane < std::min(Bvh::width, below - part.node * Bvh::width); ++lane) {
       const Index child = part.node * Bvh::width + lane;
-      if (part.level == 0 && tree_.order()[place(child)] < 0) continue;
+      if (part.level == 0 && tree_.order()[at(child)] < 0) continue;
       Part& next = parts.parts[parts.count++];
       next.level = part.level - 1;
       next.node = child;
       for (std::size_t k = 0; k < 7; ++k) next.box.values[k] = node.planes[k][lane];
-      next.group = part.level > 0 ? tree_.levels()[place(part.level - 1)].groups[place(child)] : part.group;
+      next.group = part.level > 0 ? tree_.levels()[at(part.level - 1)].groups[at(child)] : part.group;
     }
     return parts;
   }

@@ -45,10 +45,10 @@ struct Expansion {
   std::array<double, static_cast<std::size_t>(Capacity)> term;
   int size = 0;
 
-  double operator[](int k) const { return term[static_cast<std::size_t>(k)]; }
+  double operator[](int k) const { return term[at(k)]; }
 
   void append(double value) {
-    if (value != 0) term[static_cast<std::size_t>(size++)] = value;
+    if (value != 0) term[at(size++)] = value;
   }
 
   /// Adds one double. [theorem 10, GROW-EXPANSION]
@@ -77,7 +77,7 @@ inline Expansion<2> exact_difference(double x, double y) {
 
 template <int N>
 Expansion<N> operator-(Expansion<N> e) {
-  for (int k = 0; k < e.size; ++k) e.term[static_cast<std::size_t>(k)] *= -1;
+  for (int k = 0; k < e.size; ++k) e.term[at(k)] *= -1;
   return e;
 }
 

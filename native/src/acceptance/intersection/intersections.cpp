@@ -32,8 +32,8 @@ class Search {
   IndexPairs all(const Execution& execution) const {
     std::vector<IndexPairs> found(tasks_.size());
     execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
-      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair& pair) {
-        found[static_cast<std::size_t>(task)].emplace_back(pair.first, pair.second);
+      scan(tasks_[at(task)], [&](const PrimitivePair& pair) {
+        found[at(task)].emplace_back(pair.first, pair.second);
         return true;
       });
     });
@@ -44,7 +44,7 @@ class Search {
     std::atomic<bool> found{false};
     execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
       if (found.load(std::memory_order_relaxed)) return;
-      scan(tasks_[static_cast<std::size_t>(task)], [&](const PrimitivePair&) {
+      scan(tasks_[at(task)], [&](const PrimitivePair&) {
         found.store(true, std::memory_order_relaxed);
         return false;
       });

@@ -8,7 +8,7 @@ PointRows point_rows(const PositionsView& q, const Execution& execution) {
   PointRows rows(static_cast<std::size_t>(q.rows()));
   execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index vertex = begin; vertex < end; ++vertex)
-      rows[static_cast<std::size_t>(vertex)] = {{q(vertex, 0), q(vertex, 1), q(vertex, 2), 0}};
+      rows[at(vertex)] = {{q(vertex, 0), q(vertex, 1), q(vertex, 2), 0}};
   });
   return rows;
 }

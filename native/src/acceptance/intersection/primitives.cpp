@@ -9,12 +9,10 @@ namespace {
 
 constexpr Index chunk_size = 4096;
 
-std::size_t place(Index k) { return static_cast<std::size_t>(k); }
-
 PackedBox box_of(const std::array<Index, 3>& corners, const std::vector<PackedBox>& vertices) {
-  PackedBox box = vertices[place(corners[0])];
-  box.include(vertices[place(corners[1])]);
-  box.include(vertices[place(corners[2])]);
+  PackedBox box = vertices[at(corners[0])];
+  box.include(vertices[at(corners[1])]);
+  box.include(vertices[at(corners[2])]);
   return box;
 }
 
@@ -33,24 +31,24 @@ CornerList loose_edge_corners(const Surface& surface) {
 }
 
 CornerList loose_vertex_corners(const Surface& surface) {
-  std::vector<unsigned char> used(place(surface.vertex_count()), 0);
-  for (const Index vertex : surface.triangles().reshaped()) used[place(vertex)] = 1;
-  for (const Index vertex : surface.loose_edges().reshaped()) used[place(vertex)] = 1;
+  std::vector<unsigned char> used(at(surface.vertex_count()), 0);
+  for (const Index vertex : surface.triangles().reshaped()) used[at(vertex)] = 1;
+  for (const Index vertex : surface.loose_edges().reshaped()) used[at(vertex)] = 1;
   CornerList corners;
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
-    if (!used[place(vertex)]) corners.push_back({vertex, vertex, vertex});
+    if (!used[at(vertex)]) corners.push_back({vertex, vertex, vertex});
   return corners;
 }
 
 std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
                                     const Execution& execution) {
   const auto count = static_cast<Index>(q.rows());
-  std::vector<PackedBox> boxes(place(count));
+  std::vector<PackedBox> boxes(at(count));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
     for (Index vertex = begin; vertex < end; ++vertex) {
       Bounds point = Bounds::empty();
       point.include(q.row(vertex).transpose(), 0);
-      boxes[place(vertex)] = PackedBox::of(point, moved.empty() || moved[place(vertex)] != 0);
+      boxes[at(vertex)] = PackedBox::of(point, moved.empty() || moved[at(vertex)] != 0);
     }
   });
   return boxes;
@@ -75,8 +73,8 @@ void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_sta
   names_.resize(3 * corners_.size());
   execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = 3 * begin; k < 3 * end; ++k) {
-      const Index vertex = corners_[place(k / 3)][place(k % 3)];
-      names_[place(k)] = free_stars[place(vertex)] ? vertex : -2 - k;
+      const Index vertex = corners_[at(k / 3)][at(k % 3)];
+      names_[at(k)] = free_stars[at(vertex)] ? vertex : -2 - k;
     }
   });
   tree_->set_corners({names_.data(), 3}, execution);

@@ -34,7 +34,7 @@ class Primitives {
   void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution);
 
   bool empty() const { return corners_.empty(); }
-  const std::array<Index, 3>& corners(Index k) const { return corners_[static_cast<std::size_t>(k)]; }
+  const std::array<Index, 3>& corners(Index k) const { return corners_[at(k)]; }
   const CornerList& all_corners() const { return corners_; }
   const Bvh& tree() const { return *tree_; }
 

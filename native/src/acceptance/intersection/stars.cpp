@@ -11,8 +11,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 /// The side of a triangle opposite to a vertex, in its direction of turning.
 struct Spoke {
   Index from, to;

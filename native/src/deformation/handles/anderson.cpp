@@ -24,17 +24,16 @@ Positions AndersonAcceleration::next(const Positions& x, const Positions& g) {
   Eigen::MatrixXd products(count, count);
   Eigen::VectorXd right(count);
   for (Index row = 0; row < count; ++row) {
-    const Positions& a = differences_[static_cast<std::size_t>(row)].residual;
+    const Positions& a = differences_[at(row)].residual;
     right[row] = a.cwiseProduct(residual).sum();
     for (Index column = 0; column <= row; ++column)
-      products(row, column) = products(column, row) =
-          a.cwiseProduct(differences_[static_cast<std::size_t>(column)].residual).sum();
+      products(row, column) = products(column, row) = a.cwiseProduct(differences_[at(column)].residual).sum();
   }
   products.diagonal().array() += damping * products.diagonal().mean();
   const Eigen::VectorXd share = products.ldlt().solve(right);
   Positions result = g;
   if (!share.allFinite()) return result;
-  for (Index k = 0; k < count; ++k) result -= share[k] * differences_[static_cast<std::size_t>(k)].image;
+  for (Index k = 0; k < count; ++k) result -= share[k] * differences_[at(k)].image;
   return result;
 }
 

@@ -47,16 +47,16 @@ class Arap final : public HandleDeformation {
     check_control_rows(p, control_count());
     Positions q = rest_ + minimum(p)->u;
     if (pull_.size() == 0)
-      for (Index k = 0; k < control_count(); ++k) q.row(handles_[static_cast<std::size_t>(k)]) = p.row(k);
+      for (Index k = 0; k < control_count(); ++k) q.row(handles_[at(k)]) = p.row(k);
     return q;
   }
 
   /// J'g = M'(g + C H^-1 g): the transpose of the below.
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
-    const auto at = minimum(p);
+    const auto state = minimum(p);
     Positions covector = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) = g.value[k];
-    return map_.pull_back(all_rows(covector + cells_.load_change(at->fits, solve_hessian(*at, covector))));
+    return map_.pull_back(all_rows(covector + cells_.load_change(state->fits, solve_hessian(*state, covector))));
   }
 
   /// Many at once, as the contacts of a round: by a factor of H, which all of them share. A contact's covector is one
@@ -64,22 +64,21 @@ class Arap final : public HandleDeformation {
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                          const Execution& execution) const override {
     if (g.size() < worth_a_factor) return Deformation::pull_back_all(p, g, execution);
-    const auto at = minimum(p);
-    const auto factor = SparseFactor::if_definite(free_hessian(*at));
+    const auto state = minimum(p);
+    const auto factor = SparseFactor::if_definite(free_hessian(*state));
     if (!factor) return Deformation::pull_back_all(p, g, execution);  // at a saddle
     std::vector<SparseField> pulled(g.size());
     execution.for_chunks(static_cast<Index>(g.size()), ColumnBlock::ColsAtCompileTime,
                          [&](Index begin, Index end, Index) {
                            ColumnBlock right = ColumnBlock::Zero(factor->size(), ColumnBlock::ColsAtCompileTime);
-                           for (Index k = begin; k < end; ++k)
-                             set_column(right, k - begin, g[static_cast<std::size_t>(k)]);
+                           for (Index k = begin; k < end; ++k) set_column(right, k - begin, g[at(k)]);
                            const ColumnBlock solved = factor->solve(right);
                            for (Index k = begin; k < end; ++k) {
-                             Positions covector = cells_.load_change(at->fits, from_column(solved, k - begin));
-                             const SparseField& field = g[static_cast<std::size_t>(k)];
+                             Positions covector = cells_.load_change(state->fits, from_column(solved, k - begin));
+                             const SparseField& field = g[at(k)];
                              for (std::size_t i = 0; i < field.index.size(); ++i)
                                covector.row(field.index[i]) += field.value[i];
-                             pulled[static_cast<std::size_t>(k)] = map_.pull_back(all_rows(covector));
+                             pulled[at(k)] = map_.pull_back(all_rows(covector));
                            }
                          });
     return pulled;
@@ -88,9 +87,9 @@ class Arap final : public HandleDeformation {
   /// J d = M d + H^-1 C M d: the global step with frozen rotations, and how the rotations answer it.
   Positions push_forward(const Controls& p, const Controls& d) const override {
     check_control_rows(d, control_count());
-    const auto at = minimum(p);
+    const auto state = minimum(p);
     const Positions frozen = map_.follow(d);
-    return frozen + solve_hessian(*at, cells_.load_change(at->fits, frozen));
+    return frozen + solve_hessian(*state, cells_.load_change(state->fits, frozen));
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return map_.metric(options, nullptr); }
@@ -113,8 +112,7 @@ class Arap final : public HandleDeformation {
 
   double energy(const Positions& u, const std::vector<RotationFit>& fits, const Controls& d) const {
     double sum = cells_.energy(u, fits);
-    for (Index k = 0; k < pull_.size(); ++k)
-      sum += pull_[k] / 2 * (u.row(handles_[static_cast<std::size_t>(k)]) - d.row(k)).squaredNorm();
+    for (Index k = 0; k < pull_.size(); ++k) sum += pull_[k] / 2 * (u.row(handles_[at(k)]) - d.row(k)).squaredNorm();
     return sum;
   }
 
@@ -133,39 +131,39 @@ class Arap final : public HandleDeformation {
   Minimum find_minimum(const ControlsView& p) const {
     const Controls d = p - rest_controls_;
     const Positions start = map_.follow(d);
-    Minimum at{p, start, cells_.fit(start)};
-    if (d.isZero(0)) return at;
+    Minimum state{p, start, cells_.fit(start)};
+    if (d.isZero(0)) return state;
     AndersonAcceleration acceleration;
-    Positions plain = at.u;
+    Positions plain = state.u;
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step < most_steps; ++step) {
-      double now = energy(at.u, at.fits, d);
+      double now = energy(state.u, state.fits, d);
       if (now > before * (1 + slack)) {  // led astray: the global step itself never raises it
         acceleration.restart();
-        at.u = plain;
-        at.fits = cells_.fit(at.u, at.fits);
-        now = energy(at.u, at.fits, d);
+        state.u = plain;
+        state.fits = cells_.fit(state.u, state.fits);
+        now = energy(state.u, state.fits, d);
       }
       before = now;
-      plain = start + map_.answer(cells_.load(at.fits));
-      const double motion = (plain - at.u).cwiseAbs().maxCoeff();
-      at.u = motion <= least_motion * size_ ? plain : acceleration.next(at.u, plain);
-      at.fits = cells_.fit(at.u, at.fits);
+      plain = start + map_.answer(cells_.load(state.fits));
+      const double motion = (plain - state.u).cwiseAbs().maxCoeff();
+      state.u = motion <= least_motion * size_ ? plain : acceleration.next(state.u, plain);
+      state.fits = cells_.fit(state.u, state.fits);
       if (motion <= least_motion * size_) break;
     }
-    return at;
+    return state;
   }
 
   /// H^-1 r of the free vertices, H = K - C the Hessian of the energy with its rotations: conjugate gradients with the
   /// factor of K. (K z = r is known, so K is never multiplied with.) It ends early where H is not positive: at a
   /// saddle.
-  Positions solve_hessian(const Minimum& at, const Positions& right) const {
+  Positions solve_hessian(const Minimum& state, const Positions& right) const {
     Positions y = Positions::Zero(vertex_count(), 3), residual = freed(right);
     Positions z = map_.answer(residual), direction = z, pushed = residual;
     double product = residual.cwiseProduct(z).sum();
     const double end = least_residual * least_residual * product;
     for (int step = 0; step < most_steps && product > end; ++step) {
-      const Positions curved = pushed - freed(cells_.load_change(at.fits, direction));
+      const Positions curved = pushed - freed(cells_.load_change(state.fits, direction));
       const double curvature = direction.cwiseProduct(curved).sum();
       if (!(curvature > 0)) break;
       const double length = product / curvature;
@@ -181,21 +179,20 @@ class Arap final : public HandleDeformation {
   }
 
   /// H = K + S'A S - C of the free vertices, three rows each.
-  SymmetricMatrix free_hessian(const Minimum& at) const {
+  SymmetricMatrix free_hessian(const Minimum& state) const {
     const std::vector<Index>& place = map_.partition().place;
     std::vector<Eigen::Triplet<double, Index>> entries;
     const auto add = [&](Index row, Index column, double value) {
-      const Index i = place[static_cast<std::size_t>(row / 3)], j = place[static_cast<std::size_t>(column / 3)];
+      const Index i = place[at(row / 3)], j = place[at(column / 3)];
       if (i >= 0 && j >= 0) entries.emplace_back(3 * i + row % 3, 3 * j + column % 3, value);
     };
-    const SymmetricMatrix stiffness = mesh_laplacian(weights_), change = cells_.load_matrix(at.fits);
+    const SymmetricMatrix stiffness = mesh_laplacian(weights_), change = cells_.load_matrix(state.fits);
     for (Index column = 0; column < stiffness.cols(); ++column)
       for (SymmetricMatrix::InnerIterator entry(stiffness, column); entry; ++entry)
         for (Index axis = 0; axis < 3; ++axis)
           add(3 * static_cast<Index>(entry.row()) + axis, 3 * column + axis, entry.value());
     for (Index k = 0; k < pull_.size(); ++k)
-      for (Index axis = 0, row = 3 * handles_[static_cast<std::size_t>(k)]; axis < 3; ++axis)
-        add(row + axis, row + axis, pull_[k]);
+      for (Index axis = 0, row = 3 * handles_[at(k)]; axis < 3; ++axis) add(row + axis, row + axis, pull_[k]);
     for (Index column = 0; column < change.cols(); ++column)
       for (SymmetricMatrix::InnerIterator entry(change, column); entry; ++entry)
         add(static_cast<Index>(entry.row()), column, -entry.value());
@@ -207,7 +204,7 @@ class Arap final : public HandleDeformation {
 
   void set_column(ColumnBlock& block, Index column, const SparseField& field) const {
     for (std::size_t k = 0; k < field.index.size(); ++k)
-      if (const Index place = map_.partition().place[static_cast<std::size_t>(field.index[k])]; place >= 0)
+      if (const Index place = map_.partition().place[at(field.index[k])]; place >= 0)
         block.col(column).segment<3>(3 * place) = field.value[k];
   }
 

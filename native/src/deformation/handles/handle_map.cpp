@@ -24,10 +24,10 @@ SymmetricMatrix free_stiffness(const HandleDefinition& definition, const HandleP
   Triplets entries;
   for (const Index vertex : partition.free)
     for (SymmetricMatrix::InnerIterator entry(stiffness, vertex); entry; ++entry)
-      if (const Index row = partition.place[static_cast<std::size_t>(entry.row())]; row >= 0)
-        entries.emplace_back(row, partition.place[static_cast<std::size_t>(vertex)], entry.value());
+      if (const Index row = partition.place[at(entry.row())]; row >= 0)
+        entries.emplace_back(row, partition.place[at(vertex)], entry.value());
   for (Index k = 0; k < definition.pull.size(); ++k) {
-    const Index place = partition.place[static_cast<std::size_t>(definition.handles[static_cast<std::size_t>(k)])];
+    const Index place = partition.place[at(definition.handles[at(k)])];
     entries.emplace_back(place, place, definition.pull[k]);
   }
   return matrix_of(entries, partition.free.size(), partition.free.size());
@@ -39,13 +39,13 @@ SymmetricMatrix drive_of(const HandleDefinition& definition, const HandlePartiti
   Triplets entries;
   for (std::size_t k = 0; k < definition.handles.size(); ++k) {
     const Index handle = definition.handles[k], control = static_cast<Index>(k);
-    const Index place = partition.place[static_cast<std::size_t>(handle)];
+    const Index place = partition.place[at(handle)];
     if (place >= 0) {
       entries.emplace_back(place, control, definition.pull[control]);
       continue;
     }
     for (SymmetricMatrix::InnerIterator entry(stiffness, handle); entry; ++entry)
-      if (const Index row = partition.place[static_cast<std::size_t>(entry.row())]; row >= 0)
+      if (const Index row = partition.place[at(entry.row())]; row >= 0)
         entries.emplace_back(row, control, -entry.value());
   }
   return matrix_of(entries, partition.free.size(), definition.handles.size());
@@ -55,11 +55,10 @@ SymmetricMatrix drive_of(const HandleDefinition& definition, const HandlePartiti
 std::vector<Index> rows_in_use(const SymmetricMatrix& matrix) {
   std::vector<unsigned char> used(static_cast<std::size_t>(matrix.rows()), 0);
   for (Index column = 0; column < matrix.outerSize(); ++column)
-    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry)
-      used[static_cast<std::size_t>(entry.row())] = 1;
+    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry) used[at(entry.row())] = 1;
   std::vector<Index> rows;
   for (Index row = 0; row < matrix.rows(); ++row)
-    if (used[static_cast<std::size_t>(row)] != 0) rows.push_back(row);
+    if (used[at(row)] != 0) rows.push_back(row);
   return rows;
 }
 
@@ -76,7 +75,7 @@ SymmetricMatrix selected_rows(const SymmetricMatrix& matrix, const std::vector<I
 /// The first `count` of the columns of an inverse that `rows` names from `first` on; zero beyond.
 ColumnBlock unit_columns(const std::vector<Index>& rows, Index first, Index count, Index size) {
   ColumnBlock unit = ColumnBlock::Zero(size, ColumnBlock::ColsAtCompileTime);
-  for (Index k = 0; k < count; ++k) unit(rows[static_cast<std::size_t>(first + k)], k) = 1;
+  for (Index k = 0; k < count; ++k) unit(rows[at(first + k)], k) = 1;
   return unit;
 }
 
@@ -143,9 +142,9 @@ template <class Block>
 Block HandleMap::solved(const Block& d) const {
   const Block free = factor_->solve(Block(drive_ * d));
   Block u = Block::Zero(vertex_count(), d.cols());
-  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[static_cast<std::size_t>(k)]) = free.row(k);
+  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[at(k)]) = free.row(k);
   if (hard_)
-    for (Index k = 0; k < control_count(); ++k) u.row(handles_[static_cast<std::size_t>(k)]) = d.row(k);
+    for (Index k = 0; k < control_count(); ++k) u.row(handles_[at(k)]) = d.row(k);
   return u;
 }
 
@@ -153,10 +152,10 @@ Block HandleMap::solved(const Block& d) const {
 template <class Block>
 Block HandleMap::pulled(const Block& g) const {
   Block free(static_cast<Index>(partition_.free.size()), g.cols());
-  for (Index k = 0; k < free.rows(); ++k) free.row(k) = g.row(partition_.free[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < free.rows(); ++k) free.row(k) = g.row(partition_.free[at(k)]);
   Block covector = drive_.transpose() * factor_->solve(free, needed_);
   if (hard_)
-    for (Index k = 0; k < control_count(); ++k) covector.row(k) += g.row(handles_[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < control_count(); ++k) covector.row(k) += g.row(handles_[at(k)]);
   return covector;
 }
 
@@ -232,8 +231,7 @@ void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseFie
   for (std::size_t field = 0; field < count; ++field) {
     covectors[field] = whole_field(control_count());
     for (const Vector3& direction : directions[field]) {
-      for (Index k = 0; k < control_count(); ++k)
-        covectors[field].value[static_cast<std::size_t>(k)] += left(k, column) * direction;
+      for (Index k = 0; k < control_count(); ++k) covectors[field].value[at(k)] += left(k, column) * direction;
       ++column;
     }
   }
@@ -250,7 +248,7 @@ SparseField HandleMap::pull_back(const SparseField& g) const {
     for (std::size_t k = 0; k < g.index.size(); ++k) sum += full_.row(g.index[k]).transpose() * g.value[k].transpose();
   else
     sum = pulled_by_answers(g);
-  for (Index k = 0; k < control_count(); ++k) covector.value[static_cast<std::size_t>(k)] = sum.row(k);
+  for (Index k = 0; k < control_count(); ++k) covector.value[at(k)] = sum.row(k);
   return covector;
 }
 
@@ -266,7 +264,7 @@ std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>
   }
   const std::vector<std::size_t> runs = runs_of(g);
   execution.for_chunks(static_cast<Index>(runs.size()) - 1, 1, [&](Index run, Index, Index) {
-    const std::size_t begin = runs[static_cast<std::size_t>(run)], end = runs[static_cast<std::size_t>(run) + 1];
+    const std::size_t begin = runs[at(run)], end = runs[static_cast<std::size_t>(run) + 1];
     if (end - begin == 1)
       covectors[begin] = pull_back(g[begin]);
     else
@@ -277,20 +275,20 @@ std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>
 
 Positions HandleMap::answer(const Positions& right) const {
   Positions free(static_cast<Index>(partition_.free.size()), 3);
-  for (Index k = 0; k < free.rows(); ++k) free.row(k) = right.row(partition_.free[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < free.rows(); ++k) free.row(k) = right.row(partition_.free[at(k)]);
   free = factor_->solve(free);
   Positions u = Positions::Zero(vertex_count(), 3);
-  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[static_cast<std::size_t>(k)]) = free.row(k);
+  for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[at(k)]) = free.row(k);
   return u;
 }
 
 std::vector<Index> HandleMap::support(Index control) const {
-  const auto handle = static_cast<std::size_t>(handles_[static_cast<std::size_t>(control)]);
+  const auto handle = static_cast<std::size_t>(handles_[at(control)]);
   const bool drives = drive_.outerIndexPtr()[control + 1] > drive_.outerIndexPtr()[control];
   std::vector<Index> vertices;
   if (drives)
     for (const Index vertex : partition_.free)
-      if (partition_.part[static_cast<std::size_t>(vertex)] == partition_.part[handle]) vertices.push_back(vertex);
+      if (partition_.part[at(vertex)] == partition_.part[handle]) vertices.push_back(vertex);
   if (hard_) vertices.insert(std::lower_bound(vertices.begin(), vertices.end(), handle), static_cast<Index>(handle));
   return vertices;
 }

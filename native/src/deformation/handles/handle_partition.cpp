@@ -25,7 +25,7 @@ std::vector<Index> controls_of_vertices(const HandleDefinition& definition) {
     const std::string name = "handle " + std::to_string(k);
     const Index vertex = definition.handles[k];
     check_vertex(vertex, count, name);
-    Index& taken = control[static_cast<std::size_t>(vertex)];
+    Index& taken = control[at(vertex)];
     if (taken >= 0)
       throw InputError(name + ": vertex " + std::to_string(vertex) + " is already handle " + std::to_string(taken));
     taken = static_cast<Index>(k);
@@ -48,7 +48,7 @@ void check_fixed(const HandleDefinition& definition) {
   const std::vector<Index> control = controls_of_vertices(definition);
   for (const Index vertex : definition.fixed) {
     check_vertex(vertex, static_cast<Index>(definition.rest.rows()), "fixed");
-    if (const Index handle = control[static_cast<std::size_t>(vertex)]; handle >= 0)
+    if (const Index handle = control[at(vertex)]; handle >= 0)
       throw InputError("fixed: vertex " + std::to_string(vertex) + " is handle " + std::to_string(handle) +
                        "; a vertex may be one of the two");
   }
@@ -59,12 +59,12 @@ std::vector<Index> connected_parts(const Surface& mesh) {
   std::vector<Index> part(static_cast<std::size_t>(mesh.vertex_count()), -1);
   std::vector<Index> waiting;
   for (Index first = 0; first < mesh.vertex_count(); ++first) {
-    if (part[static_cast<std::size_t>(first)] < 0) waiting.push_back(first);
+    if (part[at(first)] < 0) waiting.push_back(first);
     while (!waiting.empty()) {
       const Index vertex = waiting.back();
       waiting.pop_back();
-      if (part[static_cast<std::size_t>(vertex)] >= 0) continue;
-      part[static_cast<std::size_t>(vertex)] = first;
+      if (part[at(vertex)] >= 0) continue;
+      part[at(vertex)] = first;
       waiting.insert(waiting.end(), mesh.neighbours_begin(vertex), mesh.neighbours_end(vertex));
     }
   }
@@ -90,13 +90,11 @@ HandlePartition handle_partition(const HandleDefinition& definition, const Surfa
   partition.part = connected_parts(mesh);
   partition.place.assign(count, -1);
   std::vector<unsigned char> moves(count, 0), held(count, 0);
-  for (const Index handle : definition.handles)
-    moves[static_cast<std::size_t>(partition.part[static_cast<std::size_t>(handle)])] = 1;
-  for (const Index vertex : definition.fixed) held[static_cast<std::size_t>(vertex)] = 1;
+  for (const Index handle : definition.handles) moves[at(partition.part[at(handle)])] = 1;
+  for (const Index vertex : definition.fixed) held[at(vertex)] = 1;
   const bool hard = definition.pull.size() == 0;
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    const bool still = !moves[static_cast<std::size_t>(partition.part[vertex])] || held[vertex] ||
-                       (hard && partition.control[vertex] >= 0);
+    const bool still = !moves[at(partition.part[vertex])] || held[vertex] || (hard && partition.control[vertex] >= 0);
     if (still) continue;
     partition.place[vertex] = static_cast<Index>(partition.free.size());
     partition.free.push_back(static_cast<Index>(vertex));

@@ -26,7 +26,7 @@ class Laplacian final : public HandleDeformation {
     check_control_rows(p, control_count());
     Positions q = rest_ + map_.follow(p - rest_controls_);
     if (hard_)
-      for (Index k = 0; k < control_count(); ++k) q.row(handles_[static_cast<std::size_t>(k)]) = p.row(k);
+      for (Index k = 0; k < control_count(); ++k) q.row(handles_[at(k)]) = p.row(k);
     return q;
   }
 

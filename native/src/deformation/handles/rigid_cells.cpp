@@ -39,8 +39,7 @@ Eigen::Matrix3d RigidCells::spread(const Positions& u, Index vertex) const {
 
 std::vector<RotationFit> RigidCells::fit(const Positions& u) const {
   std::vector<RotationFit> fits(static_cast<std::size_t>(weights_.cols()));
-  for (Index vertex = 0; vertex < weights_.cols(); ++vertex)
-    fits[static_cast<std::size_t>(vertex)] = fit_rotation(spread(u, vertex));
+  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) fits[at(vertex)] = fit_rotation(spread(u, vertex));
   return fits;
 }
 
@@ -56,7 +55,7 @@ std::vector<RotationFit> RigidCells::fit(const Positions& u, const std::vector<R
 double RigidCells::energy(const Positions& u, const std::vector<RotationFit>& fits) const {
   double sum = 0;
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
-    const Eigen::Matrix3d& rotation = fits[static_cast<std::size_t>(vertex)].rotation;
+    const Eigen::Matrix3d& rotation = fits[at(vertex)].rotation;
     for (Edge edge(weights_, vertex); edge; ++edge) {
       const Vector3 at_rest = across(rest_, vertex, edge);
       sum += edge.value() * (at_rest + across(u, vertex, edge) - rotation * at_rest).squaredNorm();
@@ -72,9 +71,9 @@ Positions RigidCells::load_of(const std::vector<Eigen::Matrix3d>& change) const 
     for (Edge edge(weights_, vertex); edge; ++edge) {
       const Vector3 weighted = edge.value() * across(rest_, vertex, edge);
       edges += weighted;
-      sum += change[static_cast<std::size_t>(edge.row())] * weighted;
+      sum += change[at(edge.row())] * weighted;
     }
-    load.row(vertex) = (sum + change[static_cast<std::size_t>(vertex)] * edges).transpose() / 2;
+    load.row(vertex) = (sum + change[at(vertex)] * edges).transpose() / 2;
   }
   return load;
 }
@@ -90,7 +89,7 @@ Positions RigidCells::load_change(const std::vector<RotationFit>& fits, const Po
   std::vector<Eigen::Matrix3d> change;
   change.reserve(fits.size());
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
-    const RotationFit& fit = fits[static_cast<std::size_t>(vertex)];
+    const RotationFit& fit = fits[at(vertex)];
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (Edge edge(weights_, vertex); edge; ++edge)
       spread += edge.value() * across(du, vertex, edge) * across(rest_, vertex, edge).transpose();
@@ -104,7 +103,7 @@ SymmetricMatrix RigidCells::load_matrix(const std::vector<RotationFit>& fits) co
   Triplets entries;
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;  // T_i: vertices of the cell and their blocks
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
-    const RotationFit& fit = fits[static_cast<std::size_t>(vertex)];
+    const RotationFit& fit = fits[at(vertex)];
     turns.assign(1, {vertex, Eigen::Matrix3d::Zero()});
     for (Edge edge(weights_, vertex); edge; ++edge) {
       const Eigen::Matrix3d turn = edge.value() * cross_matrix(across(rest_, vertex, edge)) * fit.rotation.transpose();

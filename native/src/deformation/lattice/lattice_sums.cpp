@@ -90,7 +90,7 @@ LatticeSums::LatticeSums(const std::array<LatticeAxis, 3>& axes, const Positions
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const AxisWeights along = axis_weights(axes[axis], places(vertex, static_cast<Index>(axis)));
       for (const double weight : along.weight) weights_.push_back(axis == 2 ? weight * factors[vertex] : weight);
-      first[static_cast<std::size_t>(vertex)][axis] = along.first;
+      first[at(vertex)][axis] = along.first;
     }
   for (std::size_t axis = 0; axis < 3 && count > 0; ++axis) {
     const auto along = [&](const auto& a, const auto& b) { return a[axis] < b[axis]; };
@@ -120,8 +120,7 @@ Positions LatticeSums::sum(const Controls& p, std::span<const Index> vertices, c
 Positions LatticeSums::sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const {
   constexpr Index rows_per_chunk = 2048;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> points(static_cast<Index>(points_.size()), 4);
-  for (Index place = 0; place < points.rows(); ++place)
-    points.row(place) << p.row(points_[static_cast<std::size_t>(place)]), 0;
+  for (Index place = 0; place < points.rows(); ++place) points.row(place) << p.row(points_[at(place)]), 0;
   Positions sums(count, 3);
   const std::ptrdiff_t row = 4 * axes_[0].count;
   const LatticeProduct product{starts_.data(),       weights_.data(), points.data(), row,

@@ -54,7 +54,7 @@ class Linear final : public LinearDeformation {
       }
     std::sort(touched.begin(), touched.end());
     SparseField pulled;
-    for (const Index control : touched) pulled.value.push_back(sum[static_cast<std::size_t>(control)]);
+    for (const Index control : touched) pulled.value.push_back(sum[at(control)]);
     pulled.index = std::move(touched);
     return pulled;
   }

@@ -24,7 +24,7 @@ void check_rows(const std::vector<Index>& starts, const std::vector<Index>& cont
     const std::string name = "weights, row " + std::to_string(row);
     if (starts[row + 1] < starts[row] || starts[row + 1] > count) throw InputError(name + ": ends before it starts");
     for (Index k = starts[row]; k < starts[row + 1]; ++k)
-      if (const Index control = controls[static_cast<std::size_t>(k)]; control < 0 || control >= control_count)
+      if (const Index control = controls[at(k)]; control < 0 || control >= control_count)
         throw InputError(name + ": control " + std::to_string(control) + " does not exist; there are " +
                          std::to_string(control_count));
   }
@@ -70,8 +70,7 @@ WeightMatrix weights_from_rows(const std::vector<Index>& starts, const std::vect
   check_rows(starts, controls, values, control_count);
   WeightRows rows(static_cast<Index>(starts.size()) - 1, control_count);
   for (std::size_t row = 0; row + 1 < starts.size(); ++row) {
-    for (Index k = starts[row]; k < starts[row + 1]; ++k)
-      rows.add(controls[static_cast<std::size_t>(k)], values[static_cast<std::size_t>(k)]);
+    for (Index k = starts[row]; k < starts[row + 1]; ++k) rows.add(controls[at(k)], values[at(k)]);
     rows.end_row();
   }
   return rows.matrix();

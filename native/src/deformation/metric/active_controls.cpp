@@ -10,7 +10,7 @@ ActiveControls active_controls(const Eigen::VectorXd& squared_lengths, const Eig
   active.place.assign(static_cast<std::size_t>(weights.size()), -1);
   for (Index control = 0; control < weights.size(); ++control) {
     if (weights[control] == 0 || !(squared_lengths[control] > 0)) continue;
-    active.place[static_cast<std::size_t>(control)] = static_cast<Index>(active.control.size());
+    active.place[at(control)] = static_cast<Index>(active.control.size());
     active.control.push_back(control);
     active.root_weight.push_back(std::sqrt(weights[control]));
   }
@@ -20,10 +20,10 @@ ActiveControls active_controls(const Eigen::VectorXd& squared_lengths, const Eig
 ActiveVector restrict_to(const ActiveControls& active, const SparseField& g) {
   ActiveVector restricted;
   for (std::size_t k = 0; k < g.index.size(); ++k) {
-    const Index place = active.place[static_cast<std::size_t>(g.index[k])];
+    const Index place = active.place[at(g.index[k])];
     if (place < 0) continue;
     restricted.place.push_back(place);
-    restricted.value.push_back(active.root_weight[static_cast<std::size_t>(place)] * g.value[k]);
+    restricted.value.push_back(active.root_weight[at(place)] * g.value[k]);
   }
   return restricted;
 }

@@ -87,9 +87,7 @@ class AxisMetric final : public Metric {
   }
 
  private:
-  const Eigen::Matrix3d& axes_of(const SparseField& field, std::size_t k) const {
-    return axes_[static_cast<std::size_t>(field.index[k])];
-  }
+  const Eigen::Matrix3d& axes_of(const SparseField& field, std::size_t k) const { return axes_[at(field.index[k])]; }
 
   std::vector<AxisGroup> groups_;
   std::vector<Eigen::Matrix3d> axes_;

@@ -30,8 +30,8 @@ std::vector<unsigned char> SparseFactor::needed_for(const std::vector<Index>& ro
   std::vector<unsigned char> needed(static_cast<std::size_t>(size()), 0);
   for (const Index row : rows) {
     Index column = factor_.permutationP().indices()[row];
-    while (needed[static_cast<std::size_t>(column)] == 0) {
-      needed[static_cast<std::size_t>(column)] = 1;
+    while (needed[at(column)] == 0) {
+      needed[at(column)] = 1;
       const SymmetricMatrix::InnerIterator parent(lower(), column);  // the first entry below the diagonal
       if (!parent) break;
       column = static_cast<Index>(parent.row());
@@ -57,7 +57,7 @@ Block SparseFactor::solve_block(const Block& right, const std::vector<unsigned c
       x.row(entry.row()) -= entry.value() * known;
   }
   for (Index column = size() - 1; column >= 0; --column) {
-    if (needed != nullptr && (*needed)[static_cast<std::size_t>(column)] == 0) continue;
+    if (needed != nullptr && (*needed)[at(column)] == 0) continue;
     Row sum = x.row(column) / diagonal[column];
     for (SymmetricMatrix::InnerIterator entry(lower, column); entry; ++entry) sum -= entry.value() * x.row(entry.row());
     x.row(column) = sum;

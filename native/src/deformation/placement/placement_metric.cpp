@@ -50,8 +50,7 @@ class PlacementMetric final : public Metric {
   }
 
   Vector3 axis_step(const ControlsView& p, Index row, const Vector3& g) const {
-    const Eigen::Matrix3d axes =
-        weights_.axes.empty() ? Eigen::Matrix3d::Identity() : weights_.axes[static_cast<std::size_t>(row)];
+    const Eigen::Matrix3d axes = weights_.axes.empty() ? Eigen::Matrix3d::Identity() : weights_.axes[at(row)];
     const Vector3 along = axes.transpose() * g, weights = weights_.values.row(row);
     const Vector3 step = row == 0 ? Vector3(weights.cwiseProduct(along) / centre_factor_)
                                   : step_of_block(axes.transpose() * block_(p) * axes, weights, along);

@@ -100,10 +100,9 @@ CageEdges::CageEdges(const Cage& cage)
     const auto [first, last] = corner_range(cage, face);
     for (Index corner = first; corner < last; ++corner) {
       const Index next = corner + 1 == last ? first : corner + 1;
-      const Index edge = find_edge(keys, face, cage.face_corners[static_cast<std::size_t>(corner)],
-                                   cage.face_corners[static_cast<std::size_t>(next)]);
-      edge_of_corner_[static_cast<std::size_t>(corner)] = edge;
-      in_face_[static_cast<std::size_t>(edge)] = true;
+      const Index edge = find_edge(keys, face, cage.face_corners[at(corner)], cage.face_corners[at(next)]);
+      edge_of_corner_[at(corner)] = edge;
+      in_face_[at(edge)] = true;
     }
   }
 }

@@ -19,9 +19,9 @@ class CageEdges {
   explicit CageEdges(const Cage& cage);
 
   /// The edge from a corner of a face to the next one; `corner` counts through the corners of all faces.
-  Index of_corner(Index corner) const { return edge_of_corner_[static_cast<std::size_t>(corner)]; }
+  Index of_corner(Index corner) const { return edge_of_corner_[at(corner)]; }
 
-  bool is_loose(Index edge) const { return !in_face_[static_cast<std::size_t>(edge)]; }
+  bool is_loose(Index edge) const { return !in_face_[at(edge)]; }
 
  private:
   std::vector<Index> edge_of_corner_;
@@ -30,7 +30,7 @@ class CageEdges {
 
 /// Corners of face `face` as [first, last) in Cage::face_corners.
 inline std::pair<Index, Index> corner_range(const Cage& cage, Index face) {
-  return {cage.face_starts[static_cast<std::size_t>(face)], cage.face_starts[static_cast<std::size_t>(face) + 1]};
+  return {cage.face_starts[at(face)], cage.face_starts[static_cast<std::size_t>(face) + 1]};
 }
 
 inline Index face_count(const Cage& cage) {

@@ -176,7 +176,7 @@ void LimitStencils::add_point(const SurfaceLocation& location, WeightRows& rows)
   for (int k = 0; k < points.size(); ++k) {
     const Far::StencilReal<double> stencil = tables_->stencils->GetStencil(points[k]);
     for (int j = 0; j < stencil.GetSize(); ++j)
-      rows.add(stencil.GetVertexIndices()[j], basis[static_cast<std::size_t>(k)] * stencil.GetWeights()[j]);
+      rows.add(stencil.GetVertexIndices()[j], basis[at(k)] * stencil.GetWeights()[j]);
   }
 }
 

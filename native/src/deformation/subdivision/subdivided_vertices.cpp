@@ -58,7 +58,7 @@ Index SubdividedVertices::grid_point(Index face, Index grid, Index x, Index y) c
 /// The k-th point on a side of a face, counted from corner `side` of it, ends included.
 Index SubdividedVertices::edge_point(Index face, Index side, Index k) const {
   const auto [first, last] = corner_range(cage_, face);
-  const Index from = cage_.face_corners[static_cast<std::size_t>(first + side)];
+  const Index from = cage_.face_corners[at(first + side)];
   if (k == 0) return from;
   const Index edge = edges_.of_corner(first + side);
   const bool forward = cage_.edges(edge, 0) == from;
@@ -71,7 +71,7 @@ Index SubdividedVertices::quad_point(Index face, Index x, Index y) const {
   if (x == segments_) return edge_point(face, 1, y);
   if (y == segments_) return edge_point(face, 2, segments_ - x);
   if (x == 0) return edge_point(face, 3, segments_ - y);
-  return face_first_[static_cast<std::size_t>(face)] + (y - 1) * (segments_ - 1) + x - 1;
+  return face_first_[at(face)] + (y - 1) * (segments_ - 1) + x - 1;
 }
 
 Index SubdividedVertices::triangle_point(Index face, Index x, Index y) const {
@@ -79,12 +79,12 @@ Index SubdividedVertices::triangle_point(Index face, Index x, Index y) const {
   if (x + y == segments_) return edge_point(face, 1, y);
   if (x == 0) return edge_point(face, 2, segments_ - y);
   const Index below = (y - 1) * (segments_ - 1) - y * (y - 1) / 2;  // inner points of the rows 1 to y - 1
-  return face_first_[static_cast<std::size_t>(face)] + below + x - 1;
+  return face_first_[at(face)] + below + x - 1;
 }
 
 Index SubdividedVertices::sector_point(Index face, Index sector, Index x, Index y) const {
   const Index half = segments_ / 2, count = grid_count(face);
-  const Index centre = face_first_[static_cast<std::size_t>(face)];
+  const Index centre = face_first_[at(face)];
   const Index previous = sector == 0 ? count - 1 : sector - 1;
   if (y == 0) return edge_point(face, sector, x);
   if (x == 0) return edge_point(face, previous, segments_ - y);

@@ -81,7 +81,7 @@ WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& opt
 
   WeightRows rows(vertices.count(), cage.vertex_count);
   for (Index vertex = 0; vertex < vertices.count(); ++vertex) {
-    const SurfaceLocation& location = locations[static_cast<std::size_t>(vertex)];
+    const SurfaceLocation& location = locations[at(vertex)];
     if (location.ptex_face >= 0) {
       stencils->add_point(location, rows);
     } else if (vertex < cage.vertex_count) {

@@ -7,7 +7,7 @@ std::vector<SurfaceLocation> surface_locations(const Cage& cage, const Subdivide
   std::vector<SurfaceLocation> locations(static_cast<std::size_t>(vertices.count()));
   Index ptex_face = 0;
   const auto place = [&](Index face, Index grid, Index x, Index y) {
-    SurfaceLocation& location = locations[static_cast<std::size_t>(vertices.grid_point(face, grid, x, y))];
+    SurfaceLocation& location = locations[at(vertices.grid_point(face, grid, x, y))];
     const double step = 1.0 / vertices.grid_segments(face);
     if (location.ptex_face < 0) location = {ptex_face + grid, x * step, y * step};
   };

@@ -11,13 +11,12 @@ Wires::Wires(const Cage& cage, const CageEdges& edges, bool smooth)
       on_face_(static_cast<std::size_t>(cage.vertex_count), false),
       edge_count_(static_cast<std::size_t>(cage.vertex_count), 0),
       neighbours_(static_cast<std::size_t>(cage.vertex_count), {-1, -1}) {
-  for (const Index vertex : cage.face_corners) on_face_[static_cast<std::size_t>(vertex)] = true;
+  for (const Index vertex : cage.face_corners) on_face_[at(vertex)] = true;
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
     if (!edges.is_loose(edge)) continue;
     for (Index end = 0; end < 2; ++end) {
       const auto vertex = static_cast<std::size_t>(cage.edges(edge, end));
-      if (edge_count_[vertex] < 2)
-        neighbours_[vertex][static_cast<std::size_t>(edge_count_[vertex])] = cage.edges(edge, 1 - end);
+      if (edge_count_[vertex] < 2) neighbours_[vertex][at(edge_count_[vertex])] = cage.edges(edge, 1 - end);
       ++edge_count_[vertex];
     }
   }

@@ -17,7 +17,7 @@ class Wires {
   Wires(const Cage& cage, const CageEdges& edges, bool smooth);
 
   /// Has this vertex a loose edge?
-  bool touches(Index vertex) const { return edge_count_[static_cast<std::size_t>(vertex)] > 0; }
+  bool touches(Index vertex) const { return edge_count_[at(vertex)] > 0; }
 
   /// Weights of a vertex in no face: inside a chain (1, 4, 1) / 6, else where it is.
   void add_vertex(Index vertex, WeightRows& rows) const;

@@ -13,8 +13,6 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 /// The first half is as large a power of two times `run` as fits, so that the halves of all sizes end where nodes of
 /// the tree end.
 void order_spatially(std::span<NumberedPoint> items, std::size_t run) {

@@ -12,8 +12,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 /// Tasks from the pair of roots on, level by level.
 class TaskList {
  public:

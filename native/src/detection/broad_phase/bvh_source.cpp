@@ -15,8 +15,6 @@ namespace stiv {
 
 namespace {
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 GroupTable table_of_bodies(const Surface& surface) {
   const auto count = static_cast<Index>(surface.bodies().size());
   std::vector<unsigned char> meets;

@@ -39,8 +39,6 @@ class PrimitiveTree {
   /// threads share.
   static constexpr std::size_t few = 16;
 
-  static std::size_t place(Index index) { return static_cast<std::size_t>(index); }
-
   std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
     return std::span<const Index, static_cast<std::size_t>(size)>(rows_ + static_cast<std::ptrdiff_t>(primitive) * size,
                                                                   static_cast<std::size_t>(size));
@@ -48,14 +46,14 @@ class PrimitiveTree {
 
   /// Sorted by where things are at the start: a first step may take them anywhere.
   void build(const PositionsView& start) {
-    std::vector<Eigen::Vector3f> centres(place(count_));
-    std::vector<Index> bodies(place(count_));
+    std::vector<Eigen::Vector3f> centres(at(count_));
+    std::vector<Index> bodies(at(count_));
     for (Index primitive = 0; primitive < count_; ++primitive) {
       Vector3 sum = Vector3::Zero();
       for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
       const Eigen::Vector3f centre = sum.cast<float>();
-      centres[place(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
-      bodies[place(primitive)] = surface_.body_of(row(primitive)[0]);
+      centres[at(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
+      bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
     }
     tree_.emplace(centres, bodies, CornerRows{rows_, size});
     // Needed once few vertices move; made here all the same, so that a long session's memory does not grow by it late.

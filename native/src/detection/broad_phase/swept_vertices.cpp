@@ -16,8 +16,6 @@ namespace {
 
 constexpr Index chunk_size = 4096;
 
-std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 const double* row(const PositionsView& positions, Index vertex) {
   return positions.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
 }
