@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "stiv/types.hpp"
+
 namespace stiv {
 
 /// A double and what was lost in computing it: high + low is the exact result.
