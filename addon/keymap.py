@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keys of the operators. They can be changed in the preferences, and none is taken in Blender's default keymap."""
+"""Keys of the operators, which Blender's default keymap does not use; users change them in the preferences."""
 
 import bpy
 
-# Shift+Alt with letters that Blender's default keymap leaves free in these modes; G and S with Shift+Alt are taken.
+# Shift+Alt with letters that Blender's default keymap does not use in these modes; it uses G and S.
 KEYS = {"stiv.move": "M", "stiv.rotate": "R", "stiv.scale": "E", "stiv.check": "C"}
 PIE_OPERATOR, PIE_MENU, PIE_KEY = "wm.call_menu_pie", "STIV_MT_pie", "Q"
-# Keymaps of modes: those of the whole 3D view come later, and what a mode takes never reaches them.
+# Keymaps of modes precede that of the 3D view.
 KEYMAPS = ("Object Mode", "Mesh", "Lattice")
 
 _added: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
 
 def register() -> None:
-    """Add the keys to the add-on keymaps; Blender without a window has none."""
+    """Add the keys to the add-on keymaps, which exist only with a window."""
     configuration = bpy.context.window_manager.keyconfigs.addon
     if configuration is None:
         return
@@ -27,13 +27,13 @@ def register() -> None:
 
 
 def is_ours(item: bpy.types.KeyMapItem) -> bool:
-    """Is it a key of the extension, also after the user changed it?"""
+    """Whether a key belongs to the extension, also after the user changed it."""
     pie = item.idname == PIE_OPERATOR and item.properties is not None and item.properties.name == PIE_MENU
     return pie or item.idname in KEYS
 
 
 def unregister() -> None:
-    """Take the keys away."""
+    """Remove the keys."""
     for keymap, item in _added:
         keymap.keymap_items.remove(item)
     _added.clear()

@@ -1,31 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps the objects that show Loop subdivisions up with their cages, whatever changes those."""
+"""Updates the objects that show Loop subdivisions whenever their cages change."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import native_module
-from .scene.edit_settings import refined_object
+from . import native_module, stiv_blender
+from .scene.edit_settings import loop_surface, refined_object
 
 
-def refresh_cage(cage: Any) -> bool:
-    """Refresh what shows a cage, if anything does; returns whether it had to change.
+def refresh_cage(cage: bpy.types.Object) -> bool:
+    """Update the Loop subdivision of a cage, if it has one; returns whether it changed.
 
-    A cage that cannot be refined at the moment leaves it as it is; the next edit says why.
+    An invalid cage leaves it unchanged; the next edit reports the reason.
     """
     refined = refined_object(cage)
     if refined is None or native_module.problem():
         return False
-    from stiv import InputError
-    from stiv.blender import LoopSurface, refresh
-
     try:
-        return bool(refresh(cage, refined, LoopSurface(refined.name, cage.stiv.loop.levels, cage.stiv.loop.boundary)))
-    except InputError:
+        return stiv_blender.refresh(cage, refined, loop_surface(cage))
+    except stiv_blender.InputError:
         return False
 
 
@@ -39,8 +34,8 @@ def on_update(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
 
 
 @persistent
-def on_exchange(*_: Any) -> None:
-    """After undo, redo and loading: all cages of the scene. Undo in Edit Mode takes back the cage alone."""
+def on_exchange(*_: object) -> None:
+    """After undo, redo and loading: all cages of the scene. Undo in Edit Mode restores only the cage."""
     for cage in bpy.context.scene.objects:
         refresh_cage(cage)
 
@@ -54,12 +49,12 @@ HANDLERS = (
 
 
 def register() -> None:
-    """Begin."""
+    """Add the handlers."""
     for handlers, handler in HANDLERS:
         handlers.append(handler)
 
 
 def unregister() -> None:
-    """End."""
+    """Remove the handlers."""
     for handlers, handler in HANDLERS:
         handlers.remove(handler)

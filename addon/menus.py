@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in Blender's own menus, and the pie menu: all that is at hand while modelling, around the mouse."""
+"""Entries in Blender's menus, and the pie menu."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .operators import TRANSFORMS
 from .operators.check.check import STIV_OT_check
 from .operators.repair.repair import STIV_OT_repair
 
-# Object > Transform; Mesh > Transform and Lattice > Transform, which are one menu.
+# Object > Transform; Mesh > Transform and Lattice > Transform are one menu.
 MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
 
 
@@ -21,13 +21,13 @@ def draw(self: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 
 def register() -> None:
-    """Append to the menus."""
+    """Add the entries."""
     for name in MENUS:
         getattr(bpy.types, name).append(draw)
 
 
 def unregister() -> None:
-    """Leave the menus as they were."""
+    """Remove the entries."""
     for name in MENUS:
         getattr(bpy.types, name).remove(draw)
 

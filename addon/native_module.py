@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether the native module can be used, and operators that are greyed out without it."""
+"""Whether the native module can be loaded, and operators that are disabled without it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import bpy
 
+    class Mixin(bpy.types.Operator):
+        """Base of the operators' mixins, with the members of an operator."""
+else:
+
+    class Mixin:
+        """Base of the operators' mixins; without bpy, which tests of this module do not need."""
+
 
 @functools.cache
 def problem() -> str:
-    """Why the add-on cannot work here, one sentence a line; empty if it can. Looked up once a session."""
+    """Why the add-on cannot run, one sentence a line; empty if it can. Determined once per session."""
     try:
         importlib.import_module("stiv._native")
         importlib.import_module("stiv.blender")
@@ -26,24 +33,24 @@ def problem() -> str:
 def _explanation(error: ImportError) -> str:
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] == "stiv":
-        what = f"STIV's native module for Python {version} is missing."
+        reason = f"STIV's native module for Python {version} is missing."
     else:
-        what = f"STIV's native module cannot be loaded: {error}."
-    return f"{what}\nInstall an extension zip with a wheel for Python {version}, then restart Blender."
+        reason = f"STIV's native module cannot be loaded: {error}."
+    return f"{reason}\nInstall an extension zip with a wheel for Python {version}, then restart Blender."
 
 
-class NeedsNativeModule:
-    """Base of an operator with geometry; a subclass says in `fits` what else it needs."""
+class NeedsNativeModule(Mixin):
+    """Base of operators with geometry; a subclass adds its own conditions in `is_available`."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module, where the operator fits."""
+        """With the native module, where the operator is available."""
         if problem():
             cls.poll_message_set(problem())
             return False
-        return cls.fits(context)
+        return cls.is_available(context)
 
     @classmethod
-    def fits(cls, context: bpy.types.Context) -> bool:
+    def is_available(cls, context: bpy.types.Context) -> bool:
         """Everywhere, unless a subclass says otherwise."""
         return True

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Preferences of the extension, for all files: keys, threads, what is on at the start."""
+"""Preferences of the extension for all files: keys, threads, overlay."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 import rna_keymap_ui
@@ -13,7 +11,7 @@ from . import keymap
 
 
 class StivPreferences(bpy.types.AddonPreferences):
-    """What holds for every scene."""
+    """Settings for every scene."""
 
     bl_idname = __package__
 
@@ -25,33 +23,33 @@ class StivPreferences(bpy.types.AddonPreferences):
     )
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Settings, then the keys as Blender's own editor has them."""
+        """The settings, then the keys as in Blender's own editor."""
         self.layout.use_property_split = True
         self.layout.prop(self, "threads")
         self.layout.prop(self, "overlay")
         draw_keys(context, self.layout.column())
 
 
-def preferences(context: Any) -> Any:
-    """The preferences; None where the add-on is registered without being enabled, as in scripts."""
+def preferences(context: bpy.types.Context) -> StivPreferences | None:
+    """The preferences; None if a script registered the add-on without enabling it."""
     addon = context.preferences.addons.get(__package__)
     return None if addon is None else addon.preferences
 
 
-def threads(context: Any) -> int:
-    """How many threads solve, 0 for all."""
+def threads(context: bpy.types.Context) -> int:
+    """Number of solver threads, 0 for all cores."""
     chosen = preferences(context)
     return 0 if chosen is None else int(chosen.threads)
 
 
-def overlay_at_start(context: Any) -> bool:
-    """Is the overlay on when Blender starts?"""
+def overlay_at_start(context: bpy.types.Context) -> bool:
+    """Whether the overlay is on when Blender starts."""
     chosen = preferences(context)
     return True if chosen is None else bool(chosen.overlay)
 
 
-def draw_keys(context: Any, layout: Any) -> None:
-    """Every key of the extension, to be changed, switched off or put back."""
+def draw_keys(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+    """Every key of the extension, to change, disable or restore it."""
     configuration = context.window_manager.keyconfigs.user
     if configuration is None:  # Blender without a window
         return

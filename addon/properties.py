@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings kept in the .blend: of the scene and of each object."""
+"""Settings stored in the .blend, for the scene and for each object."""
 
 import bpy
 from bpy.props import (
@@ -16,8 +16,8 @@ from bpy.props import (
 from . import loop_updates
 from .operators.last_edit import note_written
 
-CHOSEN_SEPARATION = 0.001  # to begin with, where the user turns the automatic one off
-OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # may be chosen for a library override too
+CHOSEN_SEPARATION = 0.001  # initial value when the user turns Auto off
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # can be set for a library override too
 
 ROLES = (
     ("auto", "Automatic", "Moves with its controls or as a rigid object if selected; otherwise an obstacle"),
@@ -72,7 +72,7 @@ def _set_separation_automatic(settings: bpy.types.PropertyGroup, automatic: bool
 
 
 def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from .guard import watcher  # which reads these settings
+    from .guard import watcher  # which imports this module
 
     watcher.switched(context)
 
@@ -88,7 +88,7 @@ def _loop_changed(loop: bpy.types.PropertyGroup, context: bpy.types.Context) -> 
 
 
 class StivPairSeparation(bpy.types.PropertyGroup):
-    """Two objects, or one twice, that keep a distance of their own."""
+    """Two objects, or one twice, with their own minimum distance."""
 
     first: PointerProperty(name="First Object", type=bpy.types.Object)
     second: PointerProperty(name="Second Object", type=bpy.types.Object)
@@ -104,7 +104,7 @@ class StivPairSeparation(bpy.types.PropertyGroup):
 
 
 class StivSceneSettings(bpy.types.PropertyGroup):
-    """How edits of a scene respond to interference."""
+    """How edits of a scene respond to collisions."""
 
     separation: FloatProperty(
         name="Minimum Distance",
@@ -167,11 +167,11 @@ class StivSceneSettings(bpy.types.PropertyGroup):
 
 
 class StivHandleGroup(bpy.types.PropertyGroup):
-    """A handle: `name` is that of a vertex group, empty while none is chosen."""
+    """A handle: `name` is that of a vertex group, empty for a new row."""
 
 
 class StivLoop(bpy.types.PropertyGroup):
-    """On a cage of triangles: the object that shows its Loop subdivision, none while there is none."""
+    """The Loop subdivision of a triangle cage; `object` shows it, None without one."""
 
     object: PointerProperty(name="Refined Object", type=bpy.types.Object, options={"HIDDEN"})
     levels: IntProperty(
@@ -185,7 +185,7 @@ class StivLoop(bpy.types.PropertyGroup):
 
 
 class StivObjectSettings(bpy.types.PropertyGroup):
-    """How an object takes part."""
+    """How an object participates."""
 
     role: EnumProperty(
         name="Role",
@@ -224,7 +224,7 @@ class StivObjectSettings(bpy.types.PropertyGroup):
 
 
 class StivCheckResult(bpy.types.PropertyGroup):
-    """What the last check found; not saved."""
+    """The result of the last check; not saved."""
 
     summary: StringProperty(name="Check Result", options={"SKIP_SAVE"})
     left_out: StringProperty(name="Unguarded Objects", options={"SKIP_SAVE"})
@@ -234,7 +234,7 @@ CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, Sti
 
 
 def register() -> None:
-    """Attach the settings to Blender's types."""
+    """Add the settings to Blender's types."""
     bpy.types.Scene.stiv = PointerProperty(type=StivSceneSettings)
     bpy.types.Object.stiv = PointerProperty(type=StivObjectSettings, override=OVERRIDABLE)
     bpy.types.WindowManager.stiv_check = PointerProperty(type=StivCheckResult)
@@ -244,7 +244,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them off again; the values stay in the file."""
+    """Remove the settings; the values stay in the file."""
     del bpy.types.WindowManager.stiv_last_edit
     del bpy.types.WindowManager.stiv_check
     del bpy.types.Object.stiv

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that the extension adds to Blender, in order, and takes away again in reverse."""
+"""Registers everything that the extension adds to Blender, and unregisters it in reverse order."""
 
 import sys
 
@@ -35,7 +35,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take everything away again."""
+    """Remove everything."""
     display.unregister()
     watcher.unregister()
     loop_updates.unregister()
@@ -50,8 +50,8 @@ def unregister() -> None:
 
 
 def forget() -> None:
-    """Give back what is kept from one drag to the next."""
+    """Delete the caches that last from one drag to the next."""
     drag_results.clear()
-    cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # there only if the native module was
+    cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # loaded only with the native module
     if cache is not None:
         cache.forget_all()

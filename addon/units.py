@@ -6,7 +6,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
 
 import bpy
 
@@ -19,11 +18,11 @@ SCENE_LENGTHS = {
 }  # fmt: skip
 
 
-def length_text(value: float, units: Any, decimals: int = DECIMALS) -> str:
+def length_text(value: float, units: bpy.types.UnitSettings, decimals: int = DECIMALS) -> str:
     """A length with its unit: "0 m", "1.5 cm".
 
-    value: in world units. units: the scene's `unit_settings`. decimals: most digits after the point; what rounds to
-    zero is written without a sign.
+    value: in world units. units: the scene's `unit_settings`. decimals: digits after the point, at most. A value that
+    rounds to zero has no sign.
     """
     if units.system == "NONE":
         return decimal_text(value, decimals)
@@ -37,14 +36,14 @@ def length_text(value: float, units: Any, decimals: int = DECIMALS) -> str:
 
 @functools.cache
 def unit_length(system: str, name: str, category: str = "LENGTH") -> float:
-    """A unit by its short name, in Blender's own: metres, or radians for the category "ROTATION".
+    """The factor of a unit by its short name, in metres, or in radians for the category "ROTATION".
 
-    Blender calculates in single precision, so seven digits are what is meant.
+    Blender calculates in single precision, so seven digits are significant.
     """
     return float(f"{bpy.utils.units.to_value(system, category, '1' + name):.7g}")
 
 
-# Only these are ever handed to Blender, which evaluates what it is given as Python.
+# Only these names are passed to Blender, which evaluates its argument as Python.
 LENGTHS = (
     *("km", "hm", "dam", "m", "dm", "cm", "mm", "um", "µm", "nm"),
     *("kilometer", "kilometers", "meter", "meters", "centimeter", "centimeters", "millimeter", "millimeters"),
@@ -55,8 +54,8 @@ ANGLES = ("°", "d", "deg", "degree", "degrees", "r", "rad", "radian", "radians"
 DEFAULT_LENGTHS = {"METRIC": "m", "IMPERIAL": "ft"}
 
 
-def readers(scene: Any) -> Mapping[str, Callable[[str], float]]:
-    """For each kind of transform, what reads its typed text. They raise ValueError."""
+def readers(scene: bpy.types.Scene) -> Mapping[str, Callable[[str], float]]:
+    """The functions that read typed text, by kind of transform. They raise ValueError."""
     settings = scene.unit_settings
     lengths, angles = _lengths(settings), _angles(settings)
     return {
@@ -66,26 +65,26 @@ def readers(scene: Any) -> Mapping[str, Callable[[str], float]]:
     }
 
 
-def _lengths(settings: Any) -> Units:
+def _lengths(settings: bpy.types.UnitSettings) -> Units:
     system, scale = settings.system, settings.scale_length or 1.0
     if system == "NONE":
         return lambda name: None if name else 1.0
-    usual = SCENE_LENGTHS.get(settings.length_unit, DEFAULT_LENGTHS[system])
+    default = SCENE_LENGTHS.get(settings.length_unit, DEFAULT_LENGTHS[system])
 
     def factor(name: str) -> float | None:
-        name = name or usual
+        name = name or default
         return unit_length(system, name) / scale if name in LENGTHS else None
 
     return factor
 
 
-def _angles(settings: Any) -> Units:
-    usual = 1.0 if settings.system_rotation == "RADIANS" else math.radians(1.0)
+def _angles(settings: bpy.types.UnitSettings) -> Units:
+    default = 1.0 if settings.system_rotation == "RADIANS" else math.radians(1.0)
 
     def factor(name: str) -> float | None:
         if not name:
-            return usual
-        # Blender knows the units by their short names alone.
+            return default
+        # Blender only accepts the short names of these units.
         short = {"deg": "d", "degree": "d", "degrees": "d", "rad": "r", "radian": "r", "radians": "r"}.get(name, name)
         return unit_length("METRIC", short, "ROTATION") if name in ANGLES else None
 

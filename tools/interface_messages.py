@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every text of the add-on's interface that Blender can translate, as the sources have it.
+"""Lists every text of the add-on's interface that Blender can translate, from the sources.
 
-Names and descriptions of properties and of the choices of enumerations, labels and tooltips of operators, labels of
-panels and menus, constant texts of layouts, what the code says by `say("text")`, and what stands in dictionaries named
-..._WORDS, which are said by variables. Printed one a line when run.
+These are names and descriptions of properties and of their choices, labels and tooltips of operators, labels of panels
+and menus, constant texts of layouts, arguments of `translate("text")`, and values of dictionaries named ..._TEXTS.
 """
 
 import ast
@@ -30,7 +29,7 @@ def _of(node: ast.AST) -> Iterator[str]:
     elif (
         isinstance(node, ast.Assign)
         and isinstance(node.value, ast.Dict)
-        and ast.unparse(node.targets[0]).endswith("_WORDS")
+        and ast.unparse(node.targets[0]).endswith("_TEXTS")
     ):
         for value in node.value.values:
             yield from _constants(value)
@@ -38,7 +37,7 @@ def _of(node: ast.AST) -> Iterator[str]:
 
 def _of_call(node: ast.Call) -> Iterator[str]:
     name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-    if name == "say":
+    if name == "translate":
         yield from _constants(node.args[0])
     wanted = {"name", "description"} if name.endswith("Property") else {"text"} if name in LAYOUT_CALLS else set()
     for keyword in node.keywords:

@@ -1,66 +1,57 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the guard sees of Blender's window, and what the user sees of the guard."""
+"""Messages of the guard: in the status bar, over the view and in the sidebar."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 
 from ..overlay import display
-from ..translations import say
+from ..scene.frame import view_areas
+from ..translations import translate
 from .problem import Problem
 
-SHOWN = 6.0  # seconds for which the status bar keeps what was corrected
+DURATION = 6.0  # seconds for which the status bar shows a correction
 
-_alert = ""  # what the status bar says of an intersecting scene, until that is solved
-
-
-def window() -> Any:
-    """A window to work in; None where there is none."""
-    windows = bpy.context.window_manager.windows
-    return windows[0] if len(windows) else None
+_alert = ""  # text of the status bar while the scene intersects
 
 
 def is_busy() -> bool:
-    """Does a tool or an animation run in any window?"""
+    """Whether a tool or an animation runs in any window."""
     return any(
         len(each.modal_operators) > 0 or each.screen.is_animation_playing for each in bpy.context.window_manager.windows
     )
 
 
-def tell(context: Any, wrote: str, problem: Problem | None) -> None:
-    """Say what was corrected, for a while in the status bar; or, until it is solved, what intersects.
-
-    That stands in the status bar and over the view in red, and in the sidebar.
-    """
+def show(context: bpy.types.Context, correction: str, problem: Problem | None) -> None:
+    """Show a correction in the status bar for a while; or a problem in status bar, view and sidebar until resolved."""
     global _alert
-    _redraw_sidebars()
+    for area in view_areas(context):
+        area.tag_redraw()
     _show_in_view(context, problem)
     if problem is not None:
-        _forget_clearing()
-        _alert = say("Live guard: {}").format(problem.headline(say))
+        _cancel_clearing()
+        _alert = translate("Live guard: {}").format(problem.headline(translate))
         _set_status(draw_alert)
-    elif wrote:
-        _forget_clearing()
+    elif correction:
+        _cancel_clearing()
         _alert = ""
-        _set_status(say("Live guard: {}").format(wrote))
-        bpy.app.timers.register(clear_when_idle, first_interval=SHOWN)
+        _set_status(translate("Live guard: {}").format(correction))
+        bpy.app.timers.register(clear_when_idle, first_interval=DURATION)
     elif _alert:
         clear()
 
 
-def draw_alert(header: Any, context: Any) -> None:
-    """The status bar while something intersects: that in red with the way back, then what else Blender shows there."""
+def draw_alert(header: bpy.types.Header, context: bpy.types.Context) -> None:
+    """The status bar while the scene intersects: the alert in red with a button, then Blender's own contents."""
     row = header.layout.row(align=True)
     row.alert = True
     row.label(text=_alert, icon="ERROR")
     row.operator("stiv.guard_revert")
-    type(header)._draw_orig(header, context)  # kept by Blender when a function takes its place
+    type(header)._draw_orig(header, context)  # where Blender stores the function that this one replaces
 
 
 def clear_when_idle() -> float | None:
-    """Give the status bar back, unless a tool has it."""
+    """Restore the status bar, unless a tool uses it."""
     if is_busy():
         return 1.0
     _set_status(None)
@@ -68,36 +59,29 @@ def clear_when_idle() -> float | None:
 
 
 def clear() -> None:
-    """Take a message away at once, if there is one."""
+    """Remove any message at once."""
     global _alert
     if _alert or bpy.app.timers.is_registered(clear_when_idle):
         _alert = ""
-        _forget_clearing()
+        _cancel_clearing()
         _set_status(None)
     display.show_alert(())
 
 
-def _set_status(content: Any) -> None:
-    """A text, a function that draws, or None for what Blender shows."""
+def _set_status(content: object) -> None:
+    """Set a text, a function that draws, or None for Blender's own contents."""
     for workspace in bpy.data.workspaces:
         workspace.status_text_set(content)
 
 
-def _show_in_view(context: Any, problem: Problem | None) -> None:
+def _show_in_view(context: bpy.types.Context, problem: Problem | None) -> None:
     if problem is None:
         display.show_alert(())
         return
     display.show_pairs(context, problem.pairs)
-    display.show_alert((problem.headline(say), *problem.pair_lines(say)))
+    display.show_alert((problem.headline(translate), *problem.pair_lines(translate)))
 
 
-def _forget_clearing() -> None:
+def _cancel_clearing() -> None:
     if bpy.app.timers.is_registered(clear_when_idle):
         bpy.app.timers.unregister(clear_when_idle)
-
-
-def _redraw_sidebars() -> None:
-    for each in bpy.context.window_manager.windows:
-        for area in each.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()

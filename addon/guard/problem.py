@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why the guard leaves a tool's result as it is, in the words of the status bar, the view and the panel."""
+"""Why the guard leaves a result uncorrected, in the texts of status bar, view and panel."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-Say = Callable[[str], str]
-MOST_PAIRS = 3  # listed one a line
-MOST_NAMES = 3
+from .. import stiv_blender
+from ..modal.header_texts import Translate
+
+MAX_PAIRS = 3  # listed, one a line
+MAX_NAMES = 3
 
 
 @dataclass(frozen=True)
@@ -17,42 +18,44 @@ class Problem:
     """An intersecting scene, or a reason why it could not be tested.
 
     Attributes:
-        pairs: pairs of elements that meet, as `stiv.blender.FacePair`.
-        reason: why they were not taken apart; empty where nothing was tried.
+        pairs: pairs of intersecting elements.
+        reason: why they were not corrected; empty if no correction was tried.
     """
 
-    pairs: Sequence[Any] = ()
+    pairs: Sequence[stiv_blender.FacePair] = ()
     reason: str = ""
 
     @property
     def names(self) -> list[str]:
-        """Objects that intersect."""
+        """Names of the intersecting objects."""
         return sorted({each.object for pair in self.pairs for each in (pair.first, pair.second)})
 
-    def headline(self, say: Say = str) -> str:
-        """One line for the status bar: which objects, how many pairs, and the first of them."""
+    def headline(self, translate: Translate = str) -> str:
+        """One line for the status bar: the objects, the number of pairs, and the first pair."""
         if not self.pairs:
             return self.reason
         first = self.pairs[0]
-        names, numbers = listed(self.names, say), (first.first.number, first.second.number)
+        names, numbers = listed(self.names, translate), (first.first.number, first.second.number)
         if len(self.pairs) == 1:
-            return say("{}: 1 intersecting face pair, {} and {}").format(names, *numbers)
-        return say("{}: {} intersecting face pairs, first {} and {}").format(names, len(self.pairs), *numbers)
+            return translate("{}: 1 intersecting face pair, {} and {}").format(names, *numbers)
+        return translate("{}: {} intersecting face pairs, first {} and {}").format(names, len(self.pairs), *numbers)
 
-    def pair_lines(self, say: Say = str) -> list[str]:
-        """The first pairs, one a line, and how many more there are."""
-        lines = [f"{_element(pair.first, say)}, {_element(pair.second, say)}" for pair in self.pairs[:MOST_PAIRS]]
-        more = len(self.pairs) - len(lines)
-        return [*lines, say("and {} more").format(more)] if more > 0 else lines
+    def pair_lines(self, translate: Translate = str) -> list[str]:
+        """The first pairs, one a line, and the number of the others."""
+        lines = [
+            f"{_element(pair.first, translate)}, {_element(pair.second, translate)}" for pair in self.pairs[:MAX_PAIRS]
+        ]
+        others = len(self.pairs) - len(lines)
+        return [*lines, translate("and {} more").format(others)] if others > 0 else lines
 
 
-def listed(names: Iterable[str], say: Say = str) -> str:
-    """Some names, and how many more there are."""
+def listed(names: Iterable[str], translate: Translate = str) -> str:
+    """The first names, and the number of the others."""
     every = list(names)
-    shown = ", ".join(every[:MOST_NAMES])
-    return say("{} and {} more").format(shown, len(every) - MOST_NAMES) if len(every) > MOST_NAMES else shown
+    first, others = ", ".join(every[:MAX_NAMES]), len(every) - MAX_NAMES
+    return translate("{} and {} more").format(first, others) if others > 0 else first
 
 
-def _element(element: Any, say: Say) -> str:
-    kinds = {"face": say("face {}"), "edge": say("edge {}"), "vertex": say("vertex {}")}
+def _element(element: stiv_blender.Element, translate: Translate) -> str:
+    kinds = {"face": translate("face {}"), "edge": translate("edge {}"), "vertex": translate("vertex {}")}
     return f"{element.object} {kinds[element.kind].format(element.number)}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's undo stack: which step is active, and putting the present state into it."""
+"""Blender's undo stack: the active step, and storing the current state in it."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ import bpy
 
 from .decision import UndoStep
 
-# The list as Blender prints it, the only way it gives it: "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
+# A line of the list as Blender prints it, the only access to it:
+# "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
 _ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'$", re.MULTILINE)
 
 
 def active_step() -> UndoStep | None:
-    """The active step; None where undo is off or standard output cannot be redirected."""
+    """The active step; None if undo is off or standard output cannot be redirected."""
     windows = bpy.context.window_manager.windows
     if not len(windows):
         return None
     with bpy.context.temp_override(window=windows[0]):
-        has_stack = bpy.ops.ed.undo.poll()  # without one, as after loading a file without a window, printing crashes
+        has_stack = bpy.ops.ed.undo.poll()  # without a stack, as in background mode, printing it crashes
     return parse(_printed()) if has_stack else None
 
 
@@ -34,9 +35,9 @@ def parse(text: str) -> UndoStep | None:
 
 
 def replace_active(window: bpy.types.Window, name: str) -> None:
-    """Let the active step, which has this name, hold the present state.
+    """Store the current state in the active step, which has this name.
 
-    A grouped operator replaces the step before it where that carries the group's name.
+    A grouped operator replaces the previous step if that has the name of the group.
     """
     operator = type(
         "STIV_OT_guard_step",
@@ -59,7 +60,7 @@ def replace_active(window: bpy.types.Window, name: str) -> None:
 
 
 def push(window: bpy.types.Window, name: str) -> None:
-    """Add a step that holds the present state."""
+    """Add a step with the current state."""
     with bpy.context.temp_override(window=window):
         bpy.ops.ed.undo_push(message=name)
 
@@ -67,7 +68,7 @@ def push(window: bpy.types.Window, name: str) -> None:
 def _printed() -> str:
     sys.stdout.flush()
     try:
-        kept = os.dup(1)
+        saved = os.dup(1)
     except OSError:
         return ""
     with tempfile.TemporaryFile() as file:
@@ -76,15 +77,15 @@ def _printed() -> str:
             bpy.context.window_manager.print_undo_steps()
             _flush()
         finally:
-            os.dup2(kept, 1)
-            os.close(kept)
+            os.dup2(saved, 1)
+            os.close(saved)
         file.seek(0)
         return file.read().decode(errors="replace")
 
 
 def _flush() -> None:
-    """Have the C library write what it holds back; Python's own flush does not reach it."""
+    """Flush the C library's buffer, which Python's own flush does not reach."""
     try:
         ctypes.CDLL(None).fflush(None)
-    except (OSError, TypeError, AttributeError):  # no such thing as the process's own symbols: Windows
+    except (OSError, TypeError, AttributeError):  # Windows: the process has no symbols of its own
         ctypes.cdll.msvcrt.fflush(None)

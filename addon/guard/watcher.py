@@ -1,38 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Watches Blender for the guard: handlers only note that something happened, a timer works when nothing else does."""
+"""Watches Blender for the guard: handlers only note changes, and a timer acts when no tool runs."""
 
 from __future__ import annotations
 
 import time
 import traceback
-from typing import Any
 
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import native_module
+from .. import native_module, stiv_blender
 from ..operators import last_edit
 from . import alerts, correction, undo_steps
-from .decision import LOOK_AGAIN, Action, Guard, Seen, decide, is_new_result
+from .decision import POLL_INTERVAL, Action, Guard, Observation, decide, is_new_result
 from .problem import Problem
 
 STEP_NAME = "Live Guard"
 
 
 class Watch:
-    """All that the guard remembers.
+    """The state of the guard.
 
     Attributes:
-        state: of all controls when the scene was clear last, at `state_frame`; None before that.
-        frame: at which the scene was last looked at.
+        state: all controls of the last clear scene, at `state_frame`; None before the first.
+        frame: the frame of the last observation.
         problem: why the scene is not clear; None if it is.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
     """
 
     def __init__(self) -> None:
-        """Nothing accepted yet."""
+        """The state before the first observation."""
         self.guard = Guard()
-        self.state: Any = None
+        self.state: stiv_blender.SceneState | None = None
         self.state_frame = 0
         self.frame = 0
         self.updates = 0
@@ -47,71 +46,71 @@ _watch = Watch()
 
 
 def problem() -> Problem | None:
-    """Why the guard cannot act; None if it can."""
+    """Why the scene is not clear; None if it is."""
     return _watch.problem
 
 
 def uncorrected() -> int:
-    """How many results of tools the guard left as they were, although they intersect, since it was turned on."""
+    """Number of results since the guard was turned on that intersect and were not corrected."""
     return _watch.uncorrected
 
 
-def last_clear_state() -> tuple[Any, int] | None:
-    """A `stiv.blender.SceneState` without intersections and its frame; None where the guard saw none so far."""
+def last_clear_state() -> tuple[stiv_blender.SceneState, int] | None:
+    """The last state without intersections and its frame; None before the first."""
     return None if _watch.state is None else (_watch.state, _watch.state_frame)
 
 
-def is_on(context: Any) -> bool:
-    """Is the guard of the scene turned on, and can it work at all?"""
+def is_on(context: bpy.types.Context) -> bool:
+    """Whether the guard of the scene is turned on and can run."""
     return context.scene is not None and bool(context.scene.stiv.live_guard) and not native_module.problem()
 
 
-def switched(context: Any) -> None:
-    """The switch was turned: begin with the scene as it is, or end."""
+def switched(context: bpy.types.Context) -> None:
+    """Called when the guard is turned on or off: start with the current scene, or stop."""
     restart()
     if is_on(context):
-        _arm()
+        _start_timer()
 
 
-def exclusions_changed(context: Any) -> None:
-    """Other pairs of faces may intersect from now on: look again."""
+def exclusions_changed(context: bpy.types.Context) -> None:
+    """Called when the excluded pairs change: test again."""
     if is_on(context):
-        _noted()
+        _note_change()
 
 
 def restart() -> None:
-    """Forget everything; the next look begins anew."""
+    """Reset the state; the next observation is the first."""
     global _watch
     _watch = Watch()
     alerts.clear()
-    if bpy.app.timers.is_registered(look):
-        bpy.app.timers.unregister(look)
+    if bpy.app.timers.is_registered(observe_and_act):
+        bpy.app.timers.unregister(observe_and_act)
 
 
-def look() -> float | None:
-    """Look at Blender and do what is due: called by a timer; seconds until the next call, None for none."""
-    window = alerts.window()
-    if window is None:
+def observe_and_act() -> float | None:
+    """Timer: observe Blender and do what is due. Returns seconds until the next call, None for no further call."""
+    windows = bpy.context.window_manager.windows
+    if not len(windows):
         return None
-    with bpy.context.temp_override(window=window):
+    with bpy.context.temp_override(window=windows[0]):
         context = bpy.context
         if not is_on(context):
             restart()
             return None
         try:
-            return _look(context, window)
-        except Exception as error:  # a timer that raises is gone, and with it the guard
+            return _run(context, windows[0])
+        except Exception as error:  # Blender would remove a timer that raises
             traceback.print_exc()
             _give_up(Problem(reason=str(error) or type(error).__name__))
             return None
 
 
-def _look(context: Any, window: Any) -> float | None:
+def _run(context: bpy.types.Context, window: bpy.types.Window) -> float | None:
     watch = _watch
-    seen = _see(context)
+    seen = _observe(context)
     watch.guard, action = decide(watch.guard, seen)
     if action is Action.WAIT:
-        return LOOK_AGAIN
+        return POLL_INTERVAL
     if action is not Action.REST:
         watch.working = True
         try:
@@ -122,106 +121,111 @@ def _look(context: Any, window: Any) -> float | None:
     return None
 
 
-def _see(context: Any) -> Seen:
+def _observe(context: bpy.types.Context) -> Observation:
     watch = _watch
     busy = alerts.is_busy()
-    return Seen(
+    return Observation(
         time=time.monotonic(),
         busy=busy,
         changed=watch.updates != watch.seen_updates,
         updates=watch.updates,
         step=None if busy else undo_steps.active_step(),
         sculpting=context.mode == "SCULPT",
-        accepted_by_us=last_edit.written() != watch.own_edits,
+        own_edit=last_edit.written() != watch.own_edits,
         frame_changed=context.scene.frame_current != watch.frame,
     )
 
 
-def _act(context: Any, window: Any, action: Action, seen: Seen) -> None:
+def _act(context: bpy.types.Context, window: bpy.types.Window, action: Action, seen: Observation) -> None:
     watch = _watch
     if seen.sculpting:
-        correction.take_strokes(context)
-    if action is Action.ACCEPT:
-        outcome = correction.test(context)
-    else:
-        outcome = correction.test(context) if action is Action.WRITE else None
-        if outcome is None or outcome.problem is not None:
-            outcome = correction.correct(context, watch.state)
+        correction.evaluate_strokes(context)
+    outcome = _test_and_correct(context, watch.state, action)
     if outcome.wrote:
         _record(window, action, seen)
     if outcome.problem is not None and watch.state is not None and is_new_result(watch.guard, seen, action):
         watch.uncorrected += 1
     _settle(context, outcome)
-    alerts.tell(context, outcome.text, watch.problem)
+    alerts.show(context, outcome.text, watch.problem)
 
 
-def _record(window: Any, action: Action, seen: Seen) -> None:
+def _test_and_correct(
+    context: bpy.types.Context, accepted: stiv_blender.SceneState | None, action: Action
+) -> correction.Outcome:
+    if accepted is None or action in (Action.ACCEPT, Action.WRITE):
+        tested = correction.test(context)
+        if accepted is None or action is Action.ACCEPT or tested.problem is None:
+            return tested
+    return correction.correct(context, accepted)
+
+
+def _record(window: bpy.types.Window, action: Action, seen: Observation) -> None:
     if action is Action.REPLACE and seen.step is not None:
         undo_steps.replace_active(window, seen.step[2])
     elif action is Action.PUSH:
         undo_steps.push(window, STEP_NAME)
 
 
-def _settle(context: Any, outcome: correction.Outcome) -> None:
+def _settle(context: bpy.types.Context, outcome: correction.Outcome) -> None:
     watch = _watch
     watch.own_edits = last_edit.written()
     watch.frame = context.scene.frame_current
     watch.problem = outcome.problem
     if outcome.problem is None:
-        watch.state, watch.state_frame = correction.read(context), watch.frame
+        watch.state, watch.state_frame = stiv_blender.read_state(context), watch.frame
     watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.problem is None)
-    # Reading a mesh in Edit Mode marks it as changed: told while the guard works, it is no change to look at again.
+    # Reading a mesh in Edit Mode marks it as changed; updating here, while working, ignores that change.
     context.view_layer.update()
 
 
 def _give_up(problem: Problem) -> None:
-    """Until the next change, which is tried again."""
+    """Stop until the next change."""
     _watch.problem = problem
     _watch.seen_updates = _watch.updates
-    alerts.tell(bpy.context, "", problem)
+    alerts.show(bpy.context, "", problem)
 
 
-def _arm() -> None:
-    if not bpy.app.timers.is_registered(look):
-        bpy.app.timers.register(look, first_interval=0.0)
+def _start_timer() -> None:
+    if not bpy.app.timers.is_registered(observe_and_act):
+        bpy.app.timers.register(observe_and_act, first_interval=0.0)
 
 
-def _noted() -> None:
-    """Something changed: look at it when nothing runs any more. The guard's own writing is not looked at."""
+def _note_change() -> None:
+    """Observe when no tool runs any more. Changes by the guard itself are ignored."""
     if not _watch.working:
         _watch.updates += 1
-        _arm()
+        _start_timer()
 
 
 @persistent
-def _on_update(scene: Any, graph: Any) -> None:
+def _on_update(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
     if scene != bpy.context.scene:
-        return  # copies that STIV evaluates, or a scene that is not guarded here
+        return  # a copy for STIV's evaluations, or a scene of another window
     if is_on(bpy.context) and any(_may_move_surfaces(each) for each in graph.updates):
-        _noted()
+        _note_change()
 
 
-def _may_move_surfaces(update: Any) -> bool:
-    """A stroke of Sculpt Mode tells of no more than that the object is to be drawn anew."""
+def _may_move_surfaces(update: bpy.types.DepsgraphUpdate) -> bool:
+    """Whether an update may move surfaces. A sculpt stroke is only marked as an update of shading."""
     moved = update.is_updated_geometry or update.is_updated_transform
     return bool(moved or (update.is_updated_shading and bpy.context.mode == "SCULPT"))
 
 
 @persistent
-def _on_frame(scene: Any, graph: Any) -> None:
+def _on_frame(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
     if is_on(bpy.context):
-        _noted()
+        _note_change()
 
 
 @persistent
-def _on_history(*_unused: Any) -> None:
+def _on_history(*_unused: object) -> None:
     if is_on(bpy.context) and not _watch.working:
-        _watch.guard = _watch.guard.went_through_history(undo_steps.active_step())
-        _noted()
+        _watch.guard = _watch.guard.after_history(undo_steps.active_step())
+        _note_change()
 
 
 @persistent
-def _on_load(*_unused: Any) -> None:
+def _on_load(*_unused: object) -> None:
     switched(bpy.context)
 
 
@@ -235,13 +239,13 @@ HANDLERS = {
 
 
 def register() -> None:
-    """Begin to listen."""
+    """Add the handlers."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister() -> None:
-    """Stop, and forget everything."""
+    """Remove the handlers and reset the state."""
     restart()
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which axes a transform may use, and whose."""
+"""The axes that a transform may use."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ AXIS_NAMES = "XYZ"
 
 
 @dataclass(frozen=True)
-class Constraint:
-    """An axis lock.
+class AxisLock:
+    """A lock to one axis, or to the plane perpendicular to it.
 
     Attributes:
-        axis: None: free.
-        plane: everything but `axis`.
-        second: the axes are not those of the scene's orientation, but the second choice: local where the scene says
-            global, and global where it says anything else.
+        axis: index of the axis; None without a lock.
+        plane: the lock is to the plane perpendicular to `axis`.
+        second: the axes are those of the second orientation: local if the scene's orientation is global, else global.
 
     """
 
@@ -27,7 +26,7 @@ class Constraint:
 
     @property
     def axes(self) -> tuple[int, ...]:
-        """The axes that are left, (0, 1, 2) when free."""
+        """Indices of the axes that may be used, (0, 1, 2) without a lock."""
         if self.axis is None:
             return (0, 1, 2)
         if self.plane:
@@ -36,11 +35,11 @@ class Constraint:
 
     @property
     def label(self) -> str:
-        """For instance "X" or "YZ", empty when free."""
+        """For instance "X" or "YZ"; empty without a lock."""
         return "" if self.axis is None else "".join(AXIS_NAMES[axis] for axis in self.axes)
 
-    def toggled(self, axis: int, *, plane: bool) -> Constraint:
-        """Lock to an axis or a plane; the same lock once more takes the second choice of axes, then lets go."""
+    def toggled(self, axis: int, *, plane: bool) -> AxisLock:
+        """The lock after the key of an axis: repeating it switches to the second orientation, then to no lock."""
         if (self.axis, self.plane) != (axis, plane):
-            return Constraint(axis, plane)
-        return Constraint() if self.second else Constraint(axis, plane, second=True)
+            return AxisLock(axis, plane)
+        return AxisLock() if self.second else AxisLock(axis, plane, second=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One drag: events turned into goals, goals into edits, and every way out."""
+"""The loop of a drag: events change its state, ticks solve for the state's goal, and every exit is clean."""
 
 from __future__ import annotations
 
@@ -7,93 +7,106 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING
 
-from .edit import Edit, Request, put_back
 from .event import Event
 from .event_handling import step
 from .pace import Pace
 from .pointer import Pointer
+from .request import Request
 from .state import Effect, Phase, State
 
-LAST_SLICES = 10  # solves, each within its time, for what is left to do when a drag is confirmed
-GAIN = 0.99  # of the energy before: a solve for the same goal that leaves more of it was the last
+if TYPE_CHECKING:
+    from ..stiv_blender import Edit, EditResult, Motion, WriteReport
+    from ..transform import Transform
+
+FINAL_SOLVES = 10  # solves, each within its budget, for a goal that is not reached when a drag is confirmed
+GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it is the last
 
 
 class Progress(Enum):
-    """Where a drag stands after an event."""
+    """The status of a drag after an event."""
 
     RUNNING = "running"
     FINISHED = "finished"
     VALUE_GIVEN = "value given"
-    """Confirmed by typed numbers: everything is restored, and `transform` is to be applied as a script would."""
+    """Confirmed by typed numbers: the start is restored, and the caller applies `transform` as a script would."""
     CANCELLED = "cancelled"
 
 
 @dataclass(frozen=True)
-class Aim:
-    """What a solve is for: the transform that a state asks for, and what an edit drags to for it."""
+class Goal:
+    """The goal of a solve: a state, its transform, and the motion that an edit takes."""
 
     state: State
-    transform: Any
-    motion: Any
+    transform: Transform
+    motion: Motion
 
 
-class DragEnded(RuntimeError):  # noqa: N818 (it is no error of anybody)
-    """Something outside the drag ended it."""
+class DragEnded(RuntimeError):  # noqa: N818 (it is not an error)
+    """An event outside the drag ended it."""
 
 
-class Drag:
+def restore_after_error(edit: Edit, error: Exception) -> None:
+    """Restore the start; if that fails too because the scene is gone, `error` gets a note."""
+    try:
+        edit.restore()
+    except Exception as second:
+        error.add_note(f"while restoring: {second}")
+
+
+class DragLoop:
     """A drag from its start to a confirmation or a clean cancellation.
 
-    Events only change the state; `tick` solves for the latest one, so that motions are never queued up behind a solve.
-    A solve has the time of a frame. Where that ends before anything was accepted, the next tick goes on with the same
-    goal: one that is new at each tick would never be solved. What there is no time left to show, the next tick shows.
-    No exception leaves this class: a refused value (ValueError) is told in `note` and the last accepted state stays
-    until the user types on; anything else restores the scene and ends the drag with the exception in `error`.
+    Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. A
+    solve has the time of a frame. If that ends before a state is accepted, the next tick continues with the same goal:
+    with a new goal at each tick, none would be reached. If a tick has no time left to write, the next one writes.
+
+    No exception leaves this class. A rejected value (ValueError) becomes `note`, and the last accepted state stays
+    until the user types on. Any other exception restores the scene, ends the drag and becomes `error`.
     """
 
     def __init__(
         self,
         begin: Callable[[Request], Edit],
-        measure: Callable[[State], Any],
-        motion: Callable[[Any, State], Any],
+        transform_of: Callable[[State], Transform],
+        motion_of: Callable[[Transform, State], Motion],
         state: State,
     ):
-        """Start a drag; what `begin` raises comes out, with nothing changed.
+        """Start a drag. An exception of `begin` is passed on, with nothing changed.
 
         Args:
-            begin: an edit of the scene as it is; again when the state requests another one.
-            measure: from a state to the transform that it asks for.
-            motion: from such a transform, and the state, to what an edit drags to.
+            begin: begins an edit of the current scene; called again when the state requests another one.
+            transform_of: the transform that a state requests.
+            motion_of: the motion that an edit takes for a transform and a state.
             state: the state before the first event.
 
         """
         self.state = state
         self.progress = Progress.RUNNING
-        self.transform: Any = None
-        self.result: Any = None
-        self.report: Any = None
+        self.transform: Transform | None = None
+        self.result: EditResult | None = None
+        self.report: WriteReport | None = None
         self.note = ""
         self.error: Exception | None = None
         self.edit = begin(state.request)
         self._begun = state.request
         self._begin = begin
-        self._measure = measure
-        self._motion = motion
+        self._transform_of = transform_of
+        self._motion_of = motion_of
         self._pending = False
         self._pace = Pace()
-        self._unfinished: Aim | None = None
-        self._unshown = False
+        self._unfinished: Goal | None = None
+        self._unwritten = False
         self._solved: tuple[State | None, float] = (None, 0.0)
 
     @property
     def at_rest(self) -> bool:
-        """Is there nothing to solve for until the next event?"""
-        return not (self._pending or self._unshown) or self.progress is not Progress.RUNNING
+        """Whether nothing is left to solve until the next event."""
+        return not (self._pending or self._unwritten) or self.progress is not Progress.RUNNING
 
     def handle(self, event: Event) -> Effect:
-        """Take one event; says what it asked for."""
+        """Take one event; returns the effect that it requested."""
         effect = Effect.NONE
 
         def take() -> None:
@@ -103,24 +116,24 @@ class Drag:
         self._guarded(take)
         return effect
 
-    def look(self, pointer: Pointer) -> None:
-        """The view changed: solve for what the pointer means in it."""
+    def change_view(self, pointer: Pointer) -> None:
+        """Solve for the goal of the pointer in a changed view."""
         self.state = replace(self.state, pointer=pointer)
         self._pending = True
 
     def tick(self) -> Progress:
-        """Solve for the latest goal, if it is not yet reached, or show what the last tick came to."""
+        """Solve for the latest goal if it is not reached, or write the result of the last tick."""
         return self._guarded(self._advance)
 
     def abort(self, reason: Exception) -> Progress:
-        """Restore and end, whatever the state."""
+        """Restore the start and end the drag."""
         return self._guarded(lambda: self._fail(reason))
 
     def _guarded(self, action: Callable[[], None]) -> Progress:
         if self.progress is Progress.RUNNING:
             try:
                 action()
-            except Exception as error:  # a running modal operator must not be left behind, whatever went wrong
+            except Exception as error:  # a modal operator must end, whatever went wrong
                 self._fail(error)
         return self.progress
 
@@ -137,56 +150,48 @@ class Drag:
 
     def _advance(self) -> None:
         begun = time.perf_counter()
-        if not self._unshown:
-            self._unshown = self._solve()
-        if self._unshown and self._pace.has_time_to_show(time.perf_counter() - begun):
-            self._show()
+        if not self._unwritten:
+            self._unwritten = self._solve()
+        if self._unwritten and self._pace.has_time_to_write(time.perf_counter() - begun):
+            self._write()
 
     def _solve(self) -> bool:
-        """Solve for the latest goal, or go on with the one in hand; says whether there is anything to show."""
+        """Solve for the latest goal or continue the current one; returns whether there is a state to write."""
         if not self._pending:
             return False
         self._pending = False
         refusal = self._begin_again()
         try:
-            aim = self._unfinished or self._new_aim()
+            goal = self._unfinished or self._new_goal()
             self._unfinished = None
-            self.result = self.edit.drag(aim.motion, time_budget=self._pace.budget)
+            result = self.edit.drag(goal.motion, time_budget=self._pace.budget)
         except ValueError as error:
             self.note = str(error)
             return False
-        self.transform = aim.transform
-        self.note = refusal
-        self._pending = self._may_gain(aim.state) or aim.state != self.state
-        nothing_accepted = self.result.status == "budget" and len(self.result.path) == 0
-        self._unfinished = aim if nothing_accepted else None
+        self.result, self.transform, self.note = result, goal.transform, refusal
+        self._pending = self._may_gain(goal.state, result) or goal.state != self.state
+        nothing_accepted = result.status == "budget" and len(result.path) == 0
+        self._unfinished = goal if nothing_accepted else None
         return not nothing_accepted
 
-    def _show(self) -> None:
-        begun = time.perf_counter()
-        self._unshown = False
-        self._write()
-        self._pace.note(time.perf_counter() - begun)
+    def _new_goal(self) -> Goal:
+        transform = self._transform_of(self.state)
+        return Goal(self.state, transform, self._motion_of(transform, self.state))
 
-    def _new_aim(self) -> Aim:
-        transform = self._measure(self.state)
-        return Aim(self.state, transform, self._motion(transform, self.state))
+    def _may_gain(self, state: State, result: EditResult) -> bool:
+        """Whether another solve for the same state may come closer: one solve goes only a limited way to a far goal.
 
-    def _may_gain(self, state: State) -> bool:
-        """Is it worth to solve for the same state once more? A solve goes only so far toward a goal that is far off.
-
-        While the mouse moves the next motion does that; where it rests, so that what is shown does not hang on how
-        many motions there was time for.
+        While the mouse rests, this makes the final state independent of the number of motions before it.
         """
         solved, least = self._solved
-        self._solved = (state, self.result.energy)
-        gained = solved != state or self.result.energy < GAIN * least
-        return self.result.status == "budget" or (self.result.status == "corrected" and gained)
+        self._solved = (state, result.energy)
+        gained = solved != state or result.energy < GAIN * least
+        return result.status == "budget" or (result.status == "corrected" and gained)
 
     def _begin_again(self) -> str:
-        """Another edit from the start where another is requested; where that is refused, the old one goes on.
+        """Begin another edit if the state requests one; returns the reason if that is refused and the old one stays.
 
-        Interference alone is switched in the edit that is there.
+        Collisions alone are turned on and off within the current edit.
         """
         request = self.state.request
         if request == replace(self._begun, interference=request.interference):
@@ -194,11 +199,11 @@ class Drag:
         self._unfinished = None
         self.edit.restore()
         try:
-            self.edit = self._begin(self.state.request)
+            self.edit = self._begin(request)
         except ValueError as error:
             self.state = replace(self.state, request=self._begun)
             return str(error)
-        self._begun = self.state.request
+        self._begun = request
         return ""
 
     def _switch_interference(self) -> str:
@@ -210,16 +215,16 @@ class Drag:
 
     def _confirm(self) -> None:
         if self.state.typed.active:
-            self._give_value()
+            self._confirm_typed()
             return
         if self._pending or self.result is not None:
             self._finish_dragged()
         self.progress = Progress.FINISHED
 
-    def _give_value(self) -> None:
-        """What is no number cannot be confirmed: the drag goes on, and says so."""
+    def _confirm_typed(self) -> None:
+        """Confirm typed numbers; if they are invalid, the drag continues with a note."""
         try:
-            self.transform = self._measure(self.state)
+            self.transform = self._transform_of(self.state)
         except ValueError as error:
             self.note = str(error)
             self.state = replace(self.state, phase=Phase.DRAGGING)
@@ -228,21 +233,24 @@ class Drag:
         self.progress = Progress.VALUE_GIVEN
 
     def _finish_dragged(self) -> None:
-        self._unfinished = None  # what counts is where the mouse was let go
-        for _ in range(LAST_SLICES):
+        self._unfinished = None  # the goal is the position where the mouse was released
+        for _ in range(FINAL_SOLVES):
             if self._solve():
-                self._show()
+                self._write()
         if self.result is not None:
             settled = self.edit.settle()
             self.result = settled if settled.status != "unchanged" else self.result
             self._write()
 
     def _write(self) -> None:
+        begun = time.perf_counter()
+        self._unwritten = False
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
+        self._pace.note(time.perf_counter() - begun)
 
     def _fail(self, error: Exception) -> None:
         self.error = error
         self.progress = Progress.CANCELLED
-        put_back(self.edit, error)
+        restore_after_error(self.edit, error)

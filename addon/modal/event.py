@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One event of keyboard or mouse, as plain data, and which of them turn, pan or zoom the view."""
+"""An event of keyboard or mouse, as plain data."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import dataclass
 POINTER_MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 SHIFT_KEYS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"})
 CTRL_KEYS = frozenset({"LEFT_CTRL", "RIGHT_CTRL"})
+WHEEL = frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "WHEELINMOUSE", "WHEELOUTMOUSE"})
+OTHER_NAVIGATION = frozenset({"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM"})
 
 
 @dataclass(frozen=True)
@@ -39,11 +41,7 @@ class Event:
         """Whether Shift is held, which makes the pointer ten times finer."""
         return "shift" in self.modifiers
 
-
-WHEEL = frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "WHEELINMOUSE", "WHEELOUTMOUSE"})
-OTHERS = frozenset({"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM"})
-
-
-def navigates(event: Event) -> bool:
-    """Whether an event belongs to the view."""
-    return event.type in WHEEL or event.type in OTHERS or event.type.startswith("NDOF_")
+    @property
+    def navigates(self) -> bool:
+        """Whether the event orbits, pans or zooms the view, and is left to Blender during a drag."""
+        return self.type in WHEEL or self.type in OTHER_NAVIGATION or self.type.startswith("NDOF_")

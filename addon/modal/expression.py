@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a typed expression amounts to: + - * / ** ( ), pi, and numbers with units. Nothing is looked up or called."""
+"""Evaluates typed expressions: + - * / ** ( ), pi, and numbers with units. No names are looked up or called."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ MAX_LENGTH = 60
 
 _TOKEN = re.compile(r"\s*(?:(\d+\.?\d*|\.\d+)|(\*\*|[-+*/()^])|([A-Za-zµμ°]+|'{1,2}|\"))")
 
-Units = Callable[[str], float | None]  # the factor of a unit by its name; "" for a number without one; None: unknown
+Units = Callable[[str], float | None]  # the factor of a unit, None if unknown; "" is the unit of plain numbers
 
 
 def evaluate(text: str, units: Units) -> float:
-    """The value of an expression. A number counts in its unit; without any unit, all of it in that of "".
+    """The value of an expression. If no number has a unit, the value is in the unit "".
 
-    Raises ValueError, which says what is wrong.
+    Raises ValueError with the reason for an invalid expression.
     """
     if len(text) > MAX_LENGTH:
         raise ValueError(f"the expression is longer than {MAX_LENGTH} characters")
@@ -62,7 +62,7 @@ class _Reader:
         return self._tokens[self._place]
 
     def _taken(self, *wanted: str) -> str:
-        """The next token if it is one of those wanted, which is then behind us; otherwise empty."""
+        """Consumes the next token if it is one of those wanted; otherwise returns an empty text."""
         token = self._next()
         if token not in wanted or not token:
             return ""
@@ -92,7 +92,7 @@ class _Reader:
 
     def _power(self) -> float:
         base = self._atom()
-        return base ** self._signed() if self._taken("**", "^") else base  # complex is refused in the end
+        return base ** self._signed() if self._taken("**", "^") else base  # `evaluate` rejects complex results
 
     def _atom(self) -> float:
         if self._taken("("):
@@ -105,7 +105,7 @@ class _Reader:
         return self._quantities()
 
     def _quantities(self) -> float:
-        """A number, or several with units one after the other: 1m 20cm."""
+        """A number, or a sequence of numbers with units: 1m 20cm."""
         value, has_unit = self._quantity()
         while has_unit and (self._next()[:1].isdigit() or self._next().startswith(".")):
             following, has_unit = self._quantity()
@@ -113,7 +113,7 @@ class _Reader:
         return value
 
     def _quantity(self) -> tuple[float, bool]:
-        """A number, and whether a unit follows it."""
+        """A number, and whether it has a unit."""
         token = self._next()
         if not (token[:1].isdigit() or token.startswith(".")):
             raise ValueError(f"missing number before {token!r}" if token else "missing number")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What header and status bar say during a drag; `say` puts a text into the language of the interface."""
+"""Texts of header and status bar during a drag; `translate` puts a text into the language of the interface."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from .proportional import Proportional
 from .state import State
 
-Say = Callable[[str], str]
+Translate = Callable[[str], str]
 
-_VERDICT_WORDS = {
+DECIMALS = 4
+_STATUS_TEXTS = {
     "reached": "clear",
     "corrected": "deflected",
     "blocked": "blocked",
@@ -19,75 +20,75 @@ _VERDICT_WORDS = {
     "unchanged": "",
     "unguarded": "collisions off",
 }
-_RESPONDER_WORDS = {"unselected": "yields: others", "all": "yields: both"}
+_RESPONDER_TEXTS = {"unselected": "yields: others", "all": "yields: both"}
 
 
 def header_text(
     state: State,
     transform: str,
-    verdict: str,
+    status: str,
     notes: Sequence[str] = (),
-    axes: tuple[str, str] = ("", ""),
-    say: Say = str,
+    orientations: tuple[str, str] = ("", ""),
+    translate: Translate = str,
 ) -> str:
-    """One line: the value, the lock, the typed text, what became of it. `axes` names both choices of axes."""
+    """One line: value, axis lock, typed text, status. `orientations` names those of the first and second axis key."""
     parts = [transform]
-    if state.constraint.label:
-        name = axes[state.constraint.second].title()
-        parts.append(
-            say("along {}").format(f"{say(name)} {state.constraint.label}" if name else state.constraint.label)
-        )
+    if state.axis_lock.label:
+        name = orientations[state.axis_lock.second].title()
+        axes = f"{translate(name)} {state.axis_lock.label}" if name else state.axis_lock.label
+        parts.append(translate("along {}").format(axes))
     if state.typed.active:
         parts.append(state.typed.text(state.components))
-    parts.extend(text for text in (_proportional_text(state.proportional, say), *_modes(state, say)) if text)
-    return "  |  ".join(part for part in ["  ".join(parts), verdict, *notes] if part)
+    parts.extend(filter(None, (_proportional_text(state.proportional, translate), *_modes(state, translate))))
+    return "  |  ".join(part for part in ["  ".join(parts), status, *notes] if part)
 
 
-def _proportional_text(proportional: Proportional, say: Say) -> str:
+def _proportional_text(proportional: Proportional, translate: Translate) -> str:
     if not proportional.active:
         return ""
-    parts = [say("proportional {}").format(f"{proportional.size:.4g}")]
-    parts.append(say(proportional.falloff.replace("_", " ").title()))
-    return " ".join([*parts, *([say("connected")] if proportional.connected else [])])
+    parts = [translate("proportional {}").format(f"{proportional.size:.4g}")]
+    parts.append(translate(proportional.falloff.replace("_", " ").title()))
+    return " ".join([*parts, *([translate("connected")] if proportional.connected else [])])
 
 
-def _modes(state: State, say: Say) -> list[str]:
-    """What is not as usual."""
-    who = _RESPONDER_WORDS.get(state.request.responders, "")
-    return [say("precision") if state.precise else "", say("snap") if state.snapping else "", say(who) if who else ""]
+def _modes(state: State, translate: Translate) -> list[str]:
+    """Modes that differ from the defaults."""
+    responders = _RESPONDER_TEXTS.get(state.request.responders, "")
+    return [
+        translate("precision") if state.precise else "",
+        translate("snap") if state.snapping else "",
+        translate(responders) if responders else "",
+    ]
 
 
-def status_text(state: State, say: Say = str) -> str:
-    """The keys that do something now."""
+def status_text(state: State, translate: Translate = str) -> str:
+    """The keys that have an effect now."""
     if state.typed.expression:
-        keys = [say("Enter: confirm"), say("Esc: cancel"), say("+ - * / ( ) and units: expression")]
-        return "    ".join([*keys, say("Tab: next axis"), say("Backspace: delete")])
-    keys = [say("Enter, Space, Left Mouse: confirm"), say("Esc, Right Mouse: cancel"), say("G R S: transform")]
-    keys += [say("X Y Z: axis"), say("Shift+X/Y/Z: plane")]
+        keys = [translate("Enter: confirm"), translate("Esc: cancel"), translate("+ - * / ( ) and units: expression")]
+        return "    ".join([*keys, translate("Tab: next axis"), translate("Backspace: delete")])
+    keys = [translate("Enter, Space, Left Mouse: confirm"), translate("Esc, Right Mouse: cancel")]
+    keys += [translate("G R S: transform"), translate("X Y Z: axis"), translate("Shift+X/Y/Z: plane")]
     if state.typed.active:
-        keys += [say("Tab: next axis"), say("=: expression"), say("Backspace: delete")]
+        keys += [translate("Tab: next axis"), translate("=: expression"), translate("Backspace: delete")]
     else:
-        keys += [say("0-9 . - =: value"), say("Shift: precision"), say("Ctrl: snap")]
+        keys += [translate("0-9 . - =: value"), translate("Shift: precision"), translate("Ctrl: snap")]
     if state.proportional.available:
-        keys.append(say("O: proportional"))
+        keys.append(translate("O: proportional"))
     if state.proportional.active:
-        keys += [say("Wheel, Page Up/Down: size"), say("Shift+O: falloff")]
-    return "    ".join([*keys, say("W: yields"), say("I: collisions")])
+        keys += [translate("Wheel, Page Up/Down: size"), translate("Shift+O: falloff")]
+    return "    ".join([*keys, translate("W: yields"), translate("I: collisions")])
 
 
-def verdict_text(status: str, blocking: Sequence[str] = (), say: Say = str) -> str:
-    """What a result's status means to the user; `blocking` are names of objects in the way."""
+def result_text(status: str, blocking: Sequence[str] = (), translate: Translate = str) -> str:
+    """The status of a result for the user; `blocking` names the objects that block the edit."""
     if status == "blocked" and blocking:
-        return say("blocked by {}").format(", ".join(blocking))
-    word = _VERDICT_WORDS.get(status, status)
-    return say(word) if word else ""
-
-
-DECIMALS = 4
+        return translate("blocked by {}").format(", ".join(blocking))
+    text = _STATUS_TEXTS.get(status, status)
+    return translate(text) if text else ""
 
 
 def decimal_text(value: float, decimals: int = DECIMALS) -> str:
-    """A number with at most so many digits after the point, without trailing zeros; rounding noise becomes "0"."""
+    """A number with at most `decimals` digits after the point, without trailing zeros; rounding noise becomes "0"."""
     text = f"{value:.{decimals}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text == "-0" else text

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the pointer counts as being, with precision held or not."""
+"""The position of the pointer that a drag uses, with or without precision."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
 
-PRECISION = 0.1  # of the motion counts while Shift is held
+PRECISION = 0.1  # fraction of the motion that counts while Shift is held
 
 
 @dataclass(frozen=True)
@@ -14,11 +14,11 @@ class Pointer:
     """The pointer since the start of a drag, in pixels of the region.
 
     Attributes:
-        start: where the drag began.
-        last: where it was seen last.
-        effective: where it counts as being; lags behind `last` after precise motion.
-        centre: the pivot in the region, None when it has no place there.
-        turn: angle around the centre since the start, radians, counter-clockwise, over any number of turns.
+        start: position at the start of the drag.
+        last: last position.
+        effective: position that the drag uses; differs from `last` after precise motion.
+        centre: the pivot in the region, None without a view.
+        turn: angle around the centre since the start, radians, counterclockwise, over any number of turns.
 
     """
 
@@ -34,17 +34,17 @@ class Pointer:
         return Pointer(mouse, mouse, mouse, centre)
 
     def moved(self, mouse: tuple[float, float], *, precise: bool = False) -> Pointer:
-        """After a motion to `mouse`."""
-        share = PRECISION if precise else 1.0
+        """The pointer after a motion to `mouse`."""
+        fraction = PRECISION if precise else 1.0
         effective = (
-            self.effective[0] + share * (mouse[0] - self.last[0]),
-            self.effective[1] + share * (mouse[1] - self.last[1]),
+            self.effective[0] + fraction * (mouse[0] - self.last[0]),
+            self.effective[1] + fraction * (mouse[1] - self.last[1]),
         )
-        turn = self.turn + share * self._turn_to(mouse)
+        turn = self.turn + fraction * self._turn_to(mouse)
         return Pointer(self.start, mouse, effective, self.centre, turn)
 
-    def seen_anew(self, start: tuple[float, float], centre: tuple[float, float] | None) -> Pointer:
-        """After the view changed: where the start and the pivot are seen now. What was turned so far stays turned."""
+    def in_new_view(self, start: tuple[float, float], centre: tuple[float, float] | None) -> Pointer:
+        """The pointer after the view changed, with the start and the pivot in the new view; `turn` stays."""
         return replace(self, start=start, effective=self.last, centre=centre)
 
     def _turn_to(self, mouse: tuple[float, float]) -> float:

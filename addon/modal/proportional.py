@@ -1,19 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Proportional editing during a drag: whether, how far, and with what falloff."""
+"""Proportional editing during a drag."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
 FALLOFFS = ("SMOOTH", "SPHERE", "ROOT", "INVERSE_SQUARE", "SHARP", "LINEAR", "CONSTANT", "RANDOM")
-GROWTH = 1.1  # of the size, one notch of the wheel
+GROWTH = 1.1  # factor of the size for one notch of the wheel
 LARGER_KEYS = frozenset({"PAGE_UP", "WHEELDOWNMOUSE"})  # as in Blender's own transforms
 SMALLER_KEYS = frozenset({"PAGE_DOWN", "WHEELUPMOUSE"})
 
 
 @dataclass(frozen=True)
 class Proportional:
-    """`available`: in Edit Mode; `size` in world units; `connected`: measured along the edges of the cage."""
+    """Settings of proportional editing.
+
+    Attributes:
+        available: whether the mode has it: in Edit Mode.
+        on: whether it is turned on.
+        size: radius in world units.
+        falloff: one of FALLOFFS.
+        connected: distances are measured along the edges of the cage.
+
+    """
 
     available: bool = False
     on: bool = False
@@ -23,17 +32,17 @@ class Proportional:
 
     @property
     def active(self) -> bool:
-        """Whether points near the selection follow."""
+        """Whether points near the selection move with it."""
         return self.available and self.on
 
     def toggled(self) -> Proportional:
-        """Switched on or off, where there is any."""
+        """Turned on or off, if available."""
         return replace(self, on=self.available and not self.on)
 
     def with_next_falloff(self) -> Proportional:
-        """The next falloff of the list."""
+        """With the next falloff of the list."""
         return replace(self, falloff=FALLOFFS[(FALLOFFS.index(self.falloff) + 1) % len(FALLOFFS)])
 
     def resized(self, key: str) -> Proportional:
-        """After a notch of the wheel, or a page key."""
+        """With the size after a notch of the wheel or a page key."""
         return replace(self, size=self.size * (GROWTH if key in LARGER_KEYS else 1.0 / GROWTH))

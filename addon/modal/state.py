@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The state of a drag: everything that its events have said so far."""
+"""The state of a drag, determined by its events."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
 
-from .axis_lock import Constraint
-from .edit import Request
+from .axis_lock import AxisLock
 from .pointer import Pointer
 from .proportional import Proportional
+from .request import Request
 from .typed_numbers import TypedValues
 
 
 class Phase(Enum):
-    """Where a drag is; the last two are final."""
+    """The phase of a drag; the last two are final."""
 
     DRAGGING = "dragging"
     CONFIRMED = "confirmed"
@@ -22,7 +22,7 @@ class Phase(Enum):
 
 
 class Effect(Enum):
-    """What a step asks of the caller."""
+    """The action that a step requests of the caller."""
 
     NONE = "none"
     UPDATE = "update"
@@ -35,24 +35,24 @@ class Effect(Enum):
 
 @dataclass(frozen=True)
 class State:
-    """Everything that the events of a drag have said so far.
+    """The state of a drag.
 
     Attributes:
-        pointer: where the mouse is.
-        request: kind of transform, who gives way, and whether anything does.
-        constraint: the axis lock.
+        pointer: the pointer since the start.
+        request: kind of transform, which side yields, and whether surfaces collide.
+        axis_lock: the axes that the transform may use.
         typed: typed numbers.
         proportional: proportional editing.
-        snap: whether snapping is switched on; Ctrl held turns it round.
+        snap: whether snapping is turned on; Ctrl inverts it.
         ctrl: whether Ctrl is held.
         precise: whether Shift is held.
-        phase: whether the drag goes on.
+        phase: whether the drag continues.
 
     """
 
     pointer: Pointer
     request: Request = field(default_factory=Request)
-    constraint: Constraint = field(default_factory=Constraint)
+    axis_lock: AxisLock = field(default_factory=AxisLock)
     typed: TypedValues = field(default_factory=TypedValues)
     proportional: Proportional = field(default_factory=Proportional)
     snap: bool = False
@@ -72,5 +72,5 @@ class State:
 
     @property
     def components(self) -> int:
-        """How many numbers can be typed."""
-        return 1 if self.kind == "rotate" else len(self.constraint.axes)
+        """Number of values that can be typed."""
+        return 1 if self.kind == "rotate" else len(self.axis_lock.axes)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers typed during a drag: one for each component, Tab goes from one to the next."""
+"""Numbers typed during a drag: one for each component; Tab switches to the next."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _CHARACTERS = (
 )
 _EXPRESSION_CHARACTERS = {"NUMPAD_PLUS": "+", "NUMPAD_ASTERIX": "*", "SPACE": " "}
 
-Read = Callable[[str], float]  # from a text to its value, units and all; ValueError for what it does not understand
+Read = Callable[[str], float]  # the value of a text with units; ValueError for an invalid text
 
 
 def typed_character(event: Event) -> str:
-    """What an event adds to a number: a digit, ".", "-", "/", backspace, or nothing."""
+    """The character that an event adds to a number: a digit, ".", "-", "/", backspace, or none."""
     if event.modifiers & {"ctrl", "alt", "oskey"}:
         return ""
     if len(event.text) == 1 and event.text in "0123456789.-/":
@@ -33,7 +33,7 @@ def typed_character(event: Event) -> str:
 
 
 def expression_character(event: Event) -> str:
-    """What an event adds to an expression: whatever can be printed, or backspace."""
+    """The character that an event adds to an expression: any printable one, or backspace."""
     if event.modifiers & {"ctrl", "oskey"}:
         return ""
     if len(event.text) == 1 and event.text.isprintable():
@@ -44,9 +44,9 @@ def expression_character(event: Event) -> str:
 
 @dataclass(frozen=True)
 class TypedNumber:
-    """Digits typed so far, a sign that "-" turns and an inversion that "/" turns at any time, as Blender's do.
+    """Digits, a sign that "-" toggles and an inversion that "/" toggles at any time, as in Blender.
 
-    As an `expression` it is the text alone, "-" and "/" like any other character.
+    An `expression` is the text alone, with "-" and "/" like any other character.
     """
 
     digits: str = ""
@@ -56,11 +56,11 @@ class TypedNumber:
 
     @property
     def active(self) -> bool:
-        """Whether anything is typed, so that the pointer no longer counts."""
+        """Whether anything is typed; it then overrides the pointer."""
         return bool(self.digits) or self.negative or self.inverse
 
     def value(self, read: Read = float) -> float | None:
-        """The number, None until there is a digit. ValueError for an expression that is not one, and for 1/0."""
+        """The number, None before the first digit. ValueError for an invalid expression and for 1/0."""
         if not (self.digits.strip() if self.expression else any(character.isdigit() for character in self.digits)):
             return None
         value = read(self.digits)
@@ -72,7 +72,7 @@ class TypedNumber:
 
     @property
     def text(self) -> str:
-        """As typed, for display."""
+        """The text as typed, for display."""
         return ("-" if self.negative else "") + ("1/" if self.inverse else "") + self.digits
 
     def typed(self, character: str) -> TypedNumber:
@@ -90,11 +90,11 @@ class TypedNumber:
         return replace(self, digits=self.digits + character)
 
     def as_expression(self) -> TypedNumber:
-        """The same, with sign and inversion as characters of the text."""
+        """The number as an expression, with sign and inversion as characters of the text."""
         return self if self.expression else TypedNumber(self.text, expression=True)
 
     def _shortened(self) -> TypedNumber:
-        """Without the last digit; without digits, sign and inversion go too."""
+        """Without the last digit; without digits, also without sign and inversion."""
         if not self.digits:
             return TypedNumber(expression=self.expression)
         return replace(self, digits=self.digits[:-1])
@@ -105,7 +105,7 @@ COMPONENTS = 3
 
 @dataclass(frozen=True)
 class TypedValues:
-    """Numbers, and which of them is being typed. `expression`: whether letters and operators are typed as well."""
+    """The numbers and the index of the current one. `expression`: letters and operators are accepted too."""
 
     numbers: tuple[TypedNumber, ...] = (TypedNumber(),) * COMPONENTS
     index: int = 0
@@ -117,36 +117,36 @@ class TypedValues:
         return any(number.active for number in self.numbers)
 
     def typed(self, character: str) -> TypedValues:
-        """After one more character for the present number; backspace in an empty one goes back to the one before."""
+        """After one more character for the current number; backspace in an empty one selects the previous one."""
         number = self.numbers[self.index]
         if character == "\b" and not number.active and self.index > 0:
             return replace(self, index=self.index - 1)
         return self._with(number.typed(character))
 
     def moved_on(self, count: int) -> TypedValues:
-        """The next of `count` numbers, the first one after the last."""
-        return replace(self, index=(self.index + 1) % count)._in_its_way()
+        """With the next of `count` numbers as the current one, cyclically."""
+        return replace(self, index=(self.index + 1) % count)._converted()
 
     def limited(self, count: int) -> TypedValues:
-        """With no number after the first `count`."""
-        kept = tuple(number if i < count else TypedNumber() for i, number in enumerate(self.numbers))
-        return replace(self, numbers=kept, index=min(self.index, count - 1))
+        """With only the first `count` numbers."""
+        numbers = tuple(number if i < count else TypedNumber() for i, number in enumerate(self.numbers))
+        return replace(self, numbers=numbers, index=min(self.index, count - 1))
 
     def as_expression(self) -> TypedValues:
-        """From now on letters and operators are typed too."""
-        return replace(self, expression=True)._in_its_way()
+        """With letters and operators accepted from now on."""
+        return replace(self, expression=True)._converted()
 
     def value(self, index: int, read: Read) -> float | None:
-        """One of the numbers, None where none is typed. ValueError for what is not a number."""
+        """One of the numbers, None if it is empty. ValueError for an invalid one."""
         return self.numbers[index].value(read)
 
     def text(self, count: int) -> str:
-        """As typed, for display: the present one with a cursor."""
+        """The numbers as typed, for display; the current one has a cursor."""
         shown = [number.text + ("|" if i == self.index else "") for i, number in enumerate(self.numbers[:count])]
         last = max([self.index, *(i for i, number in enumerate(self.numbers) if number.active)])
         return " ".join(f"[{text}]" for text in shown[: last + 1])
 
-    def _in_its_way(self) -> TypedValues:
+    def _converted(self) -> TypedValues:
         return self._with(self.numbers[self.index].as_expression()) if self.expression else self
 
     def _with(self, number: TypedNumber) -> TypedValues:

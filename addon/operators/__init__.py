@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators, one a file."""
+"""The operators: transform, check, repair and setup, one in each file."""
 
 from .check.check import STIV_OT_check
 from .check.measure import STIV_OT_measure

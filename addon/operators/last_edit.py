@@ -1,27 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last edit did, in numbers, for scripts: the operator's return value has no room for it."""
+"""The last edit in numbers, for scripts: the return value of an operator cannot hold them."""
 
 from __future__ import annotations
 
 import json
 from typing import Any
 
+from .. import stiv_blender
+
 _written = 0
 
 
-def note_written(owner: Any, context: Any) -> None:
+def note_written(owner: object, context: object) -> None:
     """Called by Blender whenever the description of an edit is stored."""
     global _written
     _written += 1
 
 
 def written() -> int:
-    """How many edits the operators have written since the extension was loaded."""
+    """Number of edits that the operators have written since the extension was loaded."""
     return _written
 
 
-def describe(result: Any, report: Any) -> str:
-    """JSON of a `stiv.EditResult` and of the report on what was written."""
+def describe(result: stiv_blender.EditResult, report: stiv_blender.WriteReport) -> str:
+    """JSON of a result and of the report on writing it."""
     return json.dumps(
         {
             "status": result.status,
@@ -33,8 +35,8 @@ def describe(result: Any, report: Any) -> str:
     )
 
 
-def numbers(result: Any) -> dict[str, Any]:
-    """What a `stiv.EditResult` came to and took, ready for JSON."""
+def numbers(result: stiv_blender.EditResult) -> dict[str, Any]:
+    """Counters and timings of a result, ready for JSON."""
     return {
         "rounds": int(result.rounds),
         "events": len(result.events.kind),

@@ -1,42 +1,57 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What results of the solver, and what went wrong, say to the user."""
+"""Reports of results and errors to the user."""
 
 from __future__ import annotations
 
 import traceback
-from typing import Any
 
-from ..modal.drag_loop import DragEnded
-from ..modal.edit import put_back
-from ..modal.header_texts import verdict_text
-from ..translations import say
+import bpy
 
-
-def outcome_text(result: Any) -> str:
-    """What became of an edit; an object in the way is named."""
-    return verdict_text(result.status, tuple(result.blocking), say)
+from .. import stiv_blender
+from ..modal.drag_loop import DragEnded, restore_after_error
+from ..modal.header_texts import result_text
+from ..translations import translate
 
 
-def write_failure(report: Any) -> str:
-    """Why the accepted state could not be shown, empty if it could (or none was written yet)."""
+def outcome_text(result: stiv_blender.EditResult) -> str:
+    """The status of a result, with the names of blocking objects."""
+    return result_text(result.status, tuple(result.blocking), translate)
+
+
+def write_failure(report: stiv_blender.WriteReport | None) -> str:
+    """Why the accepted state could not be written; empty if it was, or if nothing was written yet."""
     return "" if report is None or report.passed else str(report.message)
 
 
-def tell(operator: Any, outcome: str, failure: str) -> None:
-    """Report what became of an edit."""
+def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str) -> None:
+    """Report the outcome of an edit, or the failure to write it."""
     if failure:
         operator.report({"WARNING"}, failure)
     elif outcome:
         operator.report({"INFO"}, outcome)
 
 
-def complain(operator: Any, error: Exception, edit: Any) -> set[str]:
-    """Report an error with nothing changed. The trace of what nobody expected is printed."""
-    from stiv.blender import SceneChangedError  # the add-on registers without the native module
-
+def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blender.Edit | None = None) -> set[str]:
+    """Report an error after restoring `edit`; unexpected errors also print their trace."""
     if edit is not None:
-        put_back(edit, error)
-    if not isinstance(error, ValueError | SceneChangedError | DragEnded):
+        restore_after_error(edit, error)
+    if not isinstance(error, ValueError | stiv_blender.SceneChangedError | DragEnded):
         traceback.print_exception(error)
     operator.report({"ERROR"}, "; ".join([str(error) or type(error).__name__, *getattr(error, "__notes__", ())]))
     return {"CANCELLED"}
+
+
+def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:
+    """Report the error that Blender raises for the error report of an operator called by this one."""
+    operator.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+    return {"CANCELLED"}
+
+
+def counted(count: int, noun: str) -> str:
+    """A number and its noun: "1 object", "1,200 objects"."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+
+
+def clearance_text(least: stiv_blender.LeastDistance) -> str:
+    """The smallest distance between two objects, as a line."""
+    return f"{' and '.join(least.bodies)}: clearance {least.distance:.6g}"

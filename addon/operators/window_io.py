@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import bpy
 
@@ -11,14 +11,15 @@ from ..modal.event import Event
 from ..modal.header_texts import header_text, status_text
 from ..modal.pointer import Pointer
 from ..modal.state import State
+from ..scene.frame import view_areas
 from ..transform.frame import Frame
-from ..translations import say
+from ..translations import translate
 
 MODIFIERS = ("shift", "ctrl", "alt", "oskey")
 
 
 def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Event:
-    """An event with the pointer in pixels of the region that the drag began in."""
+    """An event with the pointer in pixels of the region in which the drag began."""
     corner = (region.x, region.y) if region is not None else (0, 0)
     return Event(
         type=event.type,
@@ -35,54 +36,48 @@ def start_timer(context: bpy.types.Context, step: float) -> bpy.types.Timer:
 
 
 def stop_timer(context: bpy.types.Context, timer: bpy.types.Timer) -> None:
-    """Stop the timer that `start_timer` made."""
+    """Stop a timer of `start_timer`."""
     context.window_manager.event_timer_remove(timer)
 
 
 def centre(frame: Frame) -> tuple[float, float] | None:
-    """Where the pivot is seen; the middle of the region for one behind the viewer."""
+    """The pixel of the pivot; the centre of the region if the pivot is behind the viewer; None without a view."""
     if frame.view is None:
         return None
     return frame.view.project(frame.pivot) or (frame.view.size[0] / 2.0, frame.view.size[1] / 2.0)
 
 
-def pointer_seen_anew(pointer: Pointer, before: Frame, after: Frame) -> Pointer:
-    """The pointer where the start and the pivot are seen in another view."""
+def pointer_in_new_view(pointer: Pointer, before: Frame, after: Frame) -> Pointer:
+    """The pointer with its start and the pivot in another view."""
     if before.view is None or after.view is None:
         return pointer
-    start = after.view.project(before.view.beside(pointer.start, before.pivot))
-    return pointer.seen_anew(start or pointer.start, centre(after))
+    start = after.view.project(before.view.at_depth_of(pointer.start, before.pivot))
+    return pointer.in_new_view(start or pointer.start, centre(after))
 
 
 def show(
-    context: bpy.types.Context, state: State, value: str, verdict: str, notes: Sequence[str], axes: tuple[str, str]
+    context: bpy.types.Context,
+    state: State,
+    value: str,
+    status: str,
+    notes: Sequence[str],
+    orientations: tuple[str, str],
 ) -> None:
-    """Write header and status bar, and have the views drawn again."""
-    text = header_text(state, value, verdict, notes, axes, say)
-    for area in _views(context):
-        area.header_text_set(text)
-        area.tag_redraw()
+    """Write header and status bar, and redraw the views."""
+    write_header(context, header_text(state, value, status, notes, orientations, translate))
     if context.workspace is not None:
-        context.workspace.status_text_set(status_text(state, say))
+        context.workspace.status_text_set(status_text(state, translate))
 
 
-def write_header(context: bpy.types.Context, text: str) -> None:
-    """Write a line of text into the headers of the views."""
-    for area in _views(context):
+def write_header(context: bpy.types.Context, text: str | None) -> None:
+    """Write a line into the headers of the 3D views; None restores them."""
+    for area in view_areas(context):
         area.header_text_set(text)
         area.tag_redraw()
 
 
 def clear(context: bpy.types.Context) -> None:
-    """Give header and status bar back."""
-    for area in _views(context):
-        area.header_text_set(None)
-        area.tag_redraw()
+    """Restore header and status bar."""
+    write_header(context, None)
     for workspace in bpy.data.workspaces:
         workspace.status_text_set(None)
-
-
-def _views(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
-    """Every 3D view: the one of the drag may be another object by now, so none is remembered."""
-    for window in context.window_manager.windows:
-        yield from (area for area in window.screen.areas if area.type == "VIEW_3D")

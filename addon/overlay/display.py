@@ -1,44 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When the overlay is drawn: handlers stay only while there is something to draw."""
+"""What the overlay shows, and when: its draw handlers exist only while there is something to draw."""
 
 from __future__ import annotations
 
 import time
 import traceback
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import bpy
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
+from .. import stiv_blender
 from ..preferences import overlay_at_start
+from ..scene.frame import view_areas
 from . import drawing
-from .content import Clearance, Content
+from .content import Clearance, Content, Switches
 
 _content = Content()
-_handles: list[Any] = []
+_handles: list[object] = []
 _last_step = 0.0
 
 
 def content() -> Content:
-    """What is drawn now."""
+    """The current content."""
     return _content
 
 
-def _redraw(settings: Any = None, context: Any = None) -> None:
-    """Draw while there is something to draw and the overlay is on; called by Blender for switches too."""
+def _redraw(settings: object = None, context: object = None) -> None:
+    """Add or remove the draw handlers, and redraw the views; also called by Blender for the switches."""
     if _content and _is_on():
-        _begin()
+        _add_handlers()
     else:
-        _end()
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+        _remove_handlers()
+    for area in view_areas(bpy.context):
+        area.tag_redraw()
 
 
 class StivOverlaySettings(bpy.types.PropertyGroup):
-    """What the overlay shows; not saved."""
+    """The switches of the overlay; not saved."""
 
     show: BoolProperty(
         name="Overlay",
@@ -84,15 +84,13 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
     )
 
 
-def show_edit(edit: Any, result: Any) -> None:
-    """A step of a drag: its contacts, and how long it took. edit: a `stiv.blender.BlenderEdit`."""
+def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult) -> None:
+    """Show a step of a drag: its contacts and its time."""
     global _last_step
     if not _is_on():
         return
-    from stiv.blender import contacts_of  # the add-on registers without the native module
-
     now = time.monotonic()
-    found = contacts_of(edit, result)
+    found = stiv_blender.contacts_of(edit, result)
     _content.contacts = (found.points, found.blocked)
     if bpy.context.window_manager.stiv_overlay.while_dragging:
         _content.clearance = clearance_of(edit.least_distance())
@@ -103,43 +101,41 @@ def show_edit(edit: Any, result: Any) -> None:
 
 
 def end_edit() -> None:
-    """A drag is over."""
+    """Remove the content of a drag."""
     _content.contacts = _content.milliseconds = _content.frames = _content.clearance = None
     _redraw()
 
 
-def show_pairs(context: Any, pairs: Any) -> None:
-    """Faces that a check found to meet; they go with the next change of the scene."""
-    from stiv.blender import triangles_of
-
-    context.view_layer.update()  # selecting them is a change too
-    _content.intersecting = triangles_of(context, pairs)
+def show_pairs(context: bpy.types.Context, pairs: Sequence[stiv_blender.FacePair]) -> None:
+    """Show intersecting faces until the scene changes."""
+    context.view_layer.update()  # includes their selection, which must not count as a change
+    _content.intersecting = stiv_blender.triangles_of(context, pairs)
     _redraw()
 
 
 def show_alert(lines: tuple[str, ...]) -> None:
-    """What the live guard could not correct, in red until others are given; none takes them away."""
+    """Show the problem of the live guard in red, until it is replaced; no lines remove it."""
     if lines != _content.alert:
         _content.alert = lines
         _redraw()
 
 
-def show_clearance(found: Any) -> None:
-    """The nearest pair, a `stiv.LeastDistance` or None; goes with the next change of the scene."""
+def show_clearance(found: stiv_blender.LeastDistance | None) -> None:
+    """Show the closest pair until the scene changes."""
     _content.clearance = clearance_of(found)
     _redraw()
 
 
-def clearance_of(found: Any) -> Clearance | None:
-    """What was measured, to be drawn."""
+def clearance_of(found: stiv_blender.LeastDistance | None) -> Clearance | None:
+    """The closest pair as content."""
     return None if found is None else Clearance(found.points[0], found.points[1], found.distance, found.bodies)
 
 
 def clear() -> None:
-    """Nothing is drawn any more."""
+    """Remove all content."""
     global _content
     _content = Content()
-    _end()
+    _remove_handlers()
 
 
 def _is_on() -> bool:
@@ -147,30 +143,30 @@ def _is_on() -> bool:
     return settings is not None and settings.show
 
 
-def _begin() -> None:
+def _add_handlers() -> None:
     if not _handles and not bpy.app.background:
         for draw, when in ((drawing.draw_shapes, "POST_VIEW"), (drawing.draw_text, "POST_PIXEL")):
             _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (draw,), "WINDOW", when))
 
 
-def _end() -> None:
+def _remove_handlers() -> None:
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
 
 
-def _draw(draw: Any) -> None:
+def _draw(draw: Callable[[Content, Switches], None]) -> None:
     if not bpy.context.space_data.overlay.show_overlays:
         return
     try:
         draw(_content, bpy.context.window_manager.stiv_overlay)
-    except Exception:  # once, not at every picture
+    except Exception:  # printed once, not at every redraw
         traceback.print_exc()
         clear()
 
 
 @persistent
-def _on_update(scene: Any, graph: Any) -> None:
-    """What was found in a scene says nothing of a changed one."""
+def _on_update(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
+    """Remove the results of a check when the scene changes."""
     stale = len(_content.intersecting) > 0 or _content.clearance is not None
     if stale and any(each.is_updated_geometry or each.is_updated_transform for each in graph.updates):
         _content.intersecting = _content.intersecting[:0]
@@ -179,7 +175,7 @@ def _on_update(scene: Any, graph: Any) -> None:
 
 
 @persistent
-def _on_load(*_unused: Any) -> None:
+def _on_load(*_unused: object) -> None:
     clear()
 
 
@@ -188,7 +184,7 @@ HANDLERS = {"depsgraph_update_post": _on_update, "load_pre": _on_load}
 
 
 def register() -> None:
-    """Attach the switches, and listen for changes."""
+    """Add the switches and the handlers."""
     bpy.types.WindowManager.stiv_overlay = PointerProperty(type=StivOverlaySettings)
     bpy.context.window_manager.stiv_overlay.show = overlay_at_start(bpy.context)
     for name, handler in HANDLERS.items():
@@ -196,7 +192,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Leave nothing."""
+    """Remove content, handlers and switches."""
     clear()
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

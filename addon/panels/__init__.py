@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tab "STIV" in the sidebar of the 3D view: the others within the first panel."""
+"""The tab "STIV" in the sidebar of the 3D view; the other panels are within the first panel."""
 
-from .check import STIV_PT_check, STIV_PT_repair
+from .check import STIV_PT_check, STIV_PT_overlay, STIV_PT_repair
 from .edit import STIV_PT_edit
 from .guard import STIV_PT_guard
 from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
-from .overlay import STIV_PT_overlay
 
 CLASSES = (
     STIV_PT_edit,

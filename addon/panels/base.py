@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where panels stand, and text in them."""
+"""Bases of the panels, and text in them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ import textwrap
 import bpy
 
 from .. import native_module
-
-MOST_OBJECTS = 10  # shown one a row
 
 
 class SidebarPanel:
@@ -21,7 +19,7 @@ class SidebarPanel:
 
 
 class SubPanel(SidebarPanel):
-    """Base: a panel within the tab's first one, with the native module only."""
+    """Base: a panel within the first panel of the tab."""
 
     bl_parent_id = "STIV_PT_edit"
 
@@ -32,7 +30,7 @@ class SubPanel(SidebarPanel):
 
 
 def draw_problem(layout: bpy.types.UILayout) -> None:
-    """Say why the add-on cannot work here, and what to do."""
+    """Draw why the add-on cannot run, and what to do."""
     box = layout.box()
     box.alert = True
     box.label(text="STIV cannot run", icon="ERROR")
@@ -40,7 +38,7 @@ def draw_problem(layout: bpy.types.UILayout) -> None:
 
 
 def draw_lines(layout: bpy.types.UILayout, text: str, width: int = 38) -> None:
-    """Text wrapped to the usual width of the sidebar."""
+    """Draw text wrapped to the usual width of the sidebar."""
     column = layout.column(align=True)
     for line in text.splitlines():
         for piece in textwrap.wrap(line, width):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intersections of the scene as it is, and their repair."""
+"""Panels of the current scene: check, repair, overlay."""
 
 from __future__ import annotations
 
@@ -7,37 +7,59 @@ import bpy
 
 from ..operators import RESHAPING
 from ..operators.check.check import STIV_OT_check
+from ..operators.check.measure import STIV_OT_measure
 from ..operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections, excluded_count
 from .base import SubPanel, draw_lines
 
 
 class STIV_PT_check(SubPanel, bpy.types.Panel):
-    """Intersections of the scene as it is."""
+    """Intersections of the current scene."""
 
     bl_idname = "STIV_PT_check"
     bl_label = "Check"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """The button, and what it found last."""
+        """The button, and the result of the last check."""
         self.layout.operator(STIV_OT_check.bl_idname, text="Check Scene", icon="VIEWZOOM")
         draw_lines(self.layout, context.window_manager.stiv_check.summary)
 
 
 class STIV_PT_repair(SubPanel, bpy.types.Panel):
-    """Repair, and the steps that it is made of."""
+    """Repair, its single steps, and exclusions."""
 
     bl_idname = "STIV_PT_repair"
     bl_label = "Repair"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a set)
 
     def draw(self, context: bpy.types.Context) -> None:
-        """One button an operator; values are in the redo panel."""
+        """A button for each operator; their values are in the redo panel."""
         column = self.layout.column(align=True)
         for operator in RESHAPING:
             column.operator(operator.bl_idname)
         row = self.layout.row(align=True)
         row.operator(STIV_OT_exclude_intersections.bl_idname)
-        told = excluded_count(context.scene.stiv.excluded)
-        if told:
+        count = excluded_count(context.scene.stiv.excluded)
+        if count:
             row.operator(STIV_OT_clear_exclusions.bl_idname, text="", icon="X")
-            draw_lines(self.layout, told)
+            draw_lines(self.layout, count)
+
+
+class STIV_PT_overlay(SubPanel, bpy.types.Panel):
+    """Switches of the overlay."""
+
+    bl_idname = "STIV_PT_overlay"
+    bl_label = "Overlay"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a set)
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """The switch of the whole overlay."""
+        self.layout.prop(context.window_manager.stiv_overlay, "show", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """A switch for each item."""
+        switches = context.window_manager.stiv_overlay
+        column = self.layout.column()
+        column.active = switches.show
+        for name in ("contacts", "intersections", "clearance", "while_dragging", "speed"):
+            column.prop(switches, name)
+        self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")

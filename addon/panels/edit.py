@@ -1,27 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Transforms and how they respond."""
+"""The first panel: transforms and the settings of the scene."""
 
 from __future__ import annotations
 
 import bpy
 
-from .. import native_module
+from .. import native_module, stiv_blender
 from ..operators import TRANSFORMS
 from ..scene.edit_settings import edit_settings
-from ..translations import say
+from ..translations import translate
 from .base import SidebarPanel, draw_lines, draw_problem
 
-SETTINGS = ("interference", "responders", "object_response", "guard", "smoothness", "constraints")
+SETTINGS = ("responders", "object_response", "guard", "smoothness", "constraints")
 
 
 class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
-    """Transforms and how they respond."""
+    """Transforms and their settings."""
 
     bl_idname = "STIV_PT_edit"
     bl_label = "Collision Transform"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Buttons and settings, or why there are none."""
+        """Buttons and settings, or why the add-on cannot run."""
         if native_module.problem():
             draw_problem(self.layout)
             return
@@ -30,10 +30,11 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
             column.operator(operator.bl_idname, text=operator.bl_label.split()[-1])
         self.layout.use_property_split = True
         settings = self.layout.column()
+        settings.prop(context.scene.stiv, "interference")
         draw_separation(settings, context.scene.stiv)
         for name in SETTINGS:
             settings.prop(context.scene.stiv, name)
-        draw_lines(settings, chosen_guard(context))
+        draw_lines(settings, automatic_guard(context))
         draw_lines(self.layout, context.window_manager.stiv_check.left_out)
 
 
@@ -48,16 +49,14 @@ def draw_separation(layout: bpy.types.UILayout, settings: bpy.types.PropertyGrou
         row.prop(settings, "automatic_separation", text="", icon="X", invert_checkbox=True)
 
 
-def chosen_guard(context: bpy.types.Context) -> str:
-    """What the automatic guard chooses for the scene as it is, "" where the user chose."""
-    from stiv.blender import choose_guard  # the add-on registers without the native module
-
+def automatic_guard(context: bpy.types.Context) -> str:
+    """The evaluations that the automatic guard chooses for the current scene; "" if the user chose."""
     if context.scene.stiv.guard != "auto":
         return ""
     try:
-        guard = choose_guard(context, edit_settings(context.scene))
-    except ValueError:  # settings that cannot be read are told by the operators
+        guard = stiv_blender.choose_guard(context, edit_settings(context.scene))
+    except ValueError:  # the operators report invalid settings
         return ""
     if guard.reason:
-        return say("Guard: Viewport (render exceeds 500K triangles)")
-    return say("Guard: {}").format(say(guard.choice.title()))
+        return translate("Guard: Viewport (render exceeds 500K triangles)")
+    return translate("Guard: {}").format(translate(guard.choice.title()))

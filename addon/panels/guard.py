@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard: its switch, and what to do where it cannot act."""
+"""The live guard: its switch, and the operators for a scene that it could not correct."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import bpy
 
 from ..guard import watcher
 from ..guard.problem import Problem
-from ..translations import say
+from ..translations import translate
 from .base import SubPanel, draw_lines
 
-WAYS_OUT = ("stiv.guard_revert", "stiv.check", "stiv.repair", "stiv.exclude_intersections")
+OPERATORS = ("stiv.guard_revert", "stiv.check", "stiv.repair", "stiv.exclude_intersections")
 
 
 class STIV_PT_guard(SubPanel, bpy.types.Panel):
-    """Watches over every tool of Blender."""
+    """The live guard, which watches Blender's tools."""
 
     bl_idname = "STIV_PT_guard"
     bl_label = "Live Guard"
@@ -24,7 +24,7 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         self.layout.prop(context.scene.stiv, "live_guard", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """What it does, or why it cannot."""
+        """The status of the scene."""
         layout = self.layout
         if not context.scene.stiv.live_guard:
             layout.label(text="Off: results are not corrected")
@@ -33,18 +33,18 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         else:
             layout.label(text="The scene is clear", icon="CHECKMARK")
         if watcher.uncorrected():
-            layout.label(text=say("Uncorrected results: {}").format(watcher.uncorrected()))
+            layout.label(text=translate("Uncorrected results: {}").format(watcher.uncorrected()))
 
 
 def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:
-    """What intersects, in red, why that was not corrected, and the ways out."""
+    """The intersections in red, why they were not corrected, and what to do."""
     box = layout.box()
     box.alert = True
     box.label(text="The scene intersects", icon="ERROR")
-    draw_lines(box, problem.headline(say))
-    draw_lines(box, "\n".join(problem.pair_lines(say)))
+    draw_lines(box, problem.headline(translate))
+    draw_lines(box, "\n".join(problem.pair_lines(translate)))
     if problem.pairs and problem.reason:
-        draw_lines(layout, say("Not corrected: {}").format(problem.reason))
+        draw_lines(layout, translate("Not corrected: {}").format(problem.reason))
     column = layout.column(align=True)
-    for name in WAYS_OUT:
+    for name in OPERATORS:
         column.operator(name)

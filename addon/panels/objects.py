@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings of objects: roles, deformation with handles and weights, Loop subdivision, distances of pairs."""
+"""Panels of objects: roles, deformation with handles and weights, Loop subdivision, pair distances."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 
@@ -12,12 +10,33 @@ from ..operators.setup.handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from ..operators.setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
 from ..operators.setup.pair_distances import STIV_OT_separation_add, STIV_OT_separation_remove
 from ..scene.edit_settings import refined_object
-from ..translations import say
-from .base import MOST_OBJECTS, SubPanel
+from ..translations import translate
+from .base import SubPanel
+
+MAX_OBJECTS = 10  # rows of the panel of roles
+
+
+class STIV_PT_roles(SubPanel, bpy.types.Panel):
+    """The roles of the selected objects."""
+
+    bl_idname = "STIV_PT_roles"
+    bl_label = "Roles"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """A row for each object."""
+        selected = [obj for obj in context.selected_objects if obj.type in {"MESH", "LATTICE"}]
+        for obj in selected[:MAX_OBJECTS]:
+            row = self.layout.row()
+            row.label(text=obj.name, icon=f"OUTLINER_OB_{obj.type}")
+            row.prop(obj.stiv, "role", text="")
+        if len(selected) > MAX_OBJECTS:
+            self.layout.label(text=translate("and {} more").format(len(selected) - MAX_OBJECTS))
+        if not selected:
+            self.layout.label(text="Select objects to set their roles")
 
 
 class STIV_PT_deformation(SubPanel, bpy.types.Panel):
-    """By what the active object is moved and gives way."""
+    """How the active object deforms."""
 
     bl_idname = "STIV_PT_deformation"
     bl_label = "Deformation"
@@ -28,54 +47,35 @@ class STIV_PT_deformation(SubPanel, bpy.types.Panel):
         return super().poll(context) and getattr(context.active_object, "type", "") in {"MESH", "LATTICE"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """The deformation; handles where it has some; weights."""
-        thing = context.active_object
+        """The deformation, its handles and the weights."""
+        obj = context.active_object
         self.layout.use_property_split = True
-        self.layout.prop(thing.stiv, "deformation")
-        if thing.stiv.deformation in {"laplacian", "arap"} and thing.type == "MESH":
-            _draw_handles(self.layout, thing)
+        self.layout.prop(obj.stiv, "deformation")
+        if obj.stiv.deformation in {"laplacian", "arap"} and obj.type == "MESH":
+            _draw_handles(self.layout, obj)
         row = self.layout.row(align=True)
-        row.prop_search(thing.stiv, "weight_group", thing, "vertex_groups")
-        row.prop(thing.stiv, "weight_invert", text="", icon="ARROW_LEFTRIGHT")
+        row.prop_search(obj.stiv, "weight_group", obj, "vertex_groups")
+        row.prop(obj.stiv, "weight_invert", text="", icon="ARROW_LEFTRIGHT")
         row = self.layout.row(align=True, heading="Weight Axes")
-        row.active = bool(thing.stiv.weight_group)
+        row.active = bool(obj.stiv.weight_group)
         for index, axis in enumerate("XYZ"):
-            row.prop(thing.stiv, "weight_axes", index=index, text=axis, toggle=True)
+            row.prop(obj.stiv, "weight_axes", index=index, text=axis, toggle=True)
 
 
-def _draw_handles(layout: Any, thing: Any) -> None:
+def _draw_handles(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     box = layout.box()
-    for index, handle in enumerate(thing.stiv.handles):
+    for index, handle in enumerate(obj.stiv.handles):
         row = box.row(align=True)
-        row.prop_search(handle, "name", thing, "vertex_groups", text="Handle")
+        row.prop_search(handle, "name", obj, "vertex_groups", text="Handle")
         row.operator(STIV_OT_handle_remove.bl_idname, text="", icon="REMOVE").index = index
     box.operator(STIV_OT_handle_add.bl_idname, icon="ADD")
-    box.prop_search(thing.stiv, "anchor", thing, "vertex_groups")
+    box.prop_search(obj.stiv, "anchor", obj, "vertex_groups")
     for name in ("rest", "pull"):
-        box.prop(thing.stiv, name)
-
-
-class STIV_PT_roles(SubPanel, bpy.types.Panel):
-    """How each selected object takes part."""
-
-    bl_idname = "STIV_PT_roles"
-    bl_label = "Roles"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """One row an object."""
-        chosen = [thing for thing in context.selected_objects if thing.type in {"MESH", "LATTICE"}]
-        for thing in chosen[:MOST_OBJECTS]:
-            row = self.layout.row()
-            row.label(text=thing.name, icon=f"OUTLINER_OB_{thing.type}")
-            row.prop(thing.stiv, "role", text="")
-        if len(chosen) > MOST_OBJECTS:
-            self.layout.label(text=say("and {} more").format(len(chosen) - MOST_OBJECTS))
-        if not chosen:
-            self.layout.label(text="Select objects to set their roles")
+        box.prop(obj.stiv, name)
 
 
 class STIV_PT_loop(SubPanel, bpy.types.Panel):
-    """Loop subdivision of the active cage of triangles."""
+    """Loop subdivision of the active triangle cage."""
 
     bl_idname = "STIV_PT_loop"
     bl_label = "Loop Subdivision"
@@ -87,27 +87,27 @@ class STIV_PT_loop(SubPanel, bpy.types.Panel):
         return super().poll(context) and getattr(context.active_object, "type", "") == "MESH"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Add, or levels and the way back."""
-        thing = context.active_object
-        if refined_object(thing) is None:
+        """A button to add it, or its settings."""
+        obj = context.active_object
+        if refined_object(obj) is None:
             self.layout.operator(STIV_OT_loop_add.bl_idname, icon="ADD")
             return
         self.layout.use_property_split = True
         for name in ("levels", "boundary"):
-            self.layout.prop(thing.stiv.loop, name)
+            self.layout.prop(obj.stiv.loop, name)
         self.layout.operator(STIV_OT_loop_refresh.bl_idname, icon="FILE_REFRESH")
         self.layout.operator(STIV_OT_loop_remove.bl_idname, icon="REMOVE")
 
 
 class STIV_PT_separation(SubPanel, bpy.types.Panel):
-    """Distances that pairs of objects keep."""
+    """Minimum distances of pairs of objects."""
 
     bl_idname = "STIV_PT_separation"
     bl_label = "Pair Distances"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a set)
 
     def draw(self, context: bpy.types.Context) -> None:
-        """One row a pair; measuring."""
+        """A box for each pair, and buttons to add and measure."""
         for index, pair in enumerate(context.scene.stiv.pair_separations):
             box = self.layout.box()
             row = box.row(align=True)

@@ -1,38 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads from the context what a transform refers to: pivot, orientation, view."""
+"""Reads the frame of a transform from the context: pivot, orientation, view."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import bmesh
+import bpy
 import numpy as np
 
 from ..transform.frame import Frame, pivot_of
 from ..transform.view import Vector, View
-from . import orientations
+from .orientations import axes_of
 
 
-def read_frame(context: Any) -> Frame:
-    """Pivot and axes of the scene's settings, and the view if the context has one."""
+def read_frame(context: bpy.types.Context) -> Frame:
+    """Pivot and axes by the settings of the scene, and the view if the context has one."""
     scene = context.scene
     choice = scene.tool_settings.transform_pivot_point
     pivot = pivot_of(
         selected_points(context), choice, cursor=np.array(scene.cursor.location), active=active_point(context)
     )
-    first, second = (orientations.axes_of(context, name) for name in orientation_names(context))
+    first, second = (axes_of(context, name) for name in orientation_names(context))
     return Frame(pivot, first, _view(context), second, individual=choice == "INDIVIDUAL_ORIGINS")
 
 
-def orientation_names(context: Any) -> tuple[str, str]:
-    """The scene's orientation, and the one that an axis key pressed twice takes."""
+def orientation_names(context: bpy.types.Context) -> tuple[str, str]:
+    """The orientation of the scene, and that of an axis key pressed twice."""
     chosen = context.scene.transform_orientation_slots[0].type
     return chosen, "LOCAL" if chosen == "GLOBAL" else "GLOBAL"
 
 
-def frame_in_new_view(context: Any, frame: Frame) -> Frame:
-    """The frame in the view as it is now; the same object if the view has not changed."""
+def frame_in_new_view(context: bpy.types.Context, frame: Frame) -> Frame:
+    """The frame with the current view; the same object if the view has not changed."""
     view = _view(context)
     if view is None or frame.view is None:
         return frame
@@ -40,41 +41,47 @@ def frame_in_new_view(context: Any, frame: Frame) -> Frame:
     return frame if same else replace(frame, view=view)
 
 
-def _view(context: Any) -> View | None:
+def _view(context: bpy.types.Context) -> View | None:
     region, data = context.region, context.region_data
     if region is None or data is None:
         return None
     return View(np.array(data.perspective_matrix), (max(region.width, 1), max(region.height, 1)))
 
 
-def selected_points(context: Any) -> Vector:
+def view_areas(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
+    """The areas of all 3D views. No reference to an area is stored, since Blender may replace it."""
+    for window in context.window_manager.windows:
+        yield from (area for area in window.screen.areas if area.type == "VIEW_3D")
+
+
+def selected_points(context: bpy.types.Context) -> Vector:
     """Origins of the selected objects, or the selected vertices or lattice points, (k, 3) in world space."""
     if context.mode == "OBJECT":
-        points = [np.array(thing.matrix_world.translation) for thing in context.selected_objects]
+        points = [np.array(obj.matrix_world.translation) for obj in context.selected_objects]
     else:
-        points = [point for thing in context.objects_in_mode for point in _selected_inside(thing)]
+        points = [point for obj in context.objects_in_mode for point in _selected_elements(obj)]
     return np.array(points, dtype=float).reshape(-1, 3)
 
 
-def _selected_inside(thing: Any) -> list[Vector]:
+def _selected_elements(obj: bpy.types.Object) -> list[Vector]:
     """Selected vertices or lattice points of an object in Edit Mode, in world space."""
-    if thing.type == "MESH":
-        positions = [vertex.co for vertex in bmesh.from_edit_mesh(thing.data).verts if vertex.select]
+    if obj.type == "MESH":
+        positions = [vertex.co for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
     else:
-        positions = [point.co_deform for point in thing.data.points if point.select]
-    return [np.array(thing.matrix_world @ position) for position in positions]
+        positions = [point.co_deform for point in obj.data.points if point.select]
+    return [np.array(obj.matrix_world @ position) for position in positions]
 
 
-def active_point(context: Any) -> Vector | None:
-    """The origin of the active object, or the middle of the active element in Edit Mode; None where there is none."""
-    thing = context.active_object
-    if thing is None:
+def active_point(context: bpy.types.Context) -> Vector | None:
+    """The origin of the active object, or the centre of the active element in Edit Mode; None without one."""
+    obj = context.active_object
+    if obj is None:
         return None
     if context.mode == "OBJECT":
-        return np.array(thing.matrix_world.translation)
-    if thing.type != "MESH":
+        return np.array(obj.matrix_world.translation)
+    if obj.type != "MESH":
         return None
-    active = bmesh.from_edit_mesh(thing.data).select_history.active
+    active = bmesh.from_edit_mesh(obj.data).select_history.active
     vertices = getattr(active, "verts", [active]) if active is not None else []
-    positions = [np.array(thing.matrix_world @ vertex.co) for vertex in vertices]
-    return np.mean(positions, axis=0) if positions else None
+    positions = [np.array(obj.matrix_world @ vertex.co) for vertex in vertices]
+    return np.asarray(np.mean(positions, axis=0)) if positions else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a transform refers to: pivot and axes."""
+"""The frame of a transform: pivot and axes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.axis_lock import Constraint
+from ..modal.axis_lock import AxisLock
 from .view import Vector, View
 
 
@@ -17,10 +17,10 @@ class Frame:
 
     Attributes:
         pivot: (3,) fixed point of rotations and scalings.
-        axes: (3, 3) unit columns that X, Y and Z stand for.
-        view: the view that the pointer is in; None where values are given.
-        second_axes: (3, 3) those of an axis key pressed twice.
-        individual: whether each object or island of vertices has a pivot of its own.
+        axes: (3, 3) unit columns of the orientation's X, Y and Z.
+        view: the view of the pointer; None for transforms by values.
+        second_axes: (3, 3) unit columns for an axis key pressed twice.
+        individual: each object or island of vertices has its own pivot.
 
     """
 
@@ -30,13 +30,13 @@ class Frame:
     second_axes: Vector = field(default_factory=lambda: np.eye(3))
     individual: bool = False
 
-    def axes_of(self, constraint: Constraint) -> Vector:
-        """The axes that a lock refers to, (3, 3) columns."""
-        return self.second_axes if constraint.second else self.axes
+    def axes_of(self, axis_lock: AxisLock) -> Vector:
+        """The axes of a lock, (3, 3) columns."""
+        return self.second_axes if axis_lock.second else self.axes
 
 
 def about(pivot: Vector, linear: Vector) -> Vector:
-    """(4, 4) matrix of a linear map (3, 3) that leaves `pivot` where it is."""
+    """(4, 4) matrix of a linear map (3, 3) with the fixed point `pivot`."""
     matrix = np.eye(4)
     matrix[:3, :3] = linear
     matrix[:3, 3] = pivot - linear @ pivot
@@ -44,17 +44,17 @@ def about(pivot: Vector, linear: Vector) -> Vector:
 
 
 def orthonormal(axes: Vector) -> Vector:
-    """Unit columns (3, 3) from those of an object's matrix, which may be scaled, mirrored or sheared.
+    """Orthonormal columns (3, 3) from the matrix of an object, which may be scaled, mirrored or sheared.
 
-    The first column keeps its direction, the second its plane. Collapsed axes give the world's.
+    Gram-Schmidt in the order x, y. Degenerate axes give the identity.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         x = axes[:, 0] / np.linalg.norm(axes[:, 0])
         y = axes[:, 1] - x * (x @ axes[:, 1])
         y = y / np.linalg.norm(y)
     result = np.column_stack([x, y, np.cross(x, y)])
-    sound = np.allclose(result.T @ result, np.eye(3), atol=1e-6)  # not for nan, nor where only rounding was normalised
-    return result if sound else np.eye(3)
+    valid = np.allclose(result.T @ result, np.eye(3), atol=1e-6)  # false for nan and for normalised rounding noise
+    return result if valid else np.eye(3)
 
 
 def pivot_of(points: Vector, choice: str, *, cursor: Vector, active: Vector | None) -> Vector:
@@ -62,9 +62,9 @@ def pivot_of(points: Vector, choice: str, *, cursor: Vector, active: Vector | No
 
     Args:
         points: origins of the selected objects, or selected vertices or lattice points.
-        choice: Blender's `transform_pivot_point`; "INDIVIDUAL_ORIGINS" counts as the median.
+        choice: Blender's `transform_pivot_point`; "INDIVIDUAL_ORIGINS" gives the median.
         cursor: (3,) the 3D cursor.
-        active: (3,) the active element, None where there is none.
+        active: (3,) the active element, None without one.
 
     """
     if choice == "CURSOR" or len(points) == 0:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rotate: from the pointer's turn around the pivot, or a typed angle, to an axis and an angle."""
+"""Rotate: axis and angle for the turn of the pointer around the pivot, or for a typed angle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..modal.header_texts import decimal_text
+from ..modal.header_texts import Translate, decimal_text
 from ..modal.state import State
 from ..modal.typed_numbers import Read
 from .frame import Frame, about
@@ -19,7 +19,7 @@ from .view import Vector
 
 @dataclass(frozen=True)
 class Rotation:
-    """A rotation by `angle` radians, counter-clockwise about the unit `axis` (3,) in world space."""
+    """A rotation by `angle` radians, counterclockwise about the unit `axis` (3,) in world space."""
 
     angle: float
     axis: Vector
@@ -33,33 +33,33 @@ class Rotation:
 
     @property
     def rotation(self) -> Vector:
-        """As a rotation vector, whole turns included."""
+        """The rotation vector, with whole turns."""
         return self.angle * self.axis
 
-    def part(self, fraction: float) -> Rotation:
-        """A fraction of the way to it, 0 to 1."""
+    def fraction(self, fraction: float) -> Rotation:
+        """The rotation at a fraction of the way, 0 to 1."""
         return Rotation(fraction * self.angle, self.axis)
 
-    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = decimal_text) -> str:
-        """For the header; `say` puts a text into the language of the interface, `length` writes a length."""
-        return say("Rotate {}").format(f"{decimal_text(math.degrees(self.angle))}°")
+    def text(self, translate: Translate = str, length: Callable[[float], str] = decimal_text) -> str:
+        """The text of the header; a rotation has no `length`."""
+        return translate("Rotate {}").format(f"{decimal_text(math.degrees(self.angle))}°")
 
 
 def read_degrees(text: str) -> float:
-    """A number of degrees, in radians."""
+    """Radians of a text in degrees."""
     return math.radians(float(text))
 
 
-def measure_rotation(state: State, frame: Frame, read: Read = read_degrees, snap: Snap | None = None) -> Rotation:
-    """What a drag asks for: about the locked axis, or the line of sight when none is locked.
+def requested_rotation(state: State, frame: Frame, read: Read = read_degrees, snap: Snap | None = None) -> Rotation:
+    """The rotation that a state requests: about the locked axis, or the view direction without a lock.
 
-    ValueError for typed text that is no angle; `read` gives radians.
+    `read` returns radians. ValueError for invalid text.
     """
     toward = np.array([0.0, 0.0, 1.0]) if frame.view is None else frame.view.toward_viewer(frame.pivot)
-    locked = state.constraint.axis
-    axis = toward if locked is None else frame.axes_of(state.constraint)[:, locked]
+    locked = state.axis_lock.axis
+    axis = toward if locked is None else frame.axes_of(state.axis_lock)[:, locked]
     if state.typed.active:
         return Rotation(state.typed.value(0, read) or 0.0, axis)
-    # Seen from behind, an axis turns the other way round.
+    # An axis that points away from the viewer turns the other way.
     angle = state.pointer.turn * (1.0 if axis @ toward >= 0.0 else -1.0)
     return Rotation(snap.angle(angle, fine=state.precise) if snap is not None and snap.applies(state) else angle, axis)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scale: from the pointer's distance to the pivot, or a typed factor, to three factors."""
+"""Scale: three factors for the distance of the pointer from the pivot, or for typed factors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.header_texts import decimal_text
+from ..modal.header_texts import Translate, decimal_text
 from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.typed_numbers import Read
@@ -17,8 +17,8 @@ from .frame import Frame, about
 from .snapping import Snap
 from .view import Pixel, Vector
 
-LEAST_FACTOR = 1e-3  # the pointer alone neither collapses nor mirrors
-LEAST_RADIUS = 1.0  # pixels, where the drag starts on the pivot itself
+LEAST_FACTOR = 1e-3  # the pointer alone cannot collapse or mirror
+LEAST_RADIUS = 1.0  # pixels, for a drag that starts at the pivot
 
 
 @dataclass(frozen=True)
@@ -27,36 +27,36 @@ class Scaling:
 
     factors: Vector
     axes: Vector = field(default_factory=lambda: np.eye(3))
-    rotation = None  # as a rotation vector: there is none
+    rotation = None  # no rotation vector
 
     def matrix(self, frame: Frame) -> Vector:
         """(4, 4) world matrix about the frame's pivot."""
         return about(frame.pivot, self.axes @ np.diag(self.factors) @ self.axes.T)
 
-    def part(self, fraction: float) -> Scaling:
-        """A fraction of the way to it, 0 to 1."""
+    def fraction(self, fraction: float) -> Scaling:
+        """The scaling at a fraction of the way, 0 to 1."""
         return Scaling(1.0 + fraction * (self.factors - 1.0), self.axes)
 
-    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = decimal_text) -> str:
-        """For the header; `say` puts a text into the language of the interface, `length` writes a length."""
+    def text(self, translate: Translate = str, length: Callable[[float], str] = decimal_text) -> str:
+        """The text of the header; a scaling has no `length`."""
         x, y, z = map(decimal_text, self.factors)
-        return say("Scale {}").format(x if x == y == z else f"X {x}  Y {y}  Z {z}")
+        return translate("Scale {}").format(x if x == y == z else f"X {x}  Y {y}  Z {z}")
 
 
-def measure_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:
-    """What a drag asks for, on the axes that are not locked. One typed number alone counts for all of them.
+def requested_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:
+    """The scaling that a state requests, along the axes of the lock. A single typed number applies to all of them.
 
-    ValueError for typed text that is no factor.
+    ValueError for invalid text.
     """
     factors = np.ones(3)
-    free = list(state.constraint.axes)
+    free = list(state.axis_lock.axes)
     if state.typed.active:
         factors[free] = _typed(state, read)
     else:
         factor = _dragged(state.pointer)
-        snaps = snap is not None and snap.applies(state)
-        factors[free] = snap.factor(factor, fine=state.precise) if snaps else factor
-    return Scaling(factors, frame.axes_of(state.constraint))
+        applies = snap is not None and snap.applies(state)
+        factors[free] = snap.factor(factor, fine=state.precise) if snap is not None and applies else factor
+    return Scaling(factors, frame.axes_of(state.axis_lock))
 
 
 def _typed(state: State, read: Read) -> list[float]:

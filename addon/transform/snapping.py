@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a goal snaps: to steps of its value, or to a vertex, edge or face under the pointer."""
+"""Snapping of a goal: to increments of its value, or to a vertex, edge or face under the pointer."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.axis_lock import Constraint
+from ..modal.axis_lock import AxisLock
 from ..modal.state import State
 from .frame import Frame
 from .view import Pixel, Vector, View
 
-REACH = 30.0  # pixels within which a vertex or an edge is taken
-GEOMETRY = ("VERTEX", "EDGE_MIDPOINT", "EDGE", "FACE")  # nearest first to what is small and hard to hit
+REACH = 30.0  # pixels within which a vertex or an edge is snapped to
+GEOMETRY = ("VERTEX", "EDGE_MIDPOINT", "EDGE", "FACE")  # the smallest targets first
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What a line of sight meets: the place (3,), and the corners of the face there, (k, 3), in order."""
+class Hit:
+    """The first surface on a view ray: the position (3,), and the corners of its face, (k, 3), in order."""
 
-    place: Vector
+    position: Vector
     corners: Vector
 
 
 @dataclass(frozen=True)
-class Steps:
-    """Length of a step of each kind of value, and of the fine one that Shift gives."""
+class Increments:
+    """Increments of each kind of transform, coarse and, with Shift, fine."""
 
     move: tuple[float, float] = (1.0, 0.1)
     rotate: tuple[float, float] = (math.radians(5.0), math.radians(1.0))
@@ -37,38 +37,38 @@ class Steps:
 
 @dataclass(frozen=True)
 class Snap:
-    """How the scene wants goals to snap.
+    """The snapping settings of a scene.
 
     Attributes:
         elements: subset of {"INCREMENT", "GRID", *GEOMETRY}.
-        kinds: the transforms that snap without Ctrl, and to geometry; the others snap to steps while Ctrl is held.
-        steps: for increments.
-        source: "CLOSEST", "CENTER", "MEDIAN" or "ACTIVE": what of the selection is to lie on the target.
-        points: (k, 3) of the selection, one of which may be the source.
-        active: (3,) the active one, if there is any.
-        look: what is seen at a pixel, nothing of what moves.
+        kinds: the transforms that snap without Ctrl, and to geometry; the others snap to increments while Ctrl is held.
+        increments: lengths of the increments.
+        source: "CLOSEST", "CENTER", "MEDIAN" or "ACTIVE": the point of the selection that moves onto the target.
+        points: (k, 3) candidates for the source.
+        active: (3,) the active one, None without one.
+        cast: the first surface on the view ray of a pixel, without the moving objects.
 
     """
 
     elements: frozenset[str] = frozenset({"INCREMENT"})
     kinds: frozenset[str] = frozenset({"move"})
-    steps: Steps = field(default_factory=Steps)
+    increments: Increments = field(default_factory=Increments)
     source: str = "CLOSEST"
     points: Vector = field(default_factory=lambda: np.empty((0, 3)))
     active: Vector | None = None
-    look: Callable[[Pixel], Seen | None] = lambda pixel: None
+    cast: Callable[[Pixel], Hit | None] = lambda pixel: None
 
     def applies(self, state: State) -> bool:
         """Whether the goal of a state snaps."""
         return state.snapping and (state.ctrl or state.kind in self.kinds)
 
-    def translation(self, vector: Vector, pixel: Pixel, frame: Frame, constraint: Constraint, *, fine: bool) -> Vector:
+    def translation(self, vector: Vector, pixel: Pixel, frame: Frame, axis_lock: AxisLock, *, fine: bool) -> Vector:
         """The vector (3,) of a move, snapped."""
-        axes = frame.axes_of(constraint)[:, list(constraint.axes)]
+        axes = frame.axes_of(axis_lock)[:, list(axis_lock.axes)]
         target = self.target(pixel, frame.view) if "move" in self.kinds else None
         if target is not None:
             return np.asarray(axes @ (axes.T @ (target - self._source(target - vector, frame.pivot))))
-        step = self.steps.move[fine]
+        step = self.increments.move[fine]
         if "GRID" in self.elements:
             return np.asarray(axes @ (axes.T @ (np.round((frame.pivot + vector) / step) * step - frame.pivot)))
         if "INCREMENT" in self.elements or "move" not in self.kinds:
@@ -76,37 +76,37 @@ class Snap:
         return vector
 
     def angle(self, angle: float, *, fine: bool) -> float:
-        """An angle, in whole steps."""
-        return _rounded(angle, self.steps.rotate[fine])
+        """An angle, snapped to increments."""
+        return _rounded(angle, self.increments.rotate[fine])
 
     def factor(self, factor: float, *, fine: bool) -> float:
-        """A factor, in whole steps."""
-        return _rounded(factor, self.steps.scale[fine])
+        """A factor, snapped to increments."""
+        return _rounded(factor, self.increments.scale[fine])
 
     def target(self, pixel: Pixel, view: View | None) -> Vector | None:
-        """The point (3,) to snap to, None where nothing is near the pointer."""
-        seen = self._seen(pixel) if view is not None else None
-        if seen is None or view is None:
+        """The point (3,) to snap to, None without a target near the pointer."""
+        hit = self._hit(pixel) if view is not None else None
+        if hit is None or view is None:
             return None
         for element in GEOMETRY:
             if element in self.elements:
-                nearest = _nearest(_places(element, seen, view, pixel), view, pixel)
+                nearest = _nearest(_candidates(element, hit, view, pixel), view, pixel)
                 if nearest is not None:
                     return nearest
         return None
 
-    def _seen(self, pixel: Pixel) -> Seen | None:
-        """Under the pointer, or just beside it for vertices and edges of an outline."""
+    def _hit(self, pixel: Pixel) -> Hit | None:
+        """The surface under the pointer, or close to it for vertices and edges of an outline."""
         if not self.elements.intersection(GEOMETRY):
             return None
-        seen = self.look(pixel)
-        if seen is None and self.elements.intersection({"VERTEX", "EDGE", "EDGE_MIDPOINT"}):
+        hit = self.cast(pixel)
+        if hit is None and self.elements.intersection({"VERTEX", "EDGE", "EDGE_MIDPOINT"}):
             around = ((REACH / 2 * math.cos(a), REACH / 2 * math.sin(a)) for a in np.arange(8) * math.pi / 4)
-            return next(filter(None, (self.look((pixel[0] + x, pixel[1] + y)) for x, y in around)), None)
-        return seen
+            return next(filter(None, (self.cast((pixel[0] + x, pixel[1] + y)) for x, y in around)), None)
+        return hit
 
     def _source(self, wanted: Vector, pivot: Vector) -> Vector:
-        """What is to lie on the target: for the closest, of those moved by the mouse (`wanted` is the way back)."""
+        """The point that moves onto the target; for "CLOSEST", among the dragged points. `wanted` undoes the drag."""
         if self.source == "ACTIVE" and self.active is not None:
             return self.active
         if self.source == "CENTER" or len(self.points) == 0:
@@ -116,35 +116,35 @@ class Snap:
         return np.asarray(self.points.mean(axis=0))
 
 
-def _places(element: str, seen: Seen, view: View, pixel: Pixel) -> Iterable[tuple[Vector, float]]:
-    """Candidates, each with the distance in pixels at which it still counts."""
-    following = np.roll(seen.corners, -1, axis=0)
+def _candidates(element: str, hit: Hit, view: View, pixel: Pixel) -> Iterable[tuple[Vector, float]]:
+    """Candidates, each with the largest distance in pixels for it."""
+    next_corners = np.roll(hit.corners, -1, axis=0)
     if element == "FACE":
-        return [(seen.place, math.inf)]
+        return [(hit.position, math.inf)]
     if element == "VERTEX":
-        return [(corner, REACH) for corner in seen.corners]
+        return [(corner, REACH) for corner in hit.corners]
     if element == "EDGE_MIDPOINT":
-        return [(middle, REACH) for middle in (seen.corners + following) / 2.0]
-    edges = zip(seen.corners, following, strict=True)
-    return [(_on_edge(a, b, view, pixel, seen.place), REACH) for a, b in edges]
+        return [(middle, REACH) for middle in (hit.corners + next_corners) / 2.0]
+    edges = zip(hit.corners, next_corners, strict=True)
+    return [(_on_edge(a, b, view, pixel, hit.position), REACH) for a, b in edges]
 
 
-def _on_edge(a: Vector, b: Vector, view: View, pixel: Pixel, place: Vector) -> Vector:
-    """The point of an edge nearest to the line of sight (both lines' common perpendicular)."""
-    origin, direction = view.ray(pixel, place)
+def _on_edge(a: Vector, b: Vector, view: View, pixel: Pixel, position: Vector) -> Vector:
+    """The point of an edge closest to the view ray (on the common perpendicular of both lines)."""
+    origin, direction = view.ray(pixel, position)
     edge, across = b - a, (b - a) - direction * (direction @ (b - a))
     length = across @ across
-    share = (origin - a) @ across / length if length > 0.0 else 0.0
-    return np.asarray(a + edge * min(max(share, 0.0), 1.0))
+    fraction = (origin - a) @ across / length if length > 0.0 else 0.0
+    return np.asarray(a + edge * min(max(fraction, 0.0), 1.0))
 
 
-def _nearest(places: Iterable[tuple[Vector, float]], view: View, pixel: Pixel) -> Vector | None:
+def _nearest(positions: Iterable[tuple[Vector, float]], view: View, pixel: Pixel) -> Vector | None:
     best, distance = None, math.inf
-    for place, reach in places:
-        at = view.project(place)
+    for position, reach in positions:
+        at = view.project(position)
         away = math.inf if at is None else math.hypot(at[0] - pixel[0], at[1] - pixel[1])
         if away < min(reach, distance) or (reach == math.inf and best is None):
-            best, distance = place, away
+            best, distance = position, away
     return best
 
 

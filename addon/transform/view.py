@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A 3D view as mathematics: between pixels of its region and world positions."""
+"""The projection of a 3D view: between pixels of its region and world positions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class View:
     size: tuple[int, int]
 
     def project(self, point: Vector) -> Pixel | None:
-        """The pixel where a world position is seen, None for one that is not in front of the viewer."""
+        """The pixel of a world position, None for one behind the viewer."""
         clip = self._clip(point)
         if clip[3] <= 0.0:
             return None
@@ -39,15 +39,15 @@ class View:
         point = np.linalg.solve(self.projection, np.array([x, y, depth, 1.0]))
         return np.asarray(point[:3] / point[3])
 
-    def beside(self, pixel: Pixel, reference: Vector) -> Vector:
-        """The world position at a pixel, as far away as `reference` (parallel to the view plane)."""
+    def at_depth_of(self, pixel: Pixel, reference: Vector) -> Vector:
+        """The world position at a pixel, at the depth of `reference`."""
         clip = self._clip(reference)
         return self.unproject(pixel, float(clip[2] / clip[3]) if clip[3] > 0.0 else 0.0)
 
     def ray(self, pixel: Pixel, reference: Vector) -> tuple[Vector, Vector]:
-        """The line of sight at a pixel: its point beside `reference`, and the unit direction away from the viewer."""
-        towards = self.unproject(pixel, 1.0) - self.unproject(pixel, -1.0)
-        return self.beside(pixel, reference), towards / np.linalg.norm(towards)
+        """The view ray of a pixel: its point at the depth of `reference`, and the unit direction from the viewer."""
+        along = self.unproject(pixel, 1.0) - self.unproject(pixel, -1.0)
+        return self.at_depth_of(pixel, reference), along / np.linalg.norm(along)
 
     def toward_viewer(self, point: Vector) -> Vector:
         """Unit direction from a world position to the viewer."""

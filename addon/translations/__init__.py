@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The interface in other languages: one catalogue a file, from English texts as they stand in the sources.
+"""Translations of the interface: a catalogue for each language, from the English texts of the sources.
 
-Texts that the code puts together itself go through `say("text")`, and are filled in afterwards.
+Code that composes a text calls `translate("text")` and formats the result.
 
-tools/interface_messages.py lists what there is to translate; a test holds sources and catalogues together.
+tools/interface_messages.py lists the texts to translate; a test compares sources and catalogues.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import bpy
 from . import german, japanese
 
 CATALOGUES = {"de_DE": german.MESSAGES, "ja_JP": japanese.MESSAGES}
-CONTEXTS = ("*", "Operator")  # labels of buttons are looked up in the second, all else in the first
+CONTEXTS = ("*", "Operator")  # Blender looks up labels of buttons in the second, other texts in the first
 
 
 def dictionary() -> dict[str, dict[tuple[str, str], str]]:
-    """All catalogues as Blender takes them."""
+    """All catalogues in Blender's format."""
     return {
         language: {(context, english): text for english, text in messages.items() for context in CONTEXTS}
         for language, messages in CATALOGUES.items()
@@ -25,15 +25,15 @@ def dictionary() -> dict[str, dict[tuple[str, str], str]]:
 
 
 def register() -> None:
-    """Hand the catalogues to Blender."""
+    """Register the catalogues."""
     bpy.app.translations.register(__name__, dictionary())
 
 
 def unregister() -> None:
-    """Take them back."""
+    """Unregister the catalogues."""
     bpy.app.translations.unregister(__name__)
 
 
-def say(text: str) -> str:
-    """A text of the catalogues; the same text where interface texts are not translated."""
+def translate(text: str) -> str:
+    """A text in the language of the interface; the same text if there is no translation."""
     return str(bpy.app.translations.pgettext_iface(text))

@@ -52,8 +52,8 @@ class ScriptedDrag:
         cls, modal: dict[str, ModuleType], kind: str, begin: Callable[[], Any], goal_of: Callable[[float], Any]
     ) -> ScriptedDrag:
         """A drag of a kind; `modal` are the modules of the add-on by their names."""
-        state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["edit"].Request(kind))
-        drag = modal["drag_loop"].Drag(
+        state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["request"].Request(kind))
+        drag = modal["drag_loop"].DragLoop(
             lambda request: begin(),
             lambda state: state.pointer.effective[0] / PIXELS,
             lambda where, state: goal_of(where),
@@ -98,7 +98,7 @@ class ScriptedDrag:
 def _modal(path: Path) -> dict[str, ModuleType]:
     return {
         name: require_blender(f"stiv_addon.modal.{name}", path)
-        for name in ("drag_loop", "edit", "event", "pointer", "state")
+        for name in ("drag_loop", "event", "pointer", "request", "state")
     }
 
 

@@ -28,8 +28,8 @@ import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
 
 from stiv.blender import EditSettings, begin_nearby  # noqa: E402
-from stiv_addon.modal.drag_loop import Drag, Progress  # noqa: E402
-from stiv_addon.modal.edit import Request  # noqa: E402
+from stiv_addon.modal.drag_loop import DragLoop, Progress  # noqa: E402
+from stiv_addon.modal.request import Request  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
@@ -61,7 +61,7 @@ def digest() -> str:
 def new_drag(threads: int) -> Drag:
     """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
-    return Drag(
+    return DragLoop(
         lambda request: begin_nearby(bpy.context, settings, kind=request.kind),
         lambda state: state.pointer.effective[0] / 1000,
         lambda share, state: building.shift(*(share * SHIFT)),

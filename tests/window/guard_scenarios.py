@@ -26,7 +26,7 @@ def at_rest(window: Window) -> Steps:
     """Wait until the guard has looked at everything."""
     watcher = extension.module("guard.watcher")
     yield from window.settle()
-    yield from window.until(lambda: not bpy.app.timers.is_registered(watcher.look), "the guard at rest")
+    yield from window.until(lambda: not bpy.app.timers.is_registered(watcher.observe_and_act), "the guard at rest")
     yield from window.settle()
 
 

@@ -46,7 +46,7 @@ def guard_leaves_nothing(window: Window) -> Steps:
     yield from guarded(window, scenes.add_box, "Box")
     bpy.context.scene.stiv.live_guard = False
     yield from window.settle()
-    assert not bpy.app.timers.is_registered(watcher.look)
+    assert not bpy.app.timers.is_registered(watcher.observe_and_act)
     window.key("G")
     yield from window.glide(window.pixel((WALL_FACE, 0.0, 0.0)))
     window.key("LEFTMOUSE")

@@ -20,7 +20,7 @@ def in_language(code: str) -> object:
         before = view.language
         view.language, view.use_translate_interface = code, True
         try:
-            assert extension.module("translations").say("Shift: precision") == SAYS[code]
+            assert extension.module("translations").translate("Shift: precision") == SAYS[code]
             yield from prepared(window, scenes.add_box, "Box")
             yield from start(window)
             yield from window.glide(window.pixel(INTO_WALL))

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intersections and clearances of the scene as it is."""
+"""Intersections and clearances of the current scene."""

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.measure`: find the nearest pair of objects, and show it over the view."""
+"""`stiv.measure`: finds the closest pair of objects, and shows it in the view."""
 
 from __future__ import annotations
 
 import bpy
 
+from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
-from .check import clearance_text
+from ..reports import clearance_text, report_error
 
 
 class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
@@ -19,14 +20,11 @@ class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
     bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Measure, show, say."""
-        from stiv.blender.verify.nearest_pair import nearest_pair  # the add-on registers without the native module
-
+        """Measure, show, report."""
         try:
-            found = nearest_pair(context, edit_settings(context.scene))
+            found = stiv_blender.nearest_pair(context, edit_settings(context.scene))
         except ValueError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return report_error(self, error)
         if found is None:
             self.report({"WARNING"}, "No two visible objects to measure")
             return {"CANCELLED"}

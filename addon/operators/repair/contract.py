@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.contract`: selected meshes shrink toward their skeletons."""
+"""`stiv.contract`: shrinks the selected meshes toward their skeletons."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
+from ... import stiv_blender
 from .reshape import ReshapeOperator
 
 
@@ -43,11 +42,9 @@ class STIV_OT_contract(ReshapeOperator, bpy.types.Operator):
         default=False,
     )
 
-    def begin(self, context: bpy.types.Context) -> Any:
+    def begin(self, context: bpy.types.Context) -> stiv_blender.BlenderContraction:
         """Read the scene."""
-        from stiv.blender import BlenderContraction, ContractionSettings  # registers without the native module
-
-        chosen = ContractionSettings(
+        settings = stiv_blender.ContractionSettings(
             self.settings(context), self.steps, self.smoothing, self.until_free, self.new_original
         )
-        return BlenderContraction.begin(context, chosen)
+        return stiv_blender.BlenderContraction.begin(context, settings)

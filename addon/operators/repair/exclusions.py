@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.exclude_intersections` and `stiv.clear_exclusions`: go on with a scene that intersects."""
+"""`stiv.exclude_intersections` and `stiv.clear_exclusions`: editing a scene that intersects."""
 
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 import bpy
 
+from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
-from ..check.check import counted
+from ..reports import counted, report_error
 
 
 class ExclusionOperator(NeedsNativeModule):
-    """Base: changes the setting of the scene."""
+    """Base: changes the exclusions of the scene."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
@@ -26,14 +26,11 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
     bl_label = "Exclude Intersections"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Find all pairs and keep them in the scene, in place of those kept before."""
-        from stiv.blender.verify.scene_check import exclusions_now  # the add-on registers without the native module
-
+        """Find all intersecting pairs and store them in the scene, replacing earlier ones."""
         try:
-            excluded, others = exclusions_now(context, _settings(context))
+            excluded, others = stiv_blender.exclusions_now(context, _settings(context))
         except ValueError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return report_error(self, error)
         context.scene.stiv.excluded = excluded.to_json()
         self.report({"INFO"}, f"Excluded {counted(len(excluded.pairs), 'face pair')}")
         if others:
@@ -49,27 +46,25 @@ class STIV_OT_clear_exclusions(ExclusionOperator, bpy.types.Operator):
     bl_label = "Clear Exclusions"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forget them."""
+        """Delete the exclusions."""
         context.scene.stiv.excluded = ""
         return {"FINISHED"}
 
 
 @functools.lru_cache(maxsize=4)
-def excluded_count(kept: str) -> str:
-    """How many pairs a scene keeps as excluded, in words; "" for none."""
-    from stiv.blender import Exclusions  # the add-on registers without the native module
-
+def excluded_count(stored: str) -> str:
+    """The number of excluded pairs stored in a scene, as a text; "" for none."""
     try:
-        count = len(Exclusions.from_json(kept).pairs)
+        count = len(stiv_blender.Exclusions.from_json(stored).pairs)
     except ValueError as error:
         return str(error)
     return counted(count, "excluded face pair") if count else ""
 
 
-def _settings(context: bpy.types.Context) -> Any:
-    """As for an edit, but for exclusions, which may be unreadable."""
-    kept, context.scene.stiv.excluded = context.scene.stiv.excluded, ""
+def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:
+    """The settings of an edit without exclusions, which may be unreadable."""
+    stored, context.scene.stiv.excluded = context.scene.stiv.excluded, ""
     try:
         return edit_settings(context.scene)
     finally:
-        context.scene.stiv.excluded = kept
+        context.scene.stiv.excluded = stored

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.expand`: selected meshes go back to their shape, or to that of another object, without intersections."""
+"""`stiv.expand`: expands the selected meshes toward their rest shape, or the shape of another object."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 from bpy.props import FloatProperty, StringProperty
 
+from ... import stiv_blender
 from .reshape import ReshapeOperator
 
 
@@ -25,11 +24,10 @@ class STIV_OT_expand(ReshapeOperator, bpy.types.Operator):
         name="Amount", description="Fraction of the way", default=1.0, min=0.0, max=1.0, subtype="FACTOR"
     )
 
-    def begin(self, context: bpy.types.Context) -> Any:
+    def begin(self, context: bpy.types.Context) -> stiv_blender.BlenderExpansion:
         """Read the scene."""
-        from stiv.blender import BlenderExpansion, ExpansionSettings  # registers without the native module
-
-        return BlenderExpansion.begin(context, ExpansionSettings(self.settings(context), self.target, self.amount))
+        settings = stiv_blender.ExpansionSettings(self.settings(context), self.target, self.amount)
+        return stiv_blender.BlenderExpansion.begin(context, settings)
 
     def draw(self, context: bpy.types.Context) -> None:
         """The redo panel, with a choice of objects."""

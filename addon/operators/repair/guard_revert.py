@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.guard_revert`: from a result that the live guard could not correct to the last state without intersections."""
+"""`stiv.guard_revert`: restores the last clear state if the live guard could not correct a result."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import bpy
 from ...guard import correction, watcher
 from ...guard.problem import listed
 from ...native_module import NeedsNativeModule
-from ...translations import say
+from ...translations import translate
+from ..reports import report_error
 
 
 class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
@@ -19,8 +20,8 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
-    def fits(cls, context: bpy.types.Context) -> bool:
-        """While the guard watches an intersecting scene that it has seen clear before."""
+    def is_available(cls, context: bpy.types.Context) -> bool:
+        """While the guard watches an intersecting scene that was clear before."""
         if not watcher.is_on(context) or watcher.last_clear_state() is None:
             cls.poll_message_set("The live guard has seen no clear state yet")
             return False
@@ -30,19 +31,22 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write, test, and say what is left."""
-        state, frame = watcher.last_clear_state()
+        """Write, test, and report any remaining intersections."""
+        clear = watcher.last_clear_state()
+        if clear is None:
+            return {"CANCELLED"}
+        state, frame = clear
         try:
             names = correction.revert(context, state, frame)
         except ValueError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return report_error(self, error)
         if context.mode == "SCULPT":
-            correction.take_strokes(context)
-        left = correction.test(context).problem
-        if left is not None:
-            self.report({"WARNING"}, say("{}; use Undo for other changes").format(left.headline(say)))
+            correction.evaluate_strokes(context)
+        remaining = correction.test(context).problem
+        if remaining is not None:
+            headline = remaining.headline(translate)
+            self.report({"WARNING"}, translate("{}; use Undo for other changes").format(headline))
             return {"FINISHED"} if names else {"CANCELLED"}
-        restored = say("Restored {}").format(listed(names, say)) if names else say("Restored frame {}").format(frame)
-        self.report({"INFO"}, restored)
+        restored = translate("Restored {}").format(listed(names, translate))
+        self.report({"INFO"}, restored if names else translate("Restored frame {}").format(frame))
         return {"FINISHED"}

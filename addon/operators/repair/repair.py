@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.repair`: selected meshes lose the intersections that they have."""
+"""`stiv.repair`: resolves the intersections of the selected meshes."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty
 
+from ... import stiv_blender
 from .reshape import ReshapeOperator
 
 
@@ -25,14 +24,9 @@ class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
         soft_max=0.2,
         precision=3,
     )
-    weld: BoolProperty(
-        name="Weld",
-        description="Merge coincident vertices first",
-        default=False,
-    )
+    weld: BoolProperty(name="Weld", description="Merge coincident vertices first", default=False)
 
-    def begin(self, context: bpy.types.Context) -> Any:
+    def begin(self, context: bpy.types.Context) -> stiv_blender.BlenderRepair:
         """Read the scene."""
-        from stiv.blender import BlenderRepair, RepairSettings  # the add-on registers without the native module
-
-        return BlenderRepair.begin(context, RepairSettings(self.settings(context), self.max_deviation, self.weld))
+        settings = stiv_blender.RepairSettings(self.settings(context), self.max_deviation, self.weld)
+        return stiv_blender.BlenderRepair.begin(context, settings)

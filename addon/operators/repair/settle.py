@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.settle`: selected meshes come as near to their shape as the surfaces let them."""
+"""`stiv.settle`: moves the selected meshes as close to their rest shape as contact allows."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import bpy
 from bpy.props import FloatProperty, IntProperty
 
+from ... import stiv_blender
 from .reshape import ReshapeOperator
 
 
@@ -28,9 +28,8 @@ class STIV_OT_settle(ReshapeOperator, bpy.types.Operator):
         precision=3,
     )
 
-    def begin(self, context: bpy.types.Context) -> Any:
+    def begin(self, context: bpy.types.Context) -> stiv_blender.BlenderExpansion:
         """Read the scene."""
-        from stiv.blender import BlenderExpansion, ExpansionSettings  # registers without the native module
-
         settings = replace(self.settings(context), smoothness=self.smoothness)
-        return BlenderExpansion.begin(context, ExpansionSettings(settings, rounds=self.rounds))
+        expansion = stiv_blender.ExpansionSettings(settings, rounds=self.rounds)
+        return stiv_blender.BlenderExpansion.begin(context, expansion)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.handle_add`, `stiv.handle_remove`: the list of vertex groups that are handles of the active mesh."""
+"""`stiv.handle_add`, `stiv.handle_remove`: the vertex groups that are handles of the active mesh."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class _HandleOperator(NeedsNativeModule):
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
-    def fits(cls, context: bpy.types.Context) -> bool:
+    def is_available(cls, context: bpy.types.Context) -> bool:
         """With an active mesh."""
         return getattr(context.active_object, "type", "") == "MESH"
 
@@ -27,10 +27,10 @@ class STIV_OT_handle_add(_HandleOperator, bpy.types.Operator):
     bl_label = "Add Handle"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add a row, with a group that is in none yet."""
-        thing = context.active_object
-        active = thing.vertex_groups.active
-        rows = thing.stiv.handles
+        """Add a row, with the active group unless it already has one."""
+        obj = context.active_object
+        active = obj.vertex_groups.active
+        rows = obj.stiv.handles
         taken = {row.name for row in rows}
         rows.add().name = active.name if active is not None and active.name not in taken else ""
         return {"FINISHED"}

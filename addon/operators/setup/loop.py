@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.loop_add`, `stiv.loop_refresh`, `stiv.loop_remove`: Loop subdivision shown beside a cage of triangles."""
+"""`stiv.loop_add`, `stiv.loop_refresh`, `stiv.loop_remove`: the Loop subdivision of a triangle cage."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
+from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...properties import BOUNDARIES
-from ...scene.edit_settings import refined_object
+from ...scene.edit_settings import loop_surface, refined_object
+from ..reports import report_error
 
 
 class _LoopOperator(NeedsNativeModule):
-    """Base: for the active mesh in Object Mode, which Blender's undo takes back as a whole."""
+    """Base: for the active mesh in Object Mode, where Blender's undo restores all objects."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
     needs_refined = True
 
     @classmethod
-    def fits(cls, context: bpy.types.Context) -> bool:
+    def is_available(cls, context: bpy.types.Context) -> bool:
         """With an active mesh that has a subdivision, or has none yet."""
-        thing = context.active_object
-        if context.mode != "OBJECT" or getattr(thing, "type", "") != "MESH":
+        obj = context.active_object
+        if context.mode != "OBJECT" or getattr(obj, "type", "") != "MESH":
             return False
-        return (refined_object(thing) is not None) == cls.needs_refined
+        return (refined_object(obj) is not None) == cls.needs_refined
 
 
 class STIV_OT_loop_add(_LoopOperator, bpy.types.Operator):
@@ -41,16 +41,12 @@ class STIV_OT_loop_add(_LoopOperator, bpy.types.Operator):
     boundary: EnumProperty(name="Boundary Smooth", items=BOUNDARIES, default="all")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make the object; the cage is drawn as wires and not rendered."""
-        from stiv import InputError
-        from stiv.blender import add_refined
-
+        """Add the object; the cage is drawn as a wireframe and not rendered."""
         cage = context.active_object
         try:
-            refined = add_refined(context, cage, self.levels, self.boundary)
-        except InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            refined = stiv_blender.add_refined(context, cage, self.levels, self.boundary)
+        except stiv_blender.InputError as error:
+            return report_error(self, error)
         loop = cage.stiv.loop
         loop.levels, loop.boundary = self.levels, self.boundary
         loop.object = refined
@@ -65,17 +61,12 @@ class STIV_OT_loop_refresh(_LoopOperator, bpy.types.Operator):
     bl_label = "Refresh Loop Subdivision"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Refresh, or say why it cannot be."""
-        from stiv import InputError
-        from stiv.blender import LoopSurface, refresh
-
-        cage: Any = context.active_object
-        refined, loop = refined_object(cage), cage.stiv.loop
+        """Update it, or report the reason if the cage is invalid."""
+        cage = context.active_object
         try:
-            refresh(cage, refined, LoopSurface(refined.name, loop.levels, loop.boundary))
-        except InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            stiv_blender.refresh(cage, cage.stiv.loop.object, loop_surface(cage))
+        except stiv_blender.InputError as error:
+            return report_error(self, error)
         return {"FINISHED"}
 
 
@@ -87,9 +78,7 @@ class STIV_OT_loop_remove(_LoopOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete it."""
-        from stiv.blender import remove_refined
-
         cage = context.active_object
-        remove_refined(refined_object(cage))
+        stiv_blender.remove_refined(cage.stiv.loop.object)
         cage.display_type, cage.hide_render = "TEXTURED", False
         return {"FINISHED"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.separation_add`, `stiv.separation_remove`: pairs of objects that keep a distance of their own."""
+"""`stiv.separation_add`, `stiv.separation_remove`: pairs of objects with their own minimum distance."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ class STIV_OT_separation_add(NeedsNativeModule, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add a row."""
-        chosen = list(context.selected_objects)
-        if len(chosen) not in (1, 2):
-            self.report({"ERROR"}, f"Select 1 or 2 objects ({len(chosen)} selected)")
+        selected = list(context.selected_objects)
+        if len(selected) not in (1, 2):
+            self.report({"ERROR"}, f"Select 1 or 2 objects ({len(selected)} selected)")
             return {"CANCELLED"}
         row = context.scene.stiv.pair_separations.add()
-        row.first, row.second = chosen[0], chosen[-1]
+        row.first, row.second = selected[0], selected[-1]
         return {"FINISHED"}
 
 

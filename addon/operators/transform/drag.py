@@ -1,52 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.drag`: a drag of any kind of transform; ends as the operator of the kind that it came to."""
+"""`stiv.drag`: a drag that begins as any kind of transform, and ends by calling the operator of its final kind."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import Any
 
 import bpy
 from bpy.props import EnumProperty
 
-from ...modal.drag_loop import Drag, DragEnded, Progress
-from ...modal.edit import Request
+from ... import stiv_blender
+from ...modal.drag_loop import DragEnded, DragLoop, Progress
 from ...modal.pointer import Pointer
+from ...modal.request import Request
 from ...modal.state import Effect, State
+from ...native_module import Mixin
 from ...overlay import display
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame
-from ...scene.tool_settings import keep_proportional, read_proportional, read_snap, unsupported_settings
-from ...transform import measure
-from ...translations import say
+from ...scene.tool_settings import read_proportional, read_snap, store_proportional, unsupported_settings
+from ...transform import requested_transform
+from ...translations import translate
 from ...units import length_text, readers
-from .. import window_io
-from ..last_edit import describe
-from ..reports import complain, outcome_text, tell, write_failure
+from .. import last_edit, window_io
+from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
 from .move import STIV_OT_move
-from .options import chosen_properties, make_influence
+from .options import changed_options, make_influence
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
-from .transform_operator import begin_drag, make_motion
+from .transform_operator import TransformOperator, begin_drag, make_motion
 
-TICK = 1.0 / 60.0  # seconds between two solves at least
-OPERATORS = {operator.kind: operator for operator in (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)}
+TICK = 1.0 / 60.0  # least seconds between two solves
+OPERATORS: dict[str, type[TransformOperator]] = {
+    operator.kind: operator for operator in (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
+}
 
 
-class Dragging:
-    """The operator without what Blender makes of it; `kind` is the kind of transform that it starts as."""
+class DragOperator(Mixin):
+    """The operator without its registration; `kind` is the kind of transform at the start."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Begin; nothing is changed where that is refused."""
+        """Begin the drag; if the edit is rejected, nothing changes."""
         try:
             self._start(context, event)
         except Exception as error:
-            return complain(self, error, None)
+            return report_error(self, error)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Pass an event on, show what became of it, clear up at the end."""
+        """Pass an event on, show the result, clean up at the end."""
         effect = Effect.NONE
         try:
             effect = self._advance(context, event)
@@ -63,27 +65,25 @@ class Dragging:
         self._leave(context)
 
     def _start(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        scene, request = (
-            context.scene,
-            Request(self.kind, context.scene.stiv.responders, context.scene.stiv.interference),
-        )
+        scene = context.scene
         self._frame = read_frame(context)
-        self._axes = orientation_names(context)
+        self._orientations = orientation_names(context)
         self._notes = unsupported_settings(context)
         self._snap = read_snap(context, lambda: self._drag.edit.moving, lambda: self._frame.view)
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
-        mouse = window_io.plain_event(event, context.region).mouse
-        proportional, snaps = read_proportional(context), scene.tool_settings.use_snap
-        state = State(Pointer.at(mouse, window_io.centre(self._frame)), request, proportional=proportional, snap=snaps)
+        pointer = Pointer.at(window_io.plain_event(event, context.region).mouse, window_io.centre(self._frame))
+        request = Request(self.kind, scene.stiv.responders, scene.stiv.interference)
+        proportional, snap = read_proportional(context), scene.tool_settings.use_snap
+        state = State(pointer, request, proportional=proportional, snap=snap)
         self._launch(context, state, lambda request: begin_drag(context, request))
 
-    def _launch(self, context: bpy.types.Context, state: State, begin: Callable[[Request], Any]) -> None:
+    def _launch(self, context: bpy.types.Context, state: State, begin: Callable[[Request], stiv_blender.Edit]) -> None:
         self._mode = context.mode
-        self._shown: Any = None
-        self._drag = Drag(
+        self._shown: tuple[State, int, str] | None = None
+        self._drag = DragLoop(
             begin,
-            lambda state: measure(state, self._frame, self._readers, self._snap),
+            lambda state: requested_transform(state, self._frame, self._readers, self._snap),
             lambda transform, state: make_motion(transform, self._frame, make_influence(state.proportional)),
             state,
         )
@@ -94,32 +94,32 @@ class Dragging:
         if context.mode != self._mode:
             self._drag.abort(DragEnded("the mode changed during the drag"))
             return Effect.NONE
-        self._look(context)
+        self._follow_view(context)
         if event.type == "TIMER":
             self._drag.tick()
             return Effect.NONE
         return self._drag.handle(window_io.plain_event(event, context.region))
 
-    def _look(self, context: bpy.types.Context) -> None:
-        """Follow a view that was turned, moved or zoomed since the last event."""
+    def _follow_view(self, context: bpy.types.Context) -> None:
+        """Update the frame and the pointer if the view has changed since the last event."""
         frame = frame_in_new_view(context, self._frame)
         if frame is not self._frame:
-            pointer = window_io.pointer_seen_anew(self._drag.state.pointer, self._frame, frame)
+            pointer = window_io.pointer_in_new_view(self._drag.state.pointer, self._frame, frame)
             self._frame = frame
-            self._drag.look(pointer)
+            self._drag.change_view(pointer)
 
     def _show(self, context: bpy.types.Context) -> None:
-        """Header, status bar and views, if there is anything new: a timer that only waits draws nothing."""
+        """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
         drag = self._drag
         news = (drag.state, id(drag.result), drag.note)
         if news == self._shown or drag.progress is not Progress.RUNNING:
             return
         self._shown = news
-        label = say(OPERATORS[drag.state.kind].bl_label)
-        value = drag.transform.text(say, self._length) if drag.transform is not None else label
-        verdict = outcome_text(drag.result) if drag.result is not None else ""
-        told = [text for text in (drag.note, write_failure(drag.report)) if text]
-        window_io.show(context, drag.state, value, verdict, [*told, *self._notes], self._axes)
+        label = translate(OPERATORS[drag.state.kind].bl_label)
+        value = drag.transform.text(translate, self._length) if drag.transform is not None else label
+        status = outcome_text(drag.result) if drag.result is not None else ""
+        notes = [text for text in (drag.note, write_failure(drag.report)) if text]
+        window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.result is not None:
             display.show_edit(drag.edit, drag.result)
 
@@ -127,29 +127,26 @@ class Dragging:
         drag = self._drag
         self._leave(context)
         if drag.error is not None:
-            return complain(self, drag.error, None)
+            return report_error(self, drag.error)
         if drag.progress is Progress.CANCELLED or drag.transform is None:
             return {"CANCELLED"}
         try:
             return self._register(context)
-        except RuntimeError as error:  # what Blender makes of a reported error
-            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
-            return {"CANCELLED"}
+        except RuntimeError as error:
+            return report_raised(self, error)
 
     def _register(self, context: bpy.types.Context) -> set[str]:
-        """Call the operator of the drag's kind with its values: it makes the undo step."""
+        """Call the operator of the drag's final kind with its values, which makes the undo step."""
         drag = self._drag
-        operator = OPERATORS[drag.state.kind]
-        values = operator.arguments(drag.transform)
-        values |= chosen_properties(drag.state.request, drag.state.proportional, context.scene)
-        if drag.progress is Progress.FINISHED:
-            edit = drag.edit
-            values["outcome"] = drag_results.keep(
-                drag_results.Outcome(edit.start_digest, edit.controls, drag.result, drag.report)
-            )
-            context.window_manager.stiv_last_edit = describe(drag.result, drag.report)
-            tell(self, outcome_text(drag.result), write_failure(drag.report))
-        keep_proportional(context, drag.state.proportional)
+        values = OPERATORS[drag.state.kind].arguments(drag.transform)
+        values |= changed_options(drag.state.request, drag.state.proportional, context.scene)
+        edit, result, report = drag.edit, drag.result, drag.report
+        if drag.progress is Progress.FINISHED and result is not None and report is not None:
+            dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
+            values["outcome"] = drag_results.store(dragged)
+            context.window_manager.stiv_last_edit = last_edit.describe(result, report)
+            report_outcome(self, outcome_text(result), write_failure(report))
+        store_proportional(context, drag.state.proportional)
         getattr(bpy.ops.stiv, drag.state.kind)("EXEC_DEFAULT", True, **values)
         return {"FINISHED"}
 
@@ -159,7 +156,7 @@ class Dragging:
         window_io.clear(context)
 
 
-class STIV_OT_drag(Dragging, bpy.types.Operator):
+class STIV_OT_drag(DragOperator, bpy.types.Operator):
     """Transform the selection with the mouse; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.drag"

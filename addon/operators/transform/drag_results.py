@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last drags came to, so that the redo panel gives the state that was seen, to the last bit.
+"""Results of the last drags, so that the redo panel restores the state that the user saw, to the last bit.
 
-A drag goes its own way to its value: around a corner, for instance, where the straight way of a script would be
-blocked. An operator that repeats it names the outcome by its number; where the scene starts from the same state with
-the same values, the controls that were accepted then are taken up again, and tested again.
+A drag may take a path around an obstacle where the straight path of a script would be blocked. The operator that
+repeats a drag refers to its result by number. If the scene starts from the same state with the same values, the
+operator takes the accepted controls of the drag and tests them again.
 """
 
 from __future__ import annotations
@@ -12,48 +12,53 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from typing import Any
 
-MOST = 16
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import stiv_blender
+
+CAPACITY = 16
 
 
 @dataclass
-class Outcome:
+class DragResult:
     """The end of one drag.
 
     Attributes:
-        start: digest of the state that it started from.
-        controls: (m, 3) that were accepted.
-        result: of the solver.
-        report: on what was written.
-        shown: whether the scene is in this state right now, so that there is nothing to do but to register it.
-        values: of the operator's properties, as Blender stored them.
+        start: digest of the state at the start.
+        controls: (m, 3) accepted controls.
+        result: the result of the last solve.
+        report: the report on writing it.
+        shown: whether the scene is in this state now and only has to be registered.
+        values: values of the operator's properties, as Blender stored them.
 
     """
 
     start: str
-    controls: Any
-    result: Any
-    report: Any
+    controls: NDArray[np.float64]
+    result: stiv_blender.EditResult
+    report: stiv_blender.WriteReport
     shown: bool = True
     values: tuple[Any, ...] = ()
 
 
-_kept: OrderedDict[int, Outcome] = OrderedDict()
+_results: OrderedDict[int, DragResult] = OrderedDict()
 
 
-def keep(outcome: Outcome) -> int:
-    """Keep an outcome; its number, from 1. Old ones are forgotten."""
-    number = next(reversed(_kept), 0) + 1
-    _kept[number] = outcome
-    while len(_kept) > MOST:
-        _kept.popitem(last=False)
+def store(result: DragResult) -> int:
+    """Store a result; returns its number, from 1. The oldest results are deleted."""
+    number = next(reversed(_results), 0) + 1
+    _results[number] = result
+    while len(_results) > CAPACITY:
+        _results.popitem(last=False)
     return number
 
 
-def find(number: int) -> Outcome | None:
-    """The outcome of a number; None for 0 and for what is forgotten."""
-    return _kept.get(number)
+def find(number: int) -> DragResult | None:
+    """The result with a number; None for 0 and for deleted results."""
+    return _results.get(number)
 
 
 def clear() -> None:
-    """Forget all."""
-    _kept.clear()
+    """Delete all results."""
+    _results.clear()

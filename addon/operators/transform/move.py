@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.move`: move what is selected; nothing goes through anything."""
+"""`stiv.move`: moves the selection without intersections."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ class STIV_OT_move(TransformOperator, bpy.types.Operator):
         name="Move", description="Translation in world space", subtype="TRANSLATION", unit="LENGTH"
     )
 
-    def given(self) -> Translation:
+    def requested(self) -> Translation:
         """The transform of the properties."""
         return Translation(np.array(self.value))
 
     def own_values(self) -> tuple[Any, ...]:
-        """The properties, to be compared."""
+        """The properties, for comparison."""
         return tuple(self.value)
 
     @staticmethod

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Properties that every transform has beside its value: what a drag may have chosen."""
+"""Options that every transform has beside its value; a drag may change them."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...modal.edit import Request
+from ... import stiv_blender
 from ...modal.proportional import FALLOFFS, Proportional
+from ...modal.request import Request
 
-AS_SCENE = "SCENE"
+OF_SCENE = "SCENE"
 RESPONDERS = (
     ("SCENE", "Scene Setting", "Use the setting of the scene"),
     ("selected", "Selected", "The selection is deflected"),
     ("unselected", "Others", "Everything else is pushed aside"),
     ("all", "Both", "Both sides move"),
 )
-
 INTERFERENCE = (
     ("SCENE", "Scene Setting", "Use the setting of the scene"),
     ("ON", "On", "Surfaces collide"),
@@ -25,9 +26,10 @@ INTERFERENCE = (
 )
 
 
-class Choices:
-    """Mixed into the operators."""
+class TransformOptions:
+    """Mixin of the operators."""
 
+    kind: str
     proportional: BoolProperty(
         name="Proportional Editing", description="Move points near the selection with it, in Edit Mode"
     )
@@ -46,38 +48,36 @@ class Choices:
     proportional_connected: BoolProperty(
         name="Connected Only", description="Measure distances along the edges of the cage"
     )
-    responders: EnumProperty(name="Yields", items=RESPONDERS, default=AS_SCENE, options={"SKIP_SAVE"})
-    interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=AS_SCENE, options={"SKIP_SAVE"})
+    responders: EnumProperty(name="Yields", items=RESPONDERS, default=OF_SCENE, options={"SKIP_SAVE"})
+    interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=OF_SCENE, options={"SKIP_SAVE"})
     outcome: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
 
-    def influence(self) -> Any:
-        """`stiv.blender.Influence` of the properties, None without proportional editing."""
-        chosen = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
-        return make_influence(Proportional(True, self.proportional, *chosen))
+    def influence(self) -> stiv_blender.Influence | None:
+        """The influence of proportional editing, None without it."""
+        settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
+        return make_influence(Proportional(True, self.proportional, *settings))
 
-    def request(self, scene: Any) -> Request:
-        """What the edit is begun with."""
-        responders = scene.stiv.responders if self.responders == AS_SCENE else self.responders
-        on = scene.stiv.interference if self.interference == AS_SCENE else self.interference == "ON"
+    def request(self, scene: bpy.types.Scene) -> Request:
+        """The request of the edit."""
+        responders = scene.stiv.responders if self.responders == OF_SCENE else self.responders
+        on = scene.stiv.interference if self.interference == OF_SCENE else self.interference == "ON"
         return Request(self.kind, responders, on)
 
-    def choices(self) -> tuple[Any, ...]:
-        """All of them, to be compared."""
-        chosen = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
-        return (self.responders, self.interference, *((self.proportional, *chosen) if self.proportional else ()))
+    def option_values(self) -> tuple[Any, ...]:
+        """All options, for comparison."""
+        settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
+        return (self.responders, self.interference, *((self.proportional, *settings) if self.proportional else ()))
 
 
-def make_influence(proportional: Proportional) -> Any:
-    """`stiv.blender.Influence` of proportional editing; None where it is off."""
-    from stiv.blender import Influence  # the add-on registers without the native module
-
+def make_influence(proportional: Proportional) -> stiv_blender.Influence | None:
+    """The influence of proportional editing; None if it is off."""
     if not proportional.active:
         return None
-    return Influence(proportional.size, proportional.falloff, proportional.connected)
+    return stiv_blender.Influence(proportional.size, proportional.falloff, proportional.connected)
 
 
-def chosen_properties(request: Request, proportional: Proportional, scene: Any) -> dict[str, Any]:
-    """The properties that say what a drag ended with."""
+def changed_options(request: Request, proportional: Proportional, scene: bpy.types.Scene) -> dict[str, Any]:
+    """The options at the end of a drag that differ from the defaults."""
     found: dict[str, Any] = {}
     if request.interference != scene.stiv.interference:
         found["interference"] = "ON" if request.interference else "OFF"

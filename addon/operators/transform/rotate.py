@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.rotate`: turn what is selected about the pivot; nothing goes through anything."""
+"""`stiv.rotate`: rotates the selection about the pivot without intersections."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
         name="Axis", subtype="DIRECTION", default=(0.0, 0.0, 1.0), description="Rotation axis in world space"
     )
 
-    def given(self) -> Rotation:
-        """The transform of the properties. ValueError for an axis without direction."""
+    def requested(self) -> Rotation:
+        """The transform of the properties. ValueError for a zero axis."""
         axis = np.array(self.axis)
         length = np.linalg.norm(axis)
         if not length > 0.0:
@@ -34,7 +34,7 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
         return Rotation(self.angle, axis / length)
 
     def own_values(self) -> tuple[Any, ...]:
-        """The properties, to be compared."""
+        """The properties, for comparison."""
         return (self.angle, *self.axis)
 
     @staticmethod

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.scale`: scale what is selected about the pivot; nothing goes through anything."""
+"""`stiv.scale`: scales the selection about the pivot without intersections."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class STIV_OT_scale(TransformOperator, bpy.types.Operator):
     orientation: EnumProperty(name="Orientation", description="Axes of the scale factors", items=ORIENTATIONS)
     axes: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
 
-    def given(self) -> Scaling:
+    def requested(self) -> Scaling:
         """The transform of the properties."""
         if self.orientation == "GLOBAL":
             return Scaling(np.array(self.value))
@@ -40,7 +40,7 @@ class STIV_OT_scale(TransformOperator, bpy.types.Operator):
         return Scaling(np.array(self.value), axes)
 
     def own_values(self) -> tuple[Any, ...]:
-        """The properties, to be compared."""
+        """The properties, for comparison."""
         return (*self.value, self.orientation, *self.axes)
 
     @staticmethod

@@ -9,7 +9,7 @@ import bpy
 
 from stiv.blender import check_scene
 from stiv_addon.guard import undo_steps, watcher
-from stiv_addon.guard.decision import STILL
+from stiv_addon.guard.decision import QUIET_TIME
 
 FURTHEST = 1.5  # of the box's centre: the wall's face is at 2, the box is 1 wide
 
@@ -30,8 +30,8 @@ def watched_scene() -> Iterator[None]:
 
 def look() -> None:
     """What the timer would do, until there is nothing to do."""
-    deadline = time.monotonic() + 3 * STILL + 20
-    while watcher.look() is not None:
+    deadline = time.monotonic() + 3 * QUIET_TIME + 20
+    while watcher.observe_and_act() is not None:
         assert time.monotonic() < deadline, "the guard never settles"
         time.sleep(0.02)
 

@@ -3,14 +3,14 @@ from dataclasses import replace
 
 import pytest
 
-from stiv_addon.guard.decision import STILL, Action, Guard, Seen, decide
+from stiv_addon.guard.decision import QUIET_TIME, Action, Guard, Observation, decide
 
 BEFORE, AFTER = (3, "0x1", "Move"), (4, "0x2", "Move")
 WATCHING = Guard(has_accepted=True, step=BEFORE)
-MOVED = Seen(time=10.0, updates=5, step=AFTER)
+MOVED = Observation(time=10.0, updates=5, step=AFTER)
 
 
-def action(guard: Guard, seen: Seen) -> Action:
+def action(guard: Guard, seen: Observation) -> Action:
     return decide(guard, seen)[1]
 
 
@@ -34,28 +34,28 @@ def test_nothing_changed_is_nothing_to_do_and_the_step_is_remembered() -> None:
     ("guard", "seen"),
     [
         (Guard(), MOVED),  # nothing accepted so far
-        (WATCHING, replace(MOVED, accepted_by_us=True)),
+        (WATCHING, replace(MOVED, own_edit=True)),
         (WATCHING, replace(MOVED, frame_changed=True)),
     ],
 )
-def test_what_has_no_state_to_go_on_from_is_tested_and_not_written(guard: Guard, seen: Seen) -> None:
+def test_what_has_no_state_to_go_on_from_is_tested_and_not_written(guard: Guard, seen: Observation) -> None:
     assert action(guard, seen) is Action.ACCEPT
 
 
 def test_a_step_that_lies_where_the_last_one_was_is_new_after_history_went_elsewhere() -> None:
     """The redo panel takes the tool's step back and makes another, which may get the same address."""
     other = (2, "0x3", "start")
-    assert action(WATCHING.went_through_history(other), replace(MOVED, step=BEFORE)) is Action.REPLACE
-    assert action(WATCHING.went_through_history(None), replace(MOVED, step=BEFORE)) is Action.WAIT
+    assert action(WATCHING.after_history(other), replace(MOVED, step=BEFORE)) is Action.REPLACE
+    assert action(WATCHING.after_history(None), replace(MOVED, step=BEFORE)) is Action.WAIT
 
 
 def test_what_undo_restored_is_written_only_if_it_fails() -> None:
-    guard = WATCHING.went_through_history(AFTER)
+    guard = WATCHING.after_history(AFTER)
     assert action(guard, MOVED) is Action.WRITE
 
 
 def test_what_the_redo_panel_made_again_is_a_tools_result() -> None:
-    guard = WATCHING.went_through_history(BEFORE)
+    guard = WATCHING.after_history(BEFORE)
     assert action(guard, MOVED) is Action.REPLACE
 
 
@@ -67,14 +67,14 @@ def test_a_change_without_an_undo_step_waits_until_it_is_still() -> None:
     seen = replace(MOVED, step=BEFORE)
     guard, what = decide(WATCHING, seen)
     assert what is Action.WAIT
-    assert action(guard, replace(seen, time=10.0 + STILL / 2)) is Action.WAIT
-    assert action(guard, replace(seen, time=10.0 + STILL)) is Action.PUSH
+    assert action(guard, replace(seen, time=10.0 + QUIET_TIME / 2)) is Action.WAIT
+    assert action(guard, replace(seen, time=10.0 + QUIET_TIME)) is Action.PUSH
 
 
 def test_a_number_field_that_goes_on_is_waited_for_and_then_replaced() -> None:
     seen = replace(MOVED, step=BEFORE)
     guard, _ = decide(WATCHING, seen)
-    guard, what = decide(guard, replace(seen, time=10.0 + STILL, updates=6))
+    guard, what = decide(guard, replace(seen, time=10.0 + QUIET_TIME, updates=6))
     assert what is Action.WAIT
     assert action(guard, replace(MOVED, updates=6)) is Action.REPLACE  # released: the step is there
 
@@ -83,9 +83,9 @@ def test_without_knowledge_of_the_undo_stack_a_step_is_added() -> None:
     seen = replace(MOVED, step=None)
     guard, what = decide(replace(WATCHING, step=None), seen)
     assert what is Action.WAIT
-    assert action(guard, replace(seen, time=10.0 + STILL)) is Action.PUSH
+    assert action(guard, replace(seen, time=10.0 + QUIET_TIME)) is Action.PUSH
 
 
 def test_settling_forgets_what_led_there() -> None:
-    guard = WATCHING.went_through_history(AFTER).settled(AFTER, True)
+    guard = WATCHING.after_history(AFTER).settled(AFTER, True)
     assert guard == Guard(True, AFTER)

@@ -58,7 +58,7 @@ def test_looking_again_does_nothing() -> None:
     look()
     shown, steps = tuple(box().location), names_of_steps()
     for _ in range(3):
-        watcher._noted()
+        watcher._note_change()
         look()
     assert tuple(box().location) == shown
     assert names_of_steps() == steps
@@ -81,7 +81,7 @@ def test_a_file_that_is_loaded_is_watched_over_if_it_says_so(tmp_path: Any) -> N
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.context.scene.stiv.live_guard = False
     bpy.ops.wm.open_mainfile(filepath=path)
-    assert bpy.app.timers.is_registered(watcher.look)
+    assert bpy.app.timers.is_registered(watcher.observe_and_act)
     look()
     bpy.ops.ed.undo_push(message="loaded")
     look()
@@ -93,18 +93,18 @@ def test_a_file_that_is_loaded_is_watched_over_if_it_says_so(tmp_path: Any) -> N
 
 def test_turned_off_it_leaves_no_timer_and_does_nothing() -> None:
     bpy.context.scene.stiv.live_guard = False
-    assert not bpy.app.timers.is_registered(watcher.look)
+    assert not bpy.app.timers.is_registered(watcher.observe_and_act)
     move(2.4)
-    assert not bpy.app.timers.is_registered(watcher.look)
+    assert not bpy.app.timers.is_registered(watcher.observe_and_act)
     assert box().location.x == pytest.approx(2.4)
 
 
 def test_unregistering_leaves_no_handler_and_no_timer() -> None:
-    watcher._noted()
+    watcher._note_change()
     stiv_addon.unregister()
     try:
         for name in watcher.HANDLERS:
             assert not any("stiv" in each.__module__ for each in getattr(bpy.app.handlers, name))
-        assert not bpy.app.timers.is_registered(watcher.look)
+        assert not bpy.app.timers.is_registered(watcher.observe_and_act)
     finally:
         stiv_addon.register()

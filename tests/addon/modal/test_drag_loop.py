@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
-from stiv_addon.modal.drag_loop import LAST_SLICES, Drag, Progress
-from stiv_addon.modal.edit import Request
+from stiv_addon.modal.drag_loop import FINAL_SOLVES, DragLoop, Progress
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pace import Pace
@@ -14,9 +14,9 @@ from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import Effect, State
 
 
-def new_drag(edit: FakeEdit) -> Drag:
+def new_drag(edit: FakeEdit) -> DragLoop:
     """A drag whose goal is a hundredth of the pointer's x, or the typed number."""
-    return Drag(edit.begun, measure, lambda value, state: value, State(Pointer.at((0.0, 0.0))))
+    return DragLoop(edit.begun, measure, lambda value, state: value, State(Pointer.at((0.0, 0.0))))
 
 
 def measure(state: State) -> float:
@@ -118,7 +118,7 @@ def test_what_a_tick_has_no_time_to_show_is_shown_by_the_next_before_anything_is
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     answers = iter([False, True, False, True])
-    monkeypatch.setattr(Pace, "has_time_to_show", lambda self, spent: next(answers))
+    monkeypatch.setattr(Pace, "has_time_to_write", lambda self, spent: next(answers))
     edit = FakeEdit()
     drag = new_drag(edit)
     for x in (50, 60, 70, 80):
@@ -164,7 +164,7 @@ def test_what_never_ends_is_confirmed_all_the_same() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == LAST_SLICES
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == FINAL_SOLVES
 
 
 def test_a_refused_value_is_told_and_can_be_corrected() -> None:
@@ -282,7 +282,7 @@ def test_another_view_solves_for_the_pointer_in_it() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(30))
     drag.tick()
-    drag.look(Pointer.at((60.0, 0.0)))
+    drag.change_view(Pointer.at((60.0, 0.0)))
     drag.tick()
     assert edit.goals == [0.3, 0.6]
 

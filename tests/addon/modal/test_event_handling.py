@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiv_addon.modal.axis_lock import Constraint
-from stiv_addon.modal.edit import Request
+from stiv_addon.modal.axis_lock import AxisLock
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.event_handling import CANCEL_KEYS, CONFIRM_KEYS, step
 from stiv_addon.modal.pointer import Pointer
@@ -44,10 +44,10 @@ def test_a_release_does_nothing(key: str) -> None:
 @pytest.mark.parametrize(("key", "axis"), [("X", 0), ("Y", 1), ("Z", 2)])
 def test_axis_keys_lock(key: str, axis: int) -> None:
     state, effect = step(start(), Event(key))
-    assert (state.constraint, effect) == (Constraint(axis), Effect.UPDATE)
-    assert after(Event(key, modifiers=SHIFT)).constraint == Constraint(axis, plane=True)
-    assert after(Event(key), Event(key)).constraint == Constraint(axis, second=True)
-    assert after(Event(key), Event(key), Event(key)).constraint == Constraint()
+    assert (state.axis_lock, effect) == (AxisLock(axis), Effect.UPDATE)
+    assert after(Event(key, modifiers=SHIFT)).axis_lock == AxisLock(axis, plane=True)
+    assert after(Event(key), Event(key)).axis_lock == AxisLock(axis, second=True)
+    assert after(Event(key), Event(key), Event(key)).axis_lock == AxisLock()
     assert step(start(), Event(key, modifiers=frozenset({"ctrl"}))) == (start(), Effect.NONE)
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Header and status bar, in any language: every word of them goes through `say`."""
+"""Header and status bar, in any language: every word of them is translated."""
 
 from dataclasses import replace
 
-from stiv_addon.modal.axis_lock import Constraint
-from stiv_addon.modal.edit import Request
-from stiv_addon.modal.header_texts import header_text, status_text, verdict_text
+from stiv_addon.modal.axis_lock import AxisLock
+from stiv_addon.modal.request import Request
+from stiv_addon.modal.header_texts import header_text, status_text, result_text
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.proportional import Proportional
 from stiv_addon.modal.state import State
@@ -27,7 +27,7 @@ def test_the_header_names_what_is_not_as_usual() -> None:
     proportional = Proportional(available=True, on=True, size=1.5, falloff="INVERSE_SQUARE", connected=True)
     state = replace(
         PLAIN, request=Request("move", "all"), precise=True, snap=True, proportional=proportional,
-        constraint=Constraint(0),
+        axis_lock=AxisLock(0),
     )  # fmt: skip
     told = header_text(state, "Move", "", ["a note"], ("GLOBAL", "LOCAL"))
     assert told == (
@@ -37,9 +37,9 @@ def test_the_header_names_what_is_not_as_usual() -> None:
 
 def test_every_word_of_a_header_is_translated_and_names_of_objects_are_not() -> None:
     state = replace(PLAIN, precise=True, request=Request("move", "unselected"))
-    verdict = verdict_text("blocked", ["Vase", "wall"], shout)
+    verdict = result_text("blocked", ["Vase", "wall"], shout)
     value = Translation((1.0, 0.0, 0.0)).text(shout)
-    assert header_text(state, value, verdict, say=shout) == (
+    assert header_text(state, value, verdict, translate=shout) == (
         "MOVE X 1  Y 0  Z 0  (DISTANCE 1)  PRECISION  YIELDS: OTHERS  |  BLOCKED BY Vase, wall"
     )
 
@@ -51,5 +51,5 @@ def test_every_word_of_the_status_bar_is_translated() -> None:
 
 
 def test_an_unknown_status_is_shown_as_it_is() -> None:
-    assert verdict_text("unheard of") == "unheard of"
-    assert verdict_text("unchanged") == ""
+    assert result_text("unheard of") == "unheard of"
+    assert result_text("unchanged") == ""

@@ -12,7 +12,7 @@ def test_a_state_is_shown_at_once_if_a_frame_has_time_for_both(showing: float, s
     pace = Pace()
     for _ in range(60):
         pace.note(showing)
-    assert pace.has_time_to_show(solving) == (solving + showing < FRAME)
+    assert pace.has_time_to_write(solving) == (solving + showing < FRAME)
 
 
 @given(st.lists(st.floats(0, 10)))
@@ -20,13 +20,13 @@ def test_a_tick_that_solved_nothing_always_shows_and_there_is_always_time_to_sol
     pace = Pace()
     for cost in costs:
         pace.note(cost)
-    assert pace.has_time_to_show(0.0) and 0.9 * FRAME < pace.budget < FRAME
+    assert pace.has_time_to_write(0.0) and 0.9 * FRAME < pace.budget < FRAME
 
 
 def test_what_showing_took_once_is_forgotten() -> None:
     pace = Pace()
     pace.note(0.1)
-    assert not pace.has_time_to_show(0.02)
+    assert not pace.has_time_to_write(0.02)
     for _ in range(20):
         pace.note(0.001)
-    assert pace.has_time_to_show(0.02)
+    assert pace.has_time_to_write(0.02)

@@ -17,7 +17,7 @@ from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
 from stiv_addon.operators import window_io  # noqa: E402
 from stiv_addon.operators.transform import drag  # noqa: E402
-from stiv_addon.operators.transform.drag import Dragging  # noqa: E402
+from stiv_addon.operators.transform.drag import DragOperator  # noqa: E402
 from stiv_addon.transform.frame import Frame  # noqa: E402
 
 
@@ -42,11 +42,11 @@ class Value(SimpleNamespace):
 
     rotation = None
 
-    def text(self, say: Callable[[str], str] = str, length: Callable[[float], str] = str) -> str:
+    def text(self, translate: Callable[[str], str] = str, length: Callable[[float], str] = str) -> str:
         return length(self.value)
 
 
-class Probe(Dragging):
+class Probe(DragOperator):
     """A drag whose value is a hundredth of the pointer's x."""
 
     kind = "move"
@@ -54,7 +54,7 @@ class Probe(Dragging):
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
         self._frame, self._snap, self._readers, self._length = Frame(np.zeros(3)), None, {}, str
-        self._axes, self._notes = ("GLOBAL", "LOCAL"), []
+        self._orientations, self._notes = ("GLOBAL", "LOCAL"), []
 
     def report(self, kind: set, text: str) -> None:
         self.reports.append((kind, text))
@@ -89,7 +89,9 @@ def edit() -> FakeEdit:
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Context]:
     monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
-    monkeypatch.setattr(drag, "measure", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0))
+    monkeypatch.setattr(
+        drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)
+    )
     monkeypatch.setattr(drag, "make_motion", lambda transform, *rest: transform.value)
     monkeypatch.setattr(drag, "make_influence", lambda proportional: None)
     operator, context = Probe(), Context()

@@ -82,10 +82,9 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     plain |= {"Motion": Motion, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
+    plain |= {"text_not_guarded": lambda context, evaluations, carried: ""}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
-    said = SimpleNamespace(text_not_guarded=lambda context, evaluations, carried: "")
-    monkeypatch.setitem(sys.modules, "stiv.blender.verify.left_out", said)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")
     return bpy.context.active_object
@@ -165,7 +164,7 @@ def test_the_outcome_of_a_drag_is_taken_up_again_from_the_same_start(scene: Any)
     ended[:3, 3] = 0.0, 7.0, 0.0
     result = SimpleNamespace(status="blocked", blocking=(), rounds=1, patches=0, energy=0.0, timings={}, counters={})
     result.events = SimpleNamespace(kind=[])
-    number = drag_results.keep(drag_results.Outcome("start", ended, result, None))
+    number = drag_results.store(drag_results.DragResult("start", ended, result, None))
     RecordingEdit.begun = None
     bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # what the drag does at its end
     assert RecordingEdit.begun is None
@@ -180,8 +179,12 @@ def test_the_outcome_of_a_drag_is_taken_up_again_from_the_same_start(scene: Any)
 
 
 def test_old_outcomes_are_forgotten() -> None:
-    numbers = [drag_results.keep(drag_results.Outcome(str(i), None, None, None)) for i in range(drag_results.MOST + 3)]
-    assert drag_results.find(numbers[0]) is None and drag_results.find(numbers[-1]).start == str(drag_results.MOST + 2)
+    numbers = [
+        drag_results.store(drag_results.DragResult(str(i), None, None, None)) for i in range(drag_results.CAPACITY + 3)
+    ]
+    assert drag_results.find(numbers[0]) is None and drag_results.find(numbers[-1]).start == str(
+        drag_results.CAPACITY + 2
+    )
     drag_results.clear()
     assert drag_results.find(numbers[-1]) is None and drag_results.find(0) is None
 

@@ -3,22 +3,22 @@ import numpy as np
 import pytest
 from views import typed
 
-from stiv_addon.modal.axis_lock import Constraint
-from stiv_addon.modal.edit import Request
+from stiv_addon.modal.axis_lock import AxisLock
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.state import State
 from stiv_addon.modal.typed_numbers import TypedValues
 from stiv_addon.transform.frame import Frame, orthonormal
-from stiv_addon.transform.scaling import LEAST_FACTOR, measure_scaling
+from stiv_addon.transform.scaling import LEAST_FACTOR, requested_scaling
 
 PIVOT = np.array([0.2, 0.1, -0.3])
 CENTRE = (400.0, 300.0)
 TILTED = orthonormal(np.array([[1.0, -0.5, 0.2], [0.4, 1.0, 0.1], [-0.3, 0.2, 1.0]]))
-LOCKS = [Constraint(), *(Constraint(axis, plane) for axis in range(3) for plane in (False, True))]
+LOCKS = [AxisLock(), *(AxisLock(axis, plane) for axis in range(3) for plane in (False, True))]
 
 
 def factor(start: tuple, end: tuple) -> float:
-    return measure_scaling(State(Pointer.at(start, CENTRE).moved(end)), Frame(PIVOT)).factors[0]
+    return requested_scaling(State(Pointer.at(start, CENTRE).moved(end)), Frame(PIVOT)).factors[0]
 
 
 def test_the_factor_is_the_ratio_of_distances() -> None:
@@ -33,10 +33,10 @@ def test_the_pointer_alone_neither_collapses_nor_explodes() -> None:
 
 
 @pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.label)
-def test_only_the_axes_left_are_scaled(lock: Constraint) -> None:
+def test_only_the_axes_left_are_scaled(lock: AxisLock) -> None:
     state = State(Pointer.at((500.0, 300.0), CENTRE), Request("scale"), lock, typed("3"))
     frame = Frame(PIVOT, TILTED)
-    matrix = measure_scaling(state, frame).matrix(frame)
+    matrix = requested_scaling(state, frame).matrix(frame)
     for axis in range(3):
         point = np.append(PIVOT + TILTED[:, axis], 1.0)
         expected = PIVOT + TILTED[:, axis] * (3.0 if axis in lock.axes else 1.0)
@@ -46,12 +46,12 @@ def test_only_the_axes_left_are_scaled(lock: Constraint) -> None:
 
 @pytest.mark.parametrize(("typed_values", "expected"), [(typed("-"), 1.0), (typed("-2"), -2.0)])
 def test_typed_factors(typed_values: TypedValues, expected: float) -> None:
-    assert measure_scaling(State(Pointer.at((0.0, 0.0)), typed=typed_values), Frame(PIVOT)).factors[0] == expected
+    assert requested_scaling(State(Pointer.at((0.0, 0.0)), typed=typed_values), Frame(PIVOT)).factors[0] == expected
 
 
 def test_several_typed_factors_count_for_their_axes() -> None:
     state = State(Pointer.at((0.0, 0.0)), Request("scale"), typed=typed("2", "", "4"))
-    np.testing.assert_array_equal(measure_scaling(state, Frame(PIVOT)).factors, [2.0, 1.0, 4.0])
+    np.testing.assert_array_equal(requested_scaling(state, Frame(PIVOT)).factors, [2.0, 1.0, 4.0])
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 2, 3), (1e-6, 1, 1e6)])

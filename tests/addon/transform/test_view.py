@@ -11,9 +11,9 @@ POINT = np.array([0.3, -0.4, 0.5])
 @pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
 def test_the_position_beside_a_pixel_is_seen_at_that_pixel(view: View) -> None:
     for pixel in [(0.0, 0.0), (400.0, 300.0), (123.0, 456.0)]:
-        beside = view.beside(pixel, POINT)
-        assert view.project(beside) == pytest.approx(pixel, abs=1e-6)
-        assert (beside - POINT) @ (view.ray((400.0, 300.0), POINT)[1]) == pytest.approx(0.0, abs=1e-6)
+        at_depth_of = view.at_depth_of(pixel, POINT)
+        assert view.project(at_depth_of) == pytest.approx(pixel, abs=1e-6)
+        assert (at_depth_of - POINT) @ (view.ray((400.0, 300.0), POINT)[1]) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_the_target_is_seen_in_the_middle() -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.culled_edit import NearbyEdit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.evaluated_scene import read_scene
 from stiv.blender.scene.evaluations import SHOWN
@@ -31,7 +32,7 @@ class Contacts:
     blocked: Floats
 
 
-def contacts_of(edit: BlenderEdit, result: stiv.EditResult) -> Contacts:
+def contacts_of(edit: BlenderEdit | NearbyEdit, result: stiv.EditResult) -> Contacts:
     """Contacts that the last call of an edit found, at its accepted surface."""
     moving = np.zeros(len(edit.surface), np.bool_)
     for index in (index for part in edit.parts for index in part.surfaces):

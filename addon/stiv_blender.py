@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The package `stiv.blender`, imported at first use: the add-on registers where its native module is missing."""
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from stiv import CancelToken as CancelToken
+    from stiv import EditResult as EditResult
+    from stiv import InputError as InputError
+    from stiv import LeastDistance as LeastDistance
+    from stiv.blender import *  # noqa: F403
+    from stiv.blender.edit.culled_edit import NearbyEdit
+    from stiv.blender.scene.assembly import Element as Element
+    from stiv.checks.findings import left_out_text as left_out_text
+
+    Edit = BlenderEdit | NearbyEdit  # noqa: F405
+    Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair  # noqa: F405
+else:
+
+    def __getattr__(name: str) -> object:
+        for package in ("stiv.blender", "stiv", "stiv.checks.findings"):
+            found = getattr(importlib.import_module(package), name, None)
+            if found is not None:
+                return found
+        raise AttributeError(name)
