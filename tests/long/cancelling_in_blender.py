@@ -29,9 +29,9 @@ from ball_above_wall import ball_above_wall  # noqa: E402
 
 from stiv.blender import EditSettings, begin_nearby  # noqa: E402
 from stiv_addon.modal.drag_loop import DragLoop, Progress  # noqa: E402
-from stiv_addon.modal.request import Request  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
+from stiv_addon.modal.request import Request  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
 from stiv_addon.scene.edit_settings import DRAG_BUDGET  # noqa: E402
 
@@ -58,7 +58,7 @@ def digest() -> str:
     return hashlib.sha256(repr(building.snapshot()).encode()).hexdigest()
 
 
-def new_drag(threads: int) -> Drag:
+def new_drag(threads: int) -> DragLoop:
     """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
     return DragLoop(
@@ -75,7 +75,7 @@ def clocks() -> tuple[float, float]:
     return time.perf_counter(), time.clock_gettime(time.pthread_getcpuclockid(main_thread))
 
 
-def cancelled_after(seconds: float, drag: Drag) -> SimpleNamespace:
+def cancelled_after(seconds: float, drag: DragLoop) -> SimpleNamespace:
     """Drag until Esc; returns milliseconds of both clocks until it took effect, and until the end."""
     pressed: list[tuple[float, float]] = []
     timer = threading.Timer(seconds, lambda: pressed.append(clocks()))

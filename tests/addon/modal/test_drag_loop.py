@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
 from stiv_addon.modal.drag_loop import FINAL_SOLVES, DragLoop, Progress
-from stiv_addon.modal.request import Request
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pace import Pace
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect, State
 
 

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiv_addon.modal.axis_lock import AxisLock
-from stiv_addon.modal.request import Request
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.event_handling import CANCEL_KEYS, CONFIRM_KEYS, step
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.proportional import Proportional
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect, Phase, State
 
 SHIFT = frozenset({"shift"})

@@ -4,10 +4,10 @@
 from dataclasses import replace
 
 from stiv_addon.modal.axis_lock import AxisLock
-from stiv_addon.modal.request import Request
-from stiv_addon.modal.header_texts import header_text, status_text, result_text
+from stiv_addon.modal.header_texts import header_text, result_text, status_text
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.proportional import Proportional
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import State
 from stiv_addon.transform.translation import Translation
 

@@ -4,8 +4,8 @@ import pytest
 from views import typed
 
 from stiv_addon.modal.axis_lock import AxisLock
-from stiv_addon.modal.request import Request
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import State
 from stiv_addon.modal.typed_numbers import TypedValues
 from stiv_addon.transform.frame import Frame, orthonormal

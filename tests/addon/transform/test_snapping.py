@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from views import VIEWS, typed
 
 from stiv_addon.modal.axis_lock import AxisLock
-from stiv_addon.modal.request import Request
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import State
 from stiv_addon.transform.frame import Frame
 from stiv_addon.transform.rotation import requested_rotation
