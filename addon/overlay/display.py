@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay shows, and when: its draw handlers exist only while there is something to draw."""
+"""The current content of the overlay. Its draw handlers exist only while there is something to draw."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ def test_an_override_stops_at_the_wall_and_the_file_keeps_it(linked_set: Any, tm
     assert in_saved_file(tmp_path / "dressed.blend").scale.y == pytest.approx(2.0)
 
 
-def test_an_override_gives_way_to_what_is_pushed_into_it(linked_set: Any) -> None:
+def test_an_override_yields_to_an_object_pushed_into_it(linked_set: Any) -> None:
     overridden(linked_set, editable=True).location.x = 0.5
     only(next(ob for ob in bpy.context.scene.objects if ob.name != "Prop"))
     bpy.context.scene.stiv.responders = "unselected"

@@ -101,7 +101,7 @@ def test_weights_and_their_axes_come_from_an_edit_script(bar: Any, tmp_path: Pat
     assert now[28:] == pytest.approx(before[28:] + (0.5, 0, 0.25))
 
 
-def test_without_interference_objects_go_through_each_other(bar: Any) -> None:
+def test_without_collisions_objects_pass_through_each_other(bar: Any) -> None:
     bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0, 0, 3))
     bpy.context.scene.stiv.interference = False
     bpy.ops.stiv.move(value=(0.0, 0.0, -3.0))

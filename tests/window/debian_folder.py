@@ -96,7 +96,7 @@ def run(folder: Path, command: Sequence[str], *, quiet: bool = False, timeout: f
     try:
         code = process.wait(timeout)
     except BaseException:
-        os.killpg(process.pid, signal.SIGKILL)  # a display and its Blender would go on
+        os.killpg(process.pid, signal.SIGKILL)  # a display and its Blender would keep running
         process.wait()
         raise
     if code:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What else happens during a drag: deletion, another mode, saving, an exception."""
+"""Disturbances of a drag: deletion, another mode, saving, an exception."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def mode_changed(window: Window) -> Steps:
 
 
 def saved_during_drag(window: Window) -> Steps:
-    """What is saved during a drag is the last accepted state."""
+    """A file saved during a drag holds the last accepted state."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel(INTO_WALL))

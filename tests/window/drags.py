@@ -133,7 +133,7 @@ def scale_at_wall(window: Window) -> Steps:
 
 
 def keys_are_free(window: Window) -> Steps:
-    """No key of the extension is taken in Blender's default keymap of these modes and their windows."""
+    """Blender's default keymap of these modes and their windows uses no key of the extension."""
     configurations = bpy.context.window_manager.keyconfigs
     ours = [item for keymap in configurations.addon.keymaps for item in keymap.keymap_items if "stiv" in item.idname]
     assert len(ours) == 12, [item.idname for item in ours]

@@ -64,8 +64,8 @@ class Driver:
             self.save(name)  # in case it takes Blender down
             self.results["scenarios"][name] = yield from self.play_one(scenario)
             failure = self.results["scenarios"][name].strip()
-            told = f"FAILED: {failure.splitlines()[-1]}" if failure else "passed"
-            print(f"{name}: {time.time() - started:.1f} s, {told}", flush=True)
+            outcome = f"FAILED: {failure.splitlines()[-1]}" if failure else "passed"
+            print(f"{name}: {time.time() - started:.1f} s, {outcome}", flush=True)
             self.save()
         self.results["complete"] = True
 
@@ -84,7 +84,7 @@ class Driver:
         return failure or self.window.leftovers()
 
     def save(self, running: str = "") -> None:
-        """Write what is known so far, so that a crash tells where it happened."""
+        """Write the results so far, so that a crash can be located."""
         self.path.write_text(json.dumps(self.results | {"running": running}))
 
     def tick(self) -> float:

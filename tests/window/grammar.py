@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The grammar of a drag, gesture by gesture: kinds, numbers, axes, precision, views, repetition, who gives way."""
+"""The grammar of a drag, gesture by gesture: kinds, numbers, axes, precision, views, repetition, yielding sides."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from simulation import Steps, Window
 
 
 def kinds_switch(window: Window) -> Steps:
-    """G, R and S within one drag go on from the start; one undo takes it back, under the name of the last kind."""
+    """G, R and S within one drag restart it; one undo reverts it, under the name of the last kind."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((0.3, 0.8, 0.0)))
@@ -102,7 +102,7 @@ def precision(window: Window) -> Steps:
 
 
 def view_navigation(window: Window) -> Steps:
-    """The wheel zooms and the middle button turns the view during a drag, which goes on with the mouse."""
+    """The wheel zooms and the middle button turns the view during a drag, which continues with the mouse."""
     yield from prepared(window, scenes.add_box, "Box")
     view = window.area.spaces.active.region_3d
     yield from start(window)
@@ -161,8 +161,8 @@ def interference_switched(window: Window) -> Steps:
     expect_free(window)
 
 
-def others_give_way(window: Window) -> Steps:
-    """W: the wall, which may move, gives way instead of the box."""
+def others_yield(window: Window) -> Steps:
+    """W: the wall, which may move, yields instead of the box."""
     yield from prepared(window, scenes.add_box, "Box")
     bpy.data.objects["Wall"].stiv.role = "rigid"
     yield from start(window)
@@ -183,6 +183,6 @@ _ALL = (
     view_navigation,
     repeat_last,
     interference_switched,
-    others_give_way,
+    others_yield,
 )
 GRAMMAR = {scenario.__name__: scenario for scenario in _ALL}

@@ -108,7 +108,7 @@ def guard_cancelled_tool(window: Window) -> Steps:
 
 
 def guard_redo_panel(window: Window) -> Steps:
-    """The redo panel runs a tool again with other values: corrected anew, still one step."""
+    """The redo panel runs a tool again with other values: corrected again, still one step."""
     yield from guarded(window, scenes.add_box, "Box")
     before = steps()
     yield from with_tool(window, "G", (0.7, 0.0, 0.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long a drag takes in the window, on two scenes; only when named, since nothing is asserted."""
+"""The times of a drag in the window, on two scenes; runs only by name, since it asserts nothing."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def now() -> Any:
 class Stopwatch:
     """Adds up the time spent in methods, since the last `lap`, in milliseconds: of the clock, and of this thread alone.
 
-    The second says what is asked for where other programs keep the processor busy.
+    The second measures the work itself while other programs use the processor.
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class Stopwatch:
         setattr(owner, name, timed)
 
     def lap(self) -> dict[str, Any]:
-        """What was spent, and start again."""
+        """Return the time spent, and restart."""
         found = dict(self.spent)
         self.spent.clear()
         return found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scenarios share: a scene to begin with, the gestures around a drag, and what is expected after it."""
+"""Shared by the scenarios: scenes, gestures of a drag, and expectations after it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def prepared(window: Window, build: object, active: str, mode: str = "OBJECT") -
 
 
 def select_right_half() -> None:
-    """In Edit Mode: what lies at x > 0."""
+    """In Edit Mode: the vertices at x > 0."""
     data = bpy.context.object.data
     if bpy.context.object.type == "MESH":
         content = bmesh.from_edit_mesh(data)

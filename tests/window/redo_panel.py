@@ -13,7 +13,7 @@ FIRST_NUMBER = (222, -51)  # pixels from the mouse to where the panel has it
 
 
 def redo_panel(window: Window) -> Steps:
-    """What the redo panel recomputes is what the drag came to, to the last bit, around the end of the wall too."""
+    """The redo panel reproduces the drag to the last bit, also around the end of the wall."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     for place in ((0.0, 2.8, 0.0), (2.9, 2.8, 0.0), (2.9, 0.4, 0.0)):
@@ -33,7 +33,7 @@ def redo_panel(window: Window) -> Steps:
 
 
 def redo_panel_by_mouse(window: Window) -> Steps:
-    """F9, a click into the first number, another one typed: solved anew from the start, still one undo step."""
+    """F9, a click into the first number, another one typed: solved again from the start, still one undo step."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((0.7, 0.0, 0.0)))

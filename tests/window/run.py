@@ -85,7 +85,7 @@ def arguments() -> argparse.Namespace:
 
 
 def built_extension(release: str) -> Path:
-    """The extension's zip for the Python of a release, out of what `make` compiled."""
+    """The extension's zip for the Python of a release, from the modules that `make` compiled."""
     command = [ROOT / "tools/window_extension.sh", sys.executable, release, f"build/window/extension-{release}"]
     done = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
     return ROOT / done.stdout.split()[-1]

@@ -12,7 +12,7 @@ import mathutils
 
 WALL_FACE = 1.9
 WALL_THICKNESS = 0.2
-HALF = 0.5  # of what is dragged, along x
+HALF = 0.5  # half size of the dragged object along x
 
 
 def clear() -> None:

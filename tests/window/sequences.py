@@ -64,9 +64,9 @@ class Sequence:
             self.expect_free("during the drag")
         ended_by = yield from self.end()
         self.expect_free("at the end")
-        assert not self.window.leftovers(), self.told(self.window.leftovers())
+        assert not self.window.leftovers(), self.described(self.window.leftovers())
         if ended_by in ("ESC", "RIGHTMOUSE") and not self.disturbed:
-            assert self.state() == before, self.told("cancelling did not put everything back")
+            assert self.state() == before, self.described("cancelling did not put everything back")
 
     def act(self) -> None:
         """One event, sometimes one from outside of the drag."""
@@ -93,7 +93,7 @@ class Sequence:
         self.window.key(key, shift=shift)
 
     def disturb(self) -> None:
-        """What a user or a script can do besides."""
+        """Other actions of a user or a script."""
         action = self.random.choice((self.undo_key, self.save, self.delete_wall, self.delete_dragged, self.leave_mode))
         self.log.append(action.__name__)
         action()
@@ -113,7 +113,7 @@ class Sequence:
         self.remove("Wall")
 
     def delete_dragged(self) -> None:
-        """What is dragged goes."""
+        """Delete the dragged object."""
         self.disturbed = True
         if bpy.context.mode == "OBJECT":
             self.remove(self.scene[1])
@@ -131,7 +131,7 @@ class Sequence:
                 bpy.ops.object.mode_set(mode="OBJECT")
 
     def end(self) -> Steps:
-        """End the drag, if it still goes on; a text that is no number can only be left by cancelling."""
+        """End the drag if it still runs; with an invalid number, only cancelling ends it."""
         last = ""
         for key in (self.random.choice(ENDS), "ESC", "ESC"):
             if not self.window.dragging():
@@ -140,7 +140,7 @@ class Sequence:
             self.log.append(key)
             self.window.key(key)
             yield from self.window.settle(2)
-        assert not self.window.dragging(), self.told("the drag does not end")
+        assert not self.window.dragging(), self.described("the drag does not end")
         return last
 
     def expect_free(self, when: str) -> None:
@@ -148,10 +148,10 @@ class Sequence:
         from stiv.blender import check_scene
 
         found = check_scene(bpy.context)
-        assert not found.pairs, self.told(f"{len(found.pairs)} intersections {when}")
+        assert not found.pairs, self.described(f"{len(found.pairs)} intersections {when}")
 
     def state(self) -> list[object]:
-        """Placements, and the shape of what is deformed."""
+        """Placements, and the shapes of deformed objects."""
         graph = bpy.context.evaluated_depsgraph_get()
         found: list[object] = []
         for thing in sorted(bpy.data.objects, key=lambda each: each.name):
@@ -163,7 +163,7 @@ class Sequence:
                 evaluated.to_mesh_clear()
         return found
 
-    def told(self, what: str) -> str:
+    def described(self, what: str) -> str:
         """A failure with what led to it."""
         return f"{what}, in {self.scene[1]} after: {', '.join(self.log)}"
 
@@ -176,7 +176,7 @@ def prepared_quickly(window: Window, build: Callable[[], object], active: str, m
 
 
 def random_sequences(window: Window) -> Steps:
-    """COUNT sequences, each by its number, which is told before it begins: it may take Blender down."""
+    """COUNT sequences, each by its number, printed before it begins, since it may crash Blender."""
     failures = []
     for number in range(FIRST, FIRST + COUNT):
         print(f"sequence {number}", end=" ", flush=True)
@@ -187,13 +187,13 @@ def random_sequences(window: Window) -> Steps:
             failures.append(f"sequence {number}: {failure}")
             window.picture(f"failed_sequence_{number}")
             yield from ended_by_force(window)
-        told = failures[-1] if failures and failures[-1].startswith(f"sequence {number}:") else "passed"
-        print(f"{told}, {time.monotonic() - begun:.1f} s", flush=True)
+        outcome = failures[-1] if failures and failures[-1].startswith(f"sequence {number}:") else "passed"
+        print(f"{outcome}, {time.monotonic() - begun:.1f} s", flush=True)
     assert not failures, "\n".join(failures)
 
 
 def ended_by_force(window: Window) -> Steps:
-    """After a failure: no drag goes on into the next sequence."""
+    """After a failure: no drag continues into the next sequence."""
     for _ in range(3):
         window.key("ESC")
         yield from window.settle()

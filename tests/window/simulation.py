@@ -41,7 +41,7 @@ class Window:
         self.drawn_at = time.perf_counter()
 
     def _watch_interface(self) -> None:
-        """Count what a drag adds to Blender's window_io and takes away: Blender itself cannot be asked."""
+        """Count the timers and texts that a drag adds and removes, which Blender does not list."""
         window_io = extension.module("operators.window_io")
         self.timers, self.texts = 0, False
         start_timer, stop_timer, show, clear = (
@@ -67,7 +67,7 @@ class Window:
         window_io.start_timer, window_io.stop_timer, window_io.show, window_io.clear = started, stopped, shown, cleared
 
     def leftovers(self) -> str:
-        """What a drag left behind, empty if nothing."""
+        """Leftovers of a drag, empty if none."""
         left = {"a running operator": self.dragging(), "a timer": self.timers != 0, "a text in the header": self.texts}
         return ", ".join(name for name, is_left in left.items() if is_left)
 

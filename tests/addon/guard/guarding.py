@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of the live guard share: a scene that is watched, and looking at it. Handlers run here, timers do not."""
+"""Shared by the tests of the live guard: a watched scene, and a call in place of the timer, which does not run here."""
 
 import time
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ def watched_scene() -> Iterator[None]:
 
 
 def look() -> None:
-    """What the timer would do, until there is nothing to do."""
+    """Call the timer's function until it is done."""
     deadline = time.monotonic() + 3 * QUIET_TIME + 20
     while watcher.observe_and_act() is not None:
         assert time.monotonic() < deadline, "the guard never settles"

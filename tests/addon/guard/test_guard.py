@@ -36,7 +36,7 @@ def test_blenders_own_move_is_corrected_and_undone_in_one_step() -> None:
     expect_free()
 
 
-def test_what_meets_nothing_keeps_its_numbers() -> None:
+def test_a_clear_result_keeps_its_numbers() -> None:
     move(1 / 3)
     expected = tuple(box().location)
     look()
@@ -83,7 +83,7 @@ def test_sculpting_is_corrected_and_leaves_the_stack_alone() -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def test_what_may_intersect_is_excluded_and_everything_else_is_guarded() -> None:
+def test_excluded_pairs_may_intersect_and_all_others_are_guarded() -> None:
     bpy.context.scene.stiv.live_guard = False
     bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 2.5))  # stands in the top of the wall
     bpy.context.scene.stiv.live_guard = True
@@ -101,7 +101,7 @@ def test_what_may_intersect_is_excluded_and_everything_else_is_guarded() -> None
     assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
 
 
-def test_a_changed_structure_is_accepted_if_free_and_told_if_not() -> None:
+def test_changed_topology_is_accepted_if_clear_and_reported_if_not() -> None:
     bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, location=(0, 8, 0))
     look()
     assert watcher.problem() is None
@@ -122,7 +122,7 @@ def test_what_our_own_operators_write_is_not_corrected_again() -> None:
     assert names_of_steps() == steps
 
 
-def test_a_cage_that_shows_a_loop_subdivision_is_corrected_by_what_is_seen() -> None:
+def test_a_cage_is_corrected_by_its_loop_subdivision() -> None:
     bpy.context.scene.stiv.live_guard = False
     bpy.data.objects.remove(box())
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1)

@@ -38,7 +38,7 @@ def test_nothing_changed_is_nothing_to_do_and_the_step_is_remembered() -> None:
         (WATCHING, replace(MOVED, frame_changed=True)),
     ],
 )
-def test_what_has_no_state_to_go_on_from_is_tested_and_not_written(guard: Guard, seen: Observation) -> None:
+def test_without_an_accepted_state_the_scene_is_tested_and_not_written(guard: Guard, seen: Observation) -> None:
     assert action(guard, seen) is Action.ACCEPT
 
 
@@ -71,7 +71,7 @@ def test_a_change_without_an_undo_step_waits_until_it_is_still() -> None:
     assert action(guard, replace(seen, time=10.0 + QUIET_TIME)) is Action.PUSH
 
 
-def test_a_number_field_that_goes_on_is_waited_for_and_then_replaced() -> None:
+def test_a_dragged_number_field_is_corrected_at_its_end_in_its_own_step() -> None:
     seen = replace(MOVED, step=BEFORE)
     guard, _ = decide(WATCHING, seen)
     guard, what = decide(guard, replace(seen, time=10.0 + QUIET_TIME, updates=6))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the live guard cannot correct: it says what intersects, counts it, and one operator goes back."""
+"""Results that the live guard cannot correct: it reports and counts them, and an operator restores the clear state."""
 
 from collections.abc import Iterator
 from types import SimpleNamespace

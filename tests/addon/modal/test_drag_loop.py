@@ -39,7 +39,7 @@ def test_motions_are_solved_for_the_latest_only() -> None:
     assert edit.calls == ["drag", "write"]
 
 
-def test_confirm_solves_what_is_left_settles_and_writes() -> None:
+def test_confirming_solves_for_the_last_goal_settles_and_writes() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(30))
@@ -151,7 +151,7 @@ def test_a_goal_in_hand_is_left_for_another_request(key: str) -> None:
     assert edit.goals == [0.5, 0.7]
 
 
-def test_what_is_left_at_the_confirmation_is_done_in_slices() -> None:
+def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> None:
     edit = FakeEdit(statuses=["budget", "budget", "corrected"])
     drag = new_drag(edit)
     drag.handle(move_to(50))
@@ -167,7 +167,7 @@ def test_what_never_ends_is_confirmed_all_the_same() -> None:
     assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == FINAL_SOLVES
 
 
-def test_a_refused_value_is_told_and_can_be_corrected() -> None:
+def test_an_invalid_value_is_reported_and_can_be_corrected() -> None:
     edit = FakeEdit(failing={"drag": ValueError("scale is zero")})
     drag = new_drag(edit)
     drag.handle(Event("ZERO"))
@@ -220,7 +220,7 @@ def test_another_request_begins_again_from_the_start() -> None:
     assert edit.requests == [Request(), Request("rotate", "unselected")]
 
 
-def test_a_refused_request_is_told_and_the_old_one_goes_on() -> None:
+def test_a_rejected_request_is_reported_and_the_old_edit_continues() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(70))

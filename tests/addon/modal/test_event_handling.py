@@ -56,7 +56,7 @@ def test_a_motion_asks_for_an_update_with_the_latest_place() -> None:
     assert (state.pointer.effective, effect) == ((130.0, 90.0), Effect.UPDATE)
 
 
-def test_a_typed_number_outlives_motions_and_gives_way_when_deleted() -> None:
+def test_a_typed_number_overrides_motions_until_it_is_deleted() -> None:
     typed = after(Event("TWO"), Event("MINUS"), Event("PERIOD"), Event("FIVE"))
     assert typed.typed.value(0, float) == -2.5
     moved, effect = step(typed, Event("MOUSEMOVE", "NOTHING", (500.0, 0.0)))
@@ -80,7 +80,7 @@ def test_other_events_change_nothing(key: str) -> None:
 
 
 @pytest.mark.parametrize(("key", "kind"), [("G", "move"), ("R", "rotate"), ("S", "scale")])
-def test_another_kind_goes_on_with_lock_number_and_pointer(key: str, kind: str) -> None:
+def test_another_kind_keeps_lock_number_and_pointer(key: str, kind: str) -> None:
     before = after(Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)), Event("X"), Event("TWO"))
     for state, _ in (step(replace(before, request=Request(other)), Event(key)) for other in ("move", "rotate")):
         assert state == replace(before, request=Request(kind))

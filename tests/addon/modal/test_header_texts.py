@@ -29,8 +29,8 @@ def test_the_header_names_what_is_not_as_usual() -> None:
         PLAIN, request=Request("move", "all"), precise=True, snap=True, proportional=proportional,
         axis_lock=AxisLock(0),
     )  # fmt: skip
-    told = header_text(state, "Move", "", ["a note"], ("GLOBAL", "LOCAL"))
-    assert told == (
+    header = header_text(state, "Move", "", ["a note"], ("GLOBAL", "LOCAL"))
+    assert header == (
         "Move  along Global X  proportional 1.5 Inverse Square connected  precision  snap  yields: both  |  a note"
     )
 

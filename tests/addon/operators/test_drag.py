@@ -61,7 +61,7 @@ class Probe(DragOperator):
 
 
 class Context(SimpleNamespace):
-    """What the adapter asks of Blender's context."""
+    """The members of Blender's context that the operator uses."""
 
     def __init__(self) -> None:
         self.area, self.timers, self.modals = Area(), [], []

@@ -25,14 +25,14 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 class Motion(SimpleNamespace):
-    """Stands for that of `stiv.blender`."""
+    """Replaces that of `stiv.blender`."""
 
     def __init__(self, matrix: Any, pivot: Any, individual: bool, influence: Any, rotation: Any) -> None:
         super().__init__(matrix=matrix, pivot=pivot, individual=individual, influence=influence, rotation=rotation)
 
 
 class RecordingEdit:
-    """Stands for BlenderEdit: moves the active object as told, unless it should fail."""
+    """Replaces BlenderEdit: moves the active object to its goal, unless it should fail."""
 
     begun: Any = None
     summary = SimpleNamespace(warnings=())
@@ -109,7 +109,7 @@ def test_rotate_turns_about_the_cursor_when_the_scene_says_so() -> None:
     np.testing.assert_allclose(bpy.context.active_object.location, (-2.0, 1.0, 3.0), atol=1e-6)
 
 
-def test_scale_uses_local_axes_when_told(scene: Any) -> None:
+def test_scale_uses_local_axes_on_request(scene: Any) -> None:
     scene.rotation_euler.z = np.pi / 2.0
     bpy.context.view_layer.update()
     assert bpy.ops.stiv.scale(value=(2.0, 1.0, 1.0), orientation="LOCAL") == {"FINISHED"}

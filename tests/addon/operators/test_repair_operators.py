@@ -128,9 +128,9 @@ def test_check_selects_the_faces_that_meet(levels: int, mode: str) -> None:
         assert {ob.name for ob in bpy.context.selected_objects} == {"Grid", "Spike"}
     assert [p.select for p in grid.data.polygons] == [False, False, False, True]
     assert [p.select for p in spike.data.polygons] == [True, False]
-    told = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert told[0].endswith("in 2 objects, 2 faces selected")
-    assert any(line.startswith("Grid, Spike: ") for line in told)
+    lines = bpy.context.window_manager.stiv_check.summary.splitlines()
+    assert lines[0].endswith("in 2 objects, 2 faces selected")
+    assert any(line.startswith("Grid, Spike: ") for line in lines)
 
 
 def test_a_worker_solves_beside_blender_and_brings_errors_back() -> None:
@@ -240,7 +240,7 @@ def test_blender_may_end_it_and_an_object_may_be_gone() -> None:
     assert 'object "Tube" is gone' in operator.reported[-1][1] and context.window_manager.timers == 0
 
 
-def test_excluded_intersections_let_edits_go_on_until_they_are_cleared() -> None:
+def test_excluded_intersections_allow_edits_until_they_are_cleared() -> None:
     add("Grid", *GRID, select=False)
     spike = add("Spike", *SPIKE)
     with pytest.raises(RuntimeError, match="intersect"):
@@ -259,24 +259,24 @@ def test_excluded_intersections_let_edits_go_on_until_they_are_cleared() -> None
         bpy.ops.stiv.move(value=(0, 0, 0.01))
 
 
-def test_stale_exclusions_are_told() -> None:
+def test_stale_exclusions_are_reported() -> None:
     grid, _ = add("Grid", *GRID, select=False), add("Spike", *SPIKE)
     bpy.ops.stiv.exclude_intersections()
     grid.location.z = 5.0  # apart again, and with other faces
     grid.modifiers.new("Finer", "SUBSURF").levels = 1
     bpy.context.view_layer.update()
     assert bpy.ops.stiv.move(value=(0, 0, 0.01)) == {"FINISHED"}
-    told = bpy.context.window_manager.stiv_check.summary
-    assert told == 'excluded pairs are dropped (1): the faces of "Grid" have changed'
+    summary = bpy.context.window_manager.stiv_check.summary
+    assert summary == 'excluded pairs are dropped (1): the faces of "Grid" have changed'
 
 
-def test_check_reads_out_the_least_distance() -> None:
+def test_the_check_reports_the_clearance() -> None:
     add("Grid", *GRID, select=False)
     add("Apart", *SPIKE, location=(0, 0, 1.25))
     assert bpy.ops.stiv.check() == {"FINISHED"}
-    told = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert told[:2] == ["No intersections", "Grid and Apart: clearance 0.25"]
+    lines = bpy.context.window_manager.stiv_check.summary.splitlines()
+    assert lines[:2] == ["No intersections", "Grid and Apart: clearance 0.25"]
     bpy.data.objects.remove(bpy.data.objects["Apart"])
     assert bpy.ops.stiv.check() == {"FINISHED"}
-    told = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert told[0] == "No intersections" and told[1].startswith("Tested 1 object, ")
+    lines = bpy.context.window_manager.stiv_check.summary.splitlines()
+    assert lines[0] == "No intersections" and lines[1].startswith("Tested 1 object, ")

@@ -53,7 +53,7 @@ def ball_in_lattice() -> Any:
 
 
 def edit_right_half() -> None:
-    """Edit Mode with what lies at x > 0 selected."""
+    """Edit Mode with the vertices at x > 0 selected."""
     bpy.ops.object.mode_set(mode="EDIT")
     data = bpy.context.object.data
     if bpy.context.object.type == "LATTICE":
@@ -122,7 +122,7 @@ def test_points_of_a_lattice_are_pushed_against_the_wall_in_edit_mode() -> None:
     expect_free()
 
 
-def test_a_lattice_responds_by_its_points_in_object_mode_when_told() -> None:
+def test_a_lattice_responds_with_its_points_in_object_mode_on_request() -> None:
     ball_in_lattice()
     bpy.context.scene.stiv.object_response = "deform"
     bpy.ops.stiv.move(value=(2.5, 0.0, 0.0))
@@ -185,13 +185,13 @@ def test_the_check_finds_and_selects_what_intersects() -> None:
     assert "4 intersecting face pairs" in summary and "Wall" in summary and "Far" not in summary
 
 
-def test_the_check_says_what_took_part(wall: Any) -> None:
+def test_the_check_reports_tested_and_untested_objects(wall: Any) -> None:
     box("Hidden", (9.0, 0.0, 0.0), (0.5, 0.5, 0.5)).hide_set(True)
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.stiv.check()
-    told = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
+    line = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
     triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
-    assert told == f'Tested 2 objects, {triangles} triangles; not tested, hidden: 1 ("Hidden")'
+    assert line == f'Tested 2 objects, {triangles} triangles; not tested, hidden: 1 ("Hidden")'
 
 
 @pytest.mark.parametrize("constraints", ["per_patch", "single"])

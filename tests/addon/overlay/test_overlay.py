@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay holds, and that nothing of it stays; drawing itself is looked at in a window."""
+"""The content of the overlay and its removal; tests in a window look at the drawing."""
 
 from types import SimpleNamespace
 

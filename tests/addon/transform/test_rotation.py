@@ -31,7 +31,7 @@ def turned(view: View, quarter_turns: int, constraint: AxisLock) -> np.ndarray:
 
 @pytest.mark.parametrize("view", [VIEWS["top"], VIEWS["corner parallel"], looking((6, -5, 4), tuple(PIVOT))])
 @pytest.mark.parametrize(("quarters", "sign"), [(-1, -1.0), (1, 1.0), (5, 1.0)])
-def test_a_free_turn_turns_what_is_seen_with_the_pointer(view: View, quarters: int, sign: float) -> None:
+def test_a_rotation_without_a_lock_turns_the_image_with_the_pointer(view: View, quarters: int, sign: float) -> None:
     x, y = view.project(PIVOT)
     right, up = (view.at_depth_of(pixel, PIVOT) - PIVOT for pixel in [(x + 100.0, y), (x, y + 100.0)])
     matrix = turned(view, quarters, AxisLock())

@@ -89,7 +89,9 @@ def test_ctrl_turns_snapping_round(snap: bool, ctrl: bool, kind: str, expected: 
         ({"INCREMENT"}, (1.9, 1.9, 1.0), None),
     ],
 )
-def test_what_is_small_is_taken_first_if_it_is_near(elements: set, place: tuple, expected: tuple | None) -> None:
+def test_the_smallest_element_near_the_pointer_wins(
+    elements: set, place: tuple, expected: tuple | None
+) -> None:
     pixel = VIEW.project(np.array(place))
     target = Snap(frozenset(elements), cast=lambda at: seen_at(place)).target(pixel, VIEW)
     if expected is None:
@@ -100,7 +102,7 @@ def test_what_is_small_is_taken_first_if_it_is_near(elements: set, place: tuple,
 
 @pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
 @given(pixel=st.tuples(st.floats(200, 600), st.floats(150, 450)))
-def test_a_target_is_no_farther_than_any_corner_within_reach(view: View, pixel: tuple) -> None:
+def test_a_target_is_the_closest_corner_within_reach(view: View, pixel: tuple) -> None:
     """Against brute force over the corners."""
     target = Snap(frozenset({"VERTEX"}), cast=lambda at: seen_at((1, 1, 1))).target(pixel, view)
     distances = [math.dist(view.project(corner), pixel) for corner in CORNERS]
