@@ -45,6 +45,6 @@ def test_the_defaults_of_the_interface_are_those_of_the_package(name: str) -> No
 
 
 def test_a_drag_cycles_through_the_responders() -> None:
-    from stiv_addon.modal.edit import RESPONDERS
+    from stiv_addon.modal.request import RESPONDERS
 
     assert RESPONDERS == choices.RESPONDERS
