@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Each target does its own set-up. A finished step leaves a file under build/, so that nothing is done twice.
+# Each target does its own set-up. A finished step leaves a file under build/, so that it does not run twice.
 
 PYTHON := $(shell tools/choose_python.sh)
 BLENDERS := $(shell $(PYTHON) tools/blender_versions.py)
@@ -43,7 +43,7 @@ test-native: build/stiv_tests ## Run the core's own tests
 test-sanitizers: build/stiv_tests_asan ## Run the core's own tests under address and undefined-behaviour sanitizers
 	build/venv/bin/python tools/run_tests.py sanitizers
 
-test-threads: build/stiv_thread_tests ## Run the tests of what works on several threads under the thread sanitizer
+test-threads: build/stiv_thread_tests ## Run the tests of multithreaded code under the thread sanitizer
 	build/venv/bin/python tools/run_tests.py threads
 
 test-python: build/venv/stiv build/venv/lint ## Run the Python tests that need no Blender
@@ -55,10 +55,10 @@ test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blende
 test-window: $(WHEEL) ## Drive the installed zip in a real window (needs root and debootstrap); WINDOW_RELEASE=sid: in Blender 5.2
 	build/venv/bin/python tests/window/run.py --release $(WINDOW_RELEASE) --sequences $(WINDOW_SEQUENCES)
 
-lint: build/venv/lint ## Check format, style, types, spelling and documents
+lint: build/venv/lint ## Check format, style, types, spelling, and the wording of documents and code
 	build/venv/bin/python tools/run_tests.py lint
 
-extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate it, try it; BLENDER=blender: install it there
+extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate and test it; BLENDER=blender: install it there
 	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist >build/extension-all
 	$(ZIP_VENV)/bin/python tools/install_extension.py "$$(cat build/extension-all)"
 	build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_extension_wheels.py
@@ -67,12 +67,12 @@ ifdef BLENDER
 	build/venv/bin/python tools/install_extension.py "$$(cat build/extension-all)" --blender "$(BLENDER)"
 endif
 
-bench: build/venv/bench ## Run every benchmark with its default settings, beside the peers from PyPI
+bench: build/venv/bench ## Run every benchmark with its default settings, and the compared libraries from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done
 
-peers: build/venv/bench build/cgal ## Install what benchmarks race: ipctk and libigl from PyPI, CGAL from Debian
+peers: build/venv/bench build/cgal ## Install the libraries that benchmarks compare with: ipctk and libigl from PyPI, CGAL from Debian
 
-fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, static test, edits and readers of files: make fuzz FUZZ_SECONDS=600 (each; default 30)
+fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, the static test, edits and file readers: make fuzz FUZZ_SECONDS=600 (each; default 30)
 	tools/install_debian_packages.sh tools/debian_packages_fuzz.txt
 	cmake --preset fuzz -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
 	cmake --build --preset fuzz
@@ -96,7 +96,7 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long forms: all under the thread sanitizer, killed batches, random edits and every path they take, cancelled edits, random events in a window, soak, memory
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, random events in a window, soak, memory
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
@@ -117,7 +117,7 @@ docs: ## Make the API reference of the core from its headers: build/docs/html
 clean: ## Remove everything that was built or downloaded
 	rm -rf build dist
 
-# Set-up, one step a rule.
+# Set-up, one rule per step.
 
 build/debian: tools/debian_packages.txt tools/install_debian_packages.sh
 	tools/install_debian_packages.sh tools/debian_packages.txt
@@ -153,7 +153,7 @@ build/venv/portable: tools/requirements/portable.txt build/venv/ready
 	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/portable.txt
 	touch $@
 
-# With the wheel that all tests use, for the Python here alone; `make extension` compiles for all, and for old systems.
+# Uses the wheel of the tests, for this Python only; `make extension` compiles for all versions, and for old systems.
 $(EXTENSION): $(WHEEL) $(EXTENSION_TOOLS)
 	build/venv/bin/python tools/build_extension.py build/extension-here build/wheel/*.whl >$@.new
 	mv $@.new $@
@@ -176,7 +176,7 @@ build/stiv_thread_tests: $(NATIVE_SOURCES) $(OPENSUBDIV)
 	cmake --build --preset tsan --target stiv_thread_tests
 	touch $@
 
-# Each finds the package where a user's Blender would: in what it unpacked when the zip was installed.
+# Each finds the package like a user's Blender: in the files that Blender unpacked from the zip.
 build/venv-blender-%/ready: $(EXTENSION) tools/requirements/test.txt tools/install_extension.py
 	tools/make_venv.sh $(PYTHON) $(@D) bpy==$* -r tools/requirements/test.txt
 	$(@D)/bin/python tools/install_extension.py "$$(cat $(EXTENSION))"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Turns a fixture's plain data into a Blender scene: objects, modifiers, materials, camera and light.
+"""Convert a fixture's plain data into a Blender scene: objects, modifiers, materials, camera and light.
 
 Loop subdivision needs the add-on to be registered.
 """
@@ -24,7 +24,7 @@ from blend_fixtures.scenes.shape import Shape
 
 
 def build_scene(fixture: Fixture) -> None:
-    """Replaces the open file by an empty one that holds the fixture."""
+    """Replace the open file with a new one that contains the fixture."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     for empty in fixture.empties:
         _add_empty(empty)
@@ -109,7 +109,7 @@ def _material(item: Material) -> bpy.types.Material:
     if known:
         return known
     material = bpy.data.materials.new(item.name)
-    material.diffuse_color, material.roughness = item.color, item.roughness  # what Workbench shows
+    material.diffuse_color, material.roughness = item.color, item.roughness  # the colour that Workbench shows
     material.use_nodes = True
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = (*item.color[:3], 1.0)

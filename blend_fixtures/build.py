@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes every fixture as a .blend file with its edit script beside it; those of the paper's figures into figures/.
+"""Write every fixture as a .blend file with its edit script; those of the paper's figures go into figures/.
 
     python blend_fixtures/build.py [NAME ...] [--output FOLDER]
 
-Needs Blender as a Python module, and the package `stiv` with its add-on. Use the oldest supported Blender (4.2): every
-later version opens what it writes.
+Needs Blender as a Python module, and the package `stiv` with its add-on. Use the oldest supported Blender
+(4.2): every later version opens what it writes.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from blend_fixtures.scenes.sessions.figure_fixtures import figure_fixtures  # no
 
 
 def edit_script(fixture: Fixture) -> str:
-    """The fixture's steps as the text of its .edits.json."""
+    """The text of the fixture's .edits.json."""
     head = {"schema": "stiv-edits", "version": 1, "description": fixture.summary, "settings": fixture.settings}
     lines = ",\n".join("    " + json.dumps(step) for step in fixture.steps)
     fields = "".join(f"  {json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
@@ -40,9 +40,11 @@ def edit_script(fixture: Fixture) -> str:
 
 
 def write(fixture: Fixture, folder: Path) -> None:
-    """Writes NAME.blend and NAME.edits.json into `folder`."""
+    """Write NAME.blend and NAME.edits.json into `folder`."""
     build_scene(fixture)
-    with tempfile.TemporaryDirectory() as scratch:  # a .blend keeps the path it was saved under: none of a home folder
+    with (
+        tempfile.TemporaryDirectory() as scratch
+    ):  # a .blend stores the path of saving, which must not be in a home folder
         saved = Path(scratch) / f"{fixture.name}.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(saved), compress=True, check_existing=False)
         shutil.copyfile(saved, folder / saved.name)
@@ -52,12 +54,12 @@ def write(fixture: Fixture, folder: Path) -> None:
 
 
 def register_addon() -> None:
-    """Has the add-on's operators and settings, which some fixtures keep."""
+    """Register the add-on, whose settings some fixtures store."""
     importlib.import_module("stiv_addon").register()
 
 
 def main() -> None:
-    """Builds the fixtures named, or all."""
+    """Build the named fixtures, or all."""
     parser = argparse.ArgumentParser(description="Write the fixtures' .blend files and edit scripts.")
     parser.add_argument("names", nargs="*", help="fixtures to write (default: all)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder to write to")

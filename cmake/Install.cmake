@@ -1,5 +1,5 @@
-# `cmake --install`: the static library with OpenSubdiv inside, its headers, licenses, and what find_package(stiv) reads.
-# The wheel, which is made by a full install of this same build, leaves them out.
+# `cmake --install`: the static library including OpenSubdiv, its headers, licenses, and the files for
+# find_package(stiv). The wheel, made by a full install of the same build, omits them.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 

@@ -1,6 +1,6 @@
-# The parts of OpenSubdiv that evaluate subdivision surfaces on the processor (far, with vtr and sdc below it), compiled
-# into the core without any visible symbol: Blender loads an OpenSubdiv of its own, which must not meet this one.
-# STIV_OPENSUBDIV_SOURCE is the folder of its source; tools/opensubdiv_source.sh gets it from Debian.
+# The parts of OpenSubdiv that evaluate subdivision surfaces on the CPU (far, with vtr and sdc), compiled into the core
+# without visible symbols: Blender loads its own OpenSubdiv, which must not interfere with this one.
+# STIV_OPENSUBDIV_SOURCE is the folder of its source; tools/opensubdiv_source.sh downloads it from Debian.
 
 if(NOT EXISTS "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/stencilTable.h")
   message(FATAL_ERROR
@@ -24,9 +24,9 @@ set_target_properties(stiv_opensubdiv PROPERTIES
   CXX_VISIBILITY_PRESET hidden
   VISIBILITY_INLINES_HIDDEN ON
   EXPORT_COMPILE_COMMANDS OFF)
-# -w for these files only: their warnings are not ours to mend. Contraction is off as in our own code.
+# -w only for these files, whose warnings are not ours to fix. Contraction is off as in our own code.
 target_compile_options(stiv_opensubdiv PRIVATE -w -ffp-contract=off)
 if(STIV_SANITIZE)
-  # It takes addresses of elements of empty vectors, harmlessly, which these checks end the program for.
+  # These checks would end the program, because it takes addresses of elements of empty vectors, which is harmless.
   target_compile_options(stiv_opensubdiv PRIVATE -fno-sanitize=undefined -U_GLIBCXX_ASSERTIONS)
 endif()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Toolchain for arm64 on a machine of another architecture: Debian's cross compiler, and Debian's emulator for what it
-# makes. The libraries that are headers alone serve every architecture; the compiler is told of them one by one, since
-# the C library's headers beside them do not.
+# Toolchain for arm64 on another architecture: Debian's cross compiler, and Debian's emulator for its programs.
+# Header-only libraries fit every architecture; they are passed to the compiler one by one, because the C library's
+# headers in the same folder do not.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""States of the gallery's sessions, solved anew, to be rendered by make_gallery.py."""
+"""States of the gallery's sessions, computed for make_gallery.py."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from blend_fixtures.scenes.sessions.session import Session
 from blend_fixtures.scenes.tangled import arm_in_body
 
 Array = NDArray[np.float64]
-PARTS_OF_PRESS = 8  # of the face's motion, each gone in one edit from the start
+PARTS_OF_PRESS = 8  # fractions of the face's motion, each in one edit from the start
 EXPANSIONS, CONTRACTIONS = 16, 24
 
 
 @dataclass(frozen=True)
 class Film:
-    """One surface, and in order what is seen side by side at each moment: one state (N, 3) or several."""
+    """One surface, and for each moment one or several states (N, 3), shown side by side."""
 
     surface: stiv.Surface
     frames: list[tuple[Array, ...]]
 
 
 def filmed(session: Session) -> Film:
-    """Every accepted state of a session; its stages share one surface."""
+    """All accepted states of a session whose stages share one surface."""
     states, stages = [], session.stages()
     stage = next(stages)
     while True:
@@ -45,7 +45,7 @@ def filmed(session: Session) -> Film:
 
 
 def dressed() -> Film:
-    """The body in the shirt that cuts it, then the session from the contracted body on."""
+    """The body that intersects its shirt, then the session from the contracted body."""
     film = filmed(dressing.session())
     whole = np.concatenate([shape.vertices for shape in dressing.parts().shapes().values()])
     return Film(film.surface, [(whole,)] * 4 + film.frames)
@@ -58,7 +58,9 @@ def weightings() -> Film:
 
 
 def pressed_face() -> Film:
-    """More and more of the motion, each time in one edit from the start: by the filter of velocities, and by ours."""
+    """Increasing fractions of the motion, each in one edit from the start: by the velocity filter, and by our
+    method.
+    """
     frames = []
     for part in range(PARTS_OF_PRESS + 1):
         states = compare(part / PARTS_OF_PRESS)[1]
@@ -67,7 +69,7 @@ def pressed_face() -> Film:
 
 
 def untangled() -> Film:
-    """What repair does: contraction until nothing intersects, then back with interference on."""
+    """Repair: contraction until nothing intersects, then expansion without intersections."""
     tangle = arm_in_body()
     states, strength = [tangle.positions], 1.0
     while len(stiv.find_intersections(states[-1], tangle.surface)) and len(states) <= CONTRACTIONS:
@@ -82,7 +84,7 @@ def untangled() -> Film:
 
 
 def films() -> dict[str, Callable[[], Film]]:
-    """All nine by the name of their picture, in the order of the paper's figures."""
+    """All films by the name of their picture, in the order of the paper's figures."""
     sessions = figure_sessions()
 
     def of(name: str) -> Callable[[], Film]:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the pictures of docs/gallery anew: runs the sessions of the paper's figures and renders what they come to.
+"""Make the pictures of docs/gallery: run the sessions of the paper's figures and render the results.
 
     python docs/make_gallery.py [NAME ...] [--output docs/gallery]
 
-Needs Blender as a Python module and Pillow. NAME.png shows states of one session, from the start to the end, and
-NAME.webp all of it.
+Needs Blender as a Python module and Pillow. NAME.png shows states of one session, from the start to the end,
+and NAME.webp the whole session.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ MATERIALS: dict[str, Material] = {
     "Hat": colors.FELT, "Bowl": colors.GLAZE, "Ball": colors.MOVING, "Cushion": colors.STILL, "Face": colors.FUR,
     "Waves": colors.STILL, "figure": colors.SKIN, **{material.name: material for material in colors.ORGANS},
 }  # fmt: skip
-FRAMES, PAUSE = 16, 4  # of an animation, and how long its last one stays
-MILLISECONDS = 170  # a frame
+FRAMES, PAUSE = 16, 4  # frames of an animation, and duration of the last one
+MILLISECONDS = 170  # per frame
 
 
 @dataclass(frozen=True)
 class Picture:
-    """How a film is shown: from where, and which shares of it side by side in the still picture."""
+    """The view of a film, and the fractions of it that the still picture shows side by side."""
 
     view: View
     shown: tuple[float, ...] = (0.0, 0.5, 1.0)
@@ -88,7 +88,7 @@ class Stage:
         return Shape(film.frames[0][0][kept], tuple(map(tuple, own.tolist())))
 
     def picture(self, state: Array) -> Image.Image:
-        """The bodies at these positions."""
+        """A rendering of the bodies at these positions."""
         for number, name in self._objects:
             mesh = bpy.data.objects[name].data
             mesh.vertices.foreach_set("co", state[self._body == number].astype(np.float32).ravel())
@@ -101,7 +101,7 @@ class Stage:
 
 
 def side_by_side(images: list[Image.Image]) -> Image.Image:
-    """One picture of several, with thin gaps."""
+    """Several pictures joined into one, with thin gaps."""
     width, height = images[0].size
     strip = Image.new("RGB", ((width + 4) * len(images) - 4, height), "white")
     for place, image in enumerate(images):
@@ -126,12 +126,12 @@ def make(name: str, film: Film, picture: Picture, folder: Path) -> None:
 
 
 def _without_twins(moments: list[tuple[Array, ...]]) -> list[tuple[Array, ...]]:
-    """What starts alike is shown once."""
+    """The moments without repeated states."""
     return [m[:1] if all(np.array_equal(m[0], other) for other in m) else m for m in moments]
 
 
 def main() -> None:
-    """Makes the pictures named, or all."""
+    """Make the named pictures, or all."""
     parser = argparse.ArgumentParser(description="Make the pictures of the gallery.")
     parser.add_argument("names", nargs="*", help="pictures to make (default: all)")
     parser.add_argument("--output", type=Path, default=ROOT / "docs" / "gallery", help="folder to write to")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the pictures of this folder anew: runs the demo and takes its two renders.
+"""Make the pictures of this folder: run the demo and copy its two renders.
 
 python docs/make_images.py
 """
@@ -17,7 +17,7 @@ DEMO = ROOT / "build" / "demo"
 
 
 def main() -> int:
-    """Runs the demo and copies before.png and after.png; the exit code is the demo's."""
+    """Run the demo and copy before.png and after.png; the exit code is the demo's."""
     command = [sys.executable, "-m", "stiv.command_line", "demo", "--output", str(DEMO)]
     code = subprocess.run(command, check=False).returncode
     if code == 0:

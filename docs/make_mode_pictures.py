@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the guide's pictures of the modes anew: fixtures before and after their edit scripts, side by side.
+"""Make the guide's pictures of the modes: fixtures before and after their edit scripts, side by side.
 
     python docs/make_mode_pictures.py [NAME ...]
 
@@ -23,7 +23,7 @@ from stiv.command_line.replay import run_script
 from stiv.edit_scripts import read_edit_script
 
 ROOT = Path(__file__).resolve().parents[1]
-FIXTURES = {  # by picture, and how many steps of the script it shows; None: all
+FIXTURES = {  # pictures, and how many steps of the script they show; None: all
     "rigid": ("box_along_wall", 1),
     "cage": ("cage_into_wavy_wall", None),
     "lattice": ("lattice_bspline", None),
@@ -32,11 +32,11 @@ FIXTURES = {  # by picture, and how many steps of the script it shows; None: all
     "loop": ("figures/dressing", None),
     "repair": ("figures/untangling", None),
 }
-WIDTH, GAP = 400, 8  # pixels of one state, and between the two
+WIDTH, GAP = 400, 8  # pixels of one state, and of the gap between two
 
 
 def rendered(folder: Path) -> Image.Image:
-    """The open scene from its own camera."""
+    """A rendering of the open scene from its camera."""
     path = folder / "state.png"
     with quiet_blender(errors=True):
         render_picture(path)
@@ -45,7 +45,7 @@ def rendered(folder: Path) -> Image.Image:
 
 
 def before_and_after(fixture: Path, steps: int | None, folder: Path) -> Image.Image:
-    """Two states beside each other."""
+    """Two states side by side."""
     with quiet_blender():
         open_blend(fixture)
     before = rendered(folder)
@@ -58,7 +58,7 @@ def before_and_after(fixture: Path, steps: int | None, folder: Path) -> Image.Im
 
 
 def main() -> None:
-    """Makes the pictures named, or all."""
+    """Make the named pictures, or all."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(FIXTURES)}")
     chosen = parser.parse_args().names or list(FIXTURES)
@@ -66,7 +66,7 @@ def main() -> None:
         for name in chosen:
             fixture, steps = FIXTURES[name]
             picture = before_and_after(ROOT / "blend_fixtures" / f"{fixture}.blend", steps, Path(folder))
-            # A palette halves the size, and surfaces in studio light need no more colours.
+            # A palette halves the size, and surfaces in studio light need few colours.
             picture.quantize(128).save(ROOT / "docs/images" / f"mode_{name}.png", optimize=True)
 
 

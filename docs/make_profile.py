@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws frames a second over sessions, as the paper's Figure 12, from what `stiv bench profile --json F` wrote.
+"""Draw frames per second over sessions, like the paper's Figure 12, from the output of `stiv bench profile
+--json F`.
 
 python docs/make_profile.py F [F ...] [--scenes NAME ...] [--output docs/gallery/profile.png]
 """
@@ -21,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def draw(rows: list[dict], output: Path) -> None:
-    """One graph a session with a line for each of its rows; dashed lines part stages, dotted is 24 a second."""
+    """One graph per session with a line for each row; dashed lines separate stages, the dotted line marks 24."""
     names = list(dict.fromkeys(row["scene"] for row in rows))
     figure, axes = pyplot.subplots(len(names), 1, figsize=(7, 2.1 * len(names)), layout="constrained", squeeze=False)
     for name, axis in zip(names, axes[:, 0], strict=True):
@@ -49,7 +50,7 @@ def _draw_row(axis: pyplot.Axes, row: dict) -> None:
 
 
 def main() -> None:
-    """Draws what files hold."""
+    """Draw the contents of the files."""
     parser = argparse.ArgumentParser(description="Draw frames a second over sessions.")
     parser.add_argument("profiles", type=Path, nargs="+", help="written by stiv bench profile --json")
     parser.add_argument("--scenes", nargs="+", default=["plant", "dressing"], help="default: those of Figure 12")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Print the Blender versions that exist as modules for the running Python, on one line; with --demo the demo's one."""
+"""Print the Blender versions that exist as modules for the running Python, on one line; with --demo, the demo's."""
 
 import sys
 import tomllib
@@ -9,7 +9,7 @@ TABLE = Path(__file__).with_name("blender_versions.toml")
 
 
 def main(arguments: list[str]) -> int:
-    """Answer on standard output; 1 where no Blender module exists for this Python."""
+    """Print the versions; the exit code is 1 if no Blender module exists for this Python."""
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     entry = tomllib.loads(TABLE.read_text()).get(python)
     if entry is None:

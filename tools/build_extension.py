@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build stiv-<version>.zip, the add-on as a Blender extension with the wheels given.
+"""Build stiv-<version>.zip, the add-on as a Blender extension with the given wheels.
 
-Usage: build_extension.py FOLDER WHEEL...   one wheel a version of Python; Blender unpacks the one that fits.
+Usage: build_extension.py FOLDER WHEEL...   one wheel per version of Python; Blender unpacks the matching one.
 """
 
 import sys
@@ -20,13 +20,13 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def project_version() -> str:
-    """Version of the project, the one place where it is written down."""
+    """Version of the project, from the only place that contains it."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     return str(project["version"])
 
 
 def filled_manifest(wheels: list[Path]) -> str:
-    """The add-on's manifest with the project's version and the list of wheels filled in."""
+    """The add-on's manifest with the project's version and the list of wheels."""
     names = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in wheels)
     text = (ADDON / "blender_manifest.toml").read_text()
     text = replace_line(text, NO_VERSION, f'version = "{project_version()}"\n')
@@ -34,14 +34,14 @@ def filled_manifest(wheels: list[Path]) -> str:
 
 
 def replace_line(manifest: str, placeholder: str, line: str) -> str:
-    """The manifest with a placeholder replaced, which must stand in it as one line."""
+    """The manifest with a placeholder replaced, which must be a line of its own."""
     if f"\n{manifest}".count(f"\n{placeholder}") != 1:
         raise SystemExit(f"addon/blender_manifest.toml: needs exactly one line {placeholder.strip()!r}")
     return f"\n{manifest}".replace(f"\n{placeholder}", f"\n{line}")[1:]
 
 
 def contents(wheels: list[Path]) -> dict[str, bytes]:
-    """Every file of the extension by its name in the archive."""
+    """All files of the extension by their names in the archive."""
     files = {"blender_manifest.toml": filled_manifest(wheels).encode(), "LICENSE": (ROOT / "LICENSE").read_bytes()}
     for source in ADDON.rglob("*.py"):
         files[source.relative_to(ADDON).as_posix()] = source.read_bytes()

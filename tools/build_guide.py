@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The user guide as a web page that needs nothing but its pictures."""
+"""The user guide as a web page that needs only its pictures."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ img { max-width: 100% } code { background: #f2f2f2; padding: 0 .2em } a[id] { sc
 
 
 def page(name: str = "user_guide") -> str:
-    """One page of the documentation as HTML; anchors in it stay."""
+    """One page of the documentation as HTML, with its anchors."""
     text = (DOCS / f"{name}.md").read_text()
     body = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     found = re.search(r"^# (.*)$", text, re.MULTILINE)

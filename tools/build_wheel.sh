@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# build_wheel.sh PYTHON OPENSUBDIV: the wheel of this source tree into build/wheel, compiled in build/native. That folder
-# stays, so that a second wheel compiles what has changed only; the native tests are built in it too.
+# build_wheel.sh PYTHON OPENSUBDIV: build the wheel of this source tree into build/wheel, compiled in build/native. That
+# folder remains, so that the next wheel compiles only changed files; the native tests are built in it too.
 set -eu
 python=$1
 opensubdiv=$(realpath "$2")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Check the wording of documents and code, and the links and references in them.
 
-Documents: words, length of sentences and lines, links. Code: words of comments, texts and names, and references to
-mathematics.md. Usage: check_documents.py prints FILE:LINE: MESSAGE for each finding and exits with 1 if there is any.
-check_documents.py --code [PATH...] lists the words in code alone, by default in all of it.
+Documents: words, length of sentences and lines, links. Code: words of comments, texts and names, and
+references to mathematics.md. Usage: check_documents.py prints FILE:LINE: MESSAGE for each finding and exits
+with 1 if there is any. check_documents.py --code [PATH...] lists the words in code alone, by default in all
+of it.
 """
 
 import re
@@ -18,8 +19,8 @@ WIDTH = 110  # characters of a line, except in tables and code
 WORDS = 30  # in a sentence; the aim is 25
 SOURCES = (".cpp", ".hpp", ".py", ".md")
 CODE = (".cpp", ".hpp", ".py", ".pyi", ".js", ".sh", ".cmake", ".toml", ".yml", "CMakeLists.txt", "Makefile", ".ci/run")
-BETWEEN = r"(?:[\s_\"#/*]+)"  # words of a name, or of a comment or text that is continued on the next line
-EXEMPT = ("tools/check_documents.py", "tests/packaging/test_documents.py")  # which quote the words
+BETWEEN = r"(?:[\s_\"#/*]+)"  # between the words of a name, or of a comment or text that continues on the next line
+EXEMPT = ("tools/check_documents.py", "tests/packaging/test_documents.py")  # they quote the words
 REFERENCE = re.compile(r"(mathematics|experiments)\.md\)?,\s*(?://+\s*)?(?:\"([^\"]+)\"|Eq\. (\d))")
 
 Finding = tuple[int, str]
@@ -70,12 +71,12 @@ def dialect(lines: str, *sections: str) -> list[Rule]:
 
 
 def in_prose(pattern: str) -> str:
-    """A pattern of whole words, unless it says itself how it begins."""
+    """A pattern of whole words, unless it specifies its own start."""
     return pattern if "(?:^" in pattern else rf"\b(?:{pattern})\b"
 
 
 def in_code(pattern: str) -> str:
-    """A pattern of whole words in comments, in texts and in names, across lines, underscores and capitals."""
+    """A pattern of whole words in comments, texts and names, across lines, underscores and capitals."""
     return rf"(?i)(?<![a-z])(?:{pattern.replace(' ', BETWEEN)})(?![a-z])"
 
 
@@ -89,7 +90,7 @@ def code_wording(text: str, rules: list[Rule]) -> Iterator[Finding]:
 
 
 def wording(text: str, rules: list[Rule]) -> Iterator[Finding]:
-    """Words of the old dialect; what stands in italics, as labels of the interface do, is exempt."""
+    """Words of the old dialect; text in italics, such as labels of the interface, is exempt."""
     for number, passage in passages(text):
         plain = re.sub(r"(?<!\*)\*[^*]+\*(?!\*)|\*\*", "", spoken(passage))
         for pattern, use in rules:
@@ -98,7 +99,7 @@ def wording(text: str, rules: list[Rule]) -> Iterator[Finding]:
 
 
 def long_sentences(text: str) -> Iterator[Finding]:
-    """Sentences of too many words."""
+    """Sentences with too many words."""
     for number, passage in passages(text):
         for sentence in re.split(r"(?<=[.!?:;])[*)\"]*\s+", spoken(passage)):
             count = len(sentence.split())
@@ -107,7 +108,7 @@ def long_sentences(text: str) -> Iterator[Finding]:
 
 
 def long_lines(text: str) -> Iterator[Finding]:
-    """Lines that are too long for reading a difference, where they can be broken."""
+    """Lines that are too long to read in a diff and can be wrapped."""
     inside = re.sub(r"^```.*?^```", lambda found: "\n" * found[0].count("\n"), text, flags=re.DOTALL | re.MULTILINE)
     for number, line in enumerate(inside.split("\n"), 1):
         if len(line) > WIDTH and not line.startswith(("|", "    ")) and " " in line[:WIDTH].strip():
@@ -115,7 +116,7 @@ def long_lines(text: str) -> Iterator[Finding]:
 
 
 def broken_links(path: Path) -> Iterator[Finding]:
-    """Links to files that are not there."""
+    """Links to missing files."""
     for number, line in enumerate(blanked(path.read_text(encoding="utf-8")).split("\n"), 1):
         for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", line):
             if "://" not in target and not (path.parent / target).exists():
@@ -123,7 +124,7 @@ def broken_links(path: Path) -> Iterator[Finding]:
 
 
 def broken_references(text: str, folder: Path) -> Iterator[Finding]:
-    """Sections and equations of mathematics.md and experiments.md that are named and not there."""
+    """References to missing sections and equations of mathematics.md and experiments.md."""
     for found in REFERENCE.finditer(text):
         document, section, equation = found.groups()
         target = (folder / f"{document}.md").read_text(encoding="utf-8")

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Prints the interpreter that everything is built for: the first of $STIV_PYTHON, python3 and Debian's own python3 for
-# which PyPI carries Blender (tools/blender_versions.toml). Falls back to python3, whose error the next step then explains.
+# Print the interpreter to build for: the first of $STIV_PYTHON, python3 and Debian's own python3 for which PyPI has a
+# Blender module (tools/blender_versions.toml). Falls back to python3; the next step then explains the error.
 here=$(dirname "$0")
 for candidate in ${STIV_PYTHON:-} python3 /usr/bin/python3; do
     if "$candidate" "$here/blender_versions.py" >/dev/null 2>&1; then

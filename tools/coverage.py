@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Line coverage of the core, folder by folder, by what has run in a build folder; 1 if one asked for is below the mark.
+"""Line coverage of the core by folder, from the runs in a build folder; the exit code is 1 if a folder is
+below PERCENT.
 
 Usage: coverage.py BUILD_FOLDER --at-least PERCENT FOLDER...   with folders of native/src, such as detection.
 """
@@ -14,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def lines_by_file(build: Path) -> dict[str, tuple[int, int]]:
-    """Lines and those of them that ran, of each file of the core."""
+    """All lines and the executed lines of each file of the core."""
     command = ["gcovr", "--root", ".", "--filter", "native/src/", "--filter", "native/include/", "--json-summary", "-"]
     text = subprocess.run([*command, build], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return {f["filename"]: (f["line_total"], f["line_covered"]) for f in json.loads(text)["files"]}
@@ -28,12 +29,12 @@ def folder_of(file: str) -> str:
 
 
 def is_below(total: int, covered: int, percent: float) -> bool:
-    """Tell whether fewer ran than asked for; nothing at all does not pass either."""
+    """Tell whether coverage is below the limit; a folder without lines does not pass either."""
     return total == 0 or 100 * covered < percent * total
 
 
 def main() -> int:
-    """Print the folders, and the files below the mark of those asked for."""
+    """Print the folders, and the files below the limit in the requested ones."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=Path)
     parser.add_argument("--at-least", type=float, required=True)

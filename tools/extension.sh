@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# extension.sh PYTHON OPENSUBDIV FOLDER [VERSION...]: the extension's zip into FOLDER, with wheels for these versions of
-# Python, or for all that it is made for. Prints its name. Needs the wheel of this source tree in build/wheel.
+# extension.sh PYTHON OPENSUBDIV FOLDER [VERSION...]: build the extension's zip into FOLDER, with wheels for these
+# versions of Python, or for all supported ones. Prints its name. Needs the wheel of this source tree in build/wheel.
 set -eu
 python=$1
 opensubdiv=$2

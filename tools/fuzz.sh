@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# fuzz.sh BUILD_FOLDER SECONDS: runs each fuzz target so long, from the committed inputs on. What it finds new is kept under
-# BUILD_FOLDER/corpus; an input that fails is written to BUILD_FOLDER, and ends the run.
+# fuzz.sh BUILD_FOLDER SECONDS: run each fuzz target for this long, starting with the committed inputs. New inputs are
+# stored under BUILD_FOLDER/corpus; a failing input is written to BUILD_FOLDER and ends the run.
 set -eu
 build=$1
 seconds=$2

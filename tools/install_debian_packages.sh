@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# install_debian_packages.sh LIST: installs what the list names and is not there yet; as root, or through sudo.
+# install_debian_packages.sh LIST: install the missing packages of the list, as root or through sudo.
 set -eu
 missing=""
 for package in $(sed 's/#.*//' "$1"); do
@@ -20,7 +20,7 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 apt() { $sudo env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=5 -o DPkg::Lock::Timeout=300 "$@"; }
 log=$(mktemp)
-apt update >"$log" 2>&1 || echo "apt-get update had errors; going on with the lists that are there"
+apt update >"$log" 2>&1 || echo "apt-get update had errors; continuing with the existing lists"
 if apt install -y --no-install-recommends $missing >>"$log" 2>&1; then
     rm "$log"
 else

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Validate the extension's zip with Blender's own means and install it as a user would.
+"""Validate the extension's zip with Blender and install it like a user.
 
-Usage: VENV/bin/python install_extension.py ZIP            into the Blender module of the environment that runs this
+Usage: VENV/bin/python install_extension.py ZIP            into the Blender module of the current environment
        python install_extension.py ZIP --blender PROGRAM   into a Blender program, for its user
 
-Into a module: Blender unpacks the zip and the wheel that fits below VENV/extension, and the environment finds the
-packages there: `stiv` from the unpacked wheel, `stiv_addon` being the installed add-on.
+Into a module: Blender unpacks the zip and the matching wheel below VENV/extension, and the environment finds
+the packages there: `stiv` from the unpacked wheel, and `stiv_addon`, the installed add-on.
 """
 
 import argparse
@@ -28,9 +28,9 @@ def into_program(archive: Path, program: str) -> None:
 
 
 def into_module(archive: Path, environment: Path) -> None:
-    """Let this environment's Blender module validate and install, in a process of its own."""
+    """Let this environment's Blender module validate and install, in a subprocess."""
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet", "uninstall", "--yes", IDENTIFIER]
-    subprocess.run(pip, check=True, stderr=subprocess.DEVNULL)  # a wheel installed before would be found first
+    subprocess.run(pip, check=True, stderr=subprocess.DEVNULL)  # an older installed wheel would be found first
     resources = environment / "extension"
     shutil.rmtree(resources, ignore_errors=True)
     resources.mkdir()
@@ -45,7 +45,7 @@ def into_module(archive: Path, environment: Path) -> None:
 
 
 def validation(archive: Path) -> list[str | Path]:
-    """How this environment's Blender module validates an archive, its tags included, as a Blender program does."""
+    """Validation of an archive, including its tags, by this environment's Blender module, as in a Blender program."""
     import bpy
 
     scripts = Path(bpy.utils.system_resource("SCRIPTS"))
@@ -55,7 +55,7 @@ def validation(archive: Path) -> list[str | Path]:
 
 
 def here(archive: Path) -> None:
-    """Validate, install, enable and look whether the native module can be used. Ends the process."""
+    """Validate, install and enable the extension, and check that the native module loads. Ends the process."""
     import bpy
 
     subprocess.run(validation(archive), check=True, stdout=subprocess.DEVNULL)
@@ -66,7 +66,7 @@ def here(archive: Path) -> None:
     if problem:
         print(f"{archive}, installed into Blender {bpy.app.version_string}: {problem}", file=sys.stderr)
     sys.stdout.flush()
-    os._exit(1 if problem else 0)  # 4.2 crashes and 4.5 hangs when Python ends with classes registered
+    os._exit(1 if problem else 0)  # 4.2 crashes and 4.5 hangs when Python exits with registered classes
 
 
 def main() -> None:

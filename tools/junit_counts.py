@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run of tests came to, counted from the JUnit files that pytest and ctest write."""
+"""Results of a test run, counted from the JUnit files of pytest and ctest."""
 
 import ast
 import re
@@ -20,19 +20,19 @@ class Counts:
     skipped: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: "Counts") -> None:
-        """Take in the numbers of another run."""
+        """Add the numbers of another run."""
         self.passed += other.passed
         self.failed += other.failed
         self.skipped.update(other.skipped)
 
 
 def from_exit_code(code: int) -> Counts:
-    """One test, decided by the exit code of a process."""
+    """One test that passes if the exit code of a process is 0."""
     return Counts(passed=int(code == 0), failed=int(code != 0))
 
 
 def from_pytest(path: Path, code: int) -> Counts:
-    """Counts of pytest's JUnit file; a run that ended badly without a failed test counts as one failure."""
+    """Counts of pytest's JUnit file; a failed run without a failed test counts as one failure."""
     counts = Counts()
     for case in _cases(path):
         skip = case.find("skipped")
@@ -49,7 +49,7 @@ def from_pytest(path: Path, code: int) -> Counts:
 
 
 def from_ctest(path: Path, code: int) -> Counts:
-    """Test cases that doctest reports in the output ctest keeps; a process without a report is one failure."""
+    """Test cases that doctest reports in the output stored by ctest; a process without a report is one failure."""
     counts = Counts()
     for case in _cases(path):
         summary = DOCTEST_SUMMARY.search(case.findtext("system-out", ""))
@@ -63,7 +63,7 @@ def from_ctest(path: Path, code: int) -> Counts:
 
 
 def _reason(skip: ElementTree.Element) -> str:
-    """Why a test was skipped; for a whole module pytest writes it into the text, after its place."""
+    """The reason for a skip; for a whole module, pytest writes it into the text, after the location."""
     if skip.get("message") == "collection skipped" and skip.text:
         return ast.literal_eval(skip.text)[-1].removeprefix("Skipped: ")
     return skip.get("message", "no reason given")

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# lint.sh [--fix | CHECK]: one check (cpp-format, python-format, python-style, types, spelling, documents), or formats
+# lint.sh [--fix | CHECK]: run one check (cpp-format, python-format, python-style, types, spelling, documents), or format
 # everything in place.
 set -eu
 bin=build/venv/bin

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# make_venv.sh PYTHON FOLDER PIP_ARGUMENT...: a virtual environment with the packages named, patient with slow networks.
+# make_venv.sh PYTHON FOLDER PIP_ARGUMENT...: create a virtual environment with these packages; tolerates slow networks.
 set -eu
 python=$1
 folder=$2

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write python/stiv/_native.pyi from the compiled module: pybind11-stubgen's stub, made short and fit for mypy.
+"""Write python/stiv/_native.pyi from the compiled module: pybind11-stubgen's stub, made short and fit for
+mypy.
 
-Usage: native_stub.py, with a Python that has STIV, pybind11-stubgen and ruff. A test compares the file with the module.
+Usage: native_stub.py, with a Python that has STIV, pybind11-stubgen and ruff. A test compares the file with
+the module.
 """
 
 import ast

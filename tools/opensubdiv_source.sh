@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# opensubdiv_source.sh DEST: puts the source of OpenSubdiv, from Debian's source package, into DEST. Needs no privilege:
-# a list of sources and a folder of package lists of its own leave the system's configuration alone.
+# opensubdiv_source.sh DEST: unpack the source of OpenSubdiv, from Debian's source package, into DEST. Needs no
+# privileges: a separate list of sources and a separate folder leave the system's configuration unchanged.
 set -eu
 [ $# -eq 1 ] || { echo "usage: opensubdiv_source.sh DEST" >&2; exit 2; }
 destination=$1
@@ -24,7 +24,7 @@ mkdir -p "$work/unpacked" "$destination"
 tar -xf "$archive" -C "$work/unpacked" --strip-components=1
 [ -f "$work/unpacked/opensubdiv/far/stencilTable.h" ] || fail "$(basename "$archive") does not contain opensubdiv/far"
 cp "$work/unpacked/LICENSE.txt" "$work/unpacked/NOTICE.txt" "$destination/"
-# Renamed when complete: a run that was interrupted leaves nothing that looks finished.
+# Renamed when complete, so that an interrupted run leaves nothing that looks finished.
 rm -rf "$destination/opensubdiv.partial"
 cp -R "$work/unpacked/opensubdiv" "$destination/opensubdiv.partial"
 mv "$destination/opensubdiv.partial" "$destination/opensubdiv"

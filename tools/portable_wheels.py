@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Make a wheel for every Python that the extension carries a module for.
+"""Make a wheel for every Python version that the extension supports.
 
 Usage: portable_wheels.py WHEEL FOLDER PLATFORM MODULE...
 
-WHEEL is of this source tree, for any Python; each MODULE takes the place of its module in one of the new wheels. They
-are written into FOLDER, in place of what is there, and tagged for PLATFORM: manylinux_2_17_x86_64 where the modules are
-compiled for that version of the C library, linux_x86_64 where they are for systems like this one. All but module and
-tag is the same, without the add-on, which the extension has itself, and the demo, which is for the command line.
+WHEEL is the wheel of this source tree, for any Python; each MODULE replaces its module in one of the new
+wheels. They replace the files in FOLDER and are tagged for PLATFORM: manylinux_2_17_x86_64 if the modules are
+compiled for that version of the C library, linux_x86_64 if they are for systems like this one. The wheels
+differ only in module and tag. They omit the add-on, which the extension contains itself, and the demo, which
+belongs to the command line.
 """
 
 import base64
@@ -21,7 +22,7 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def python_tag(module: Path) -> str:
-    """Tag of the Python that a module was compiled for, by its name: "cp313"."""
+    """Tag of the Python version in a module's name: "cp313"."""
     found = re.fullmatch(r"_native\.cpython-(\d+)-x86_64-linux-gnu\.so", module.name)
     if found is None:
         raise SystemExit(f"{module}: not the name of a native module")
@@ -29,14 +30,14 @@ def python_tag(module: Path) -> str:
 
 
 def read_wheel(path: Path) -> dict[str, bytes]:
-    """Files of a wheel by name, without its native module, the list of files, and what the extension needs not."""
+    """Files of a wheel by name, without its native module, the list of files, and parts that the extension omits."""
     with zipfile.ZipFile(path) as archive:
         names = [name for name in archive.namelist() if not name.endswith(("/", "/RECORD"))]
         return {name: archive.read(name) for name in names if not name.startswith(LEFT_OUT)}
 
 
 def with_module(files: dict[str, bytes], module: Path, tag: str) -> dict[str, bytes]:
-    """The same files with this module and tag, and a list of files that is right for them."""
+    """The same files with this module and tag, and a matching list of files."""
     (description,) = [name for name in files if name.endswith(".dist-info/WHEEL")]
     text = files[description].decode()
     if len(re.findall(r"^Tag: .*$", text, re.MULTILINE)) != 1:
@@ -49,12 +50,12 @@ def with_module(files: dict[str, bytes], module: Path, tag: str) -> dict[str, by
 
 
 def digest(data: bytes) -> str:
-    """Hash of a file as lists of files have it."""
+    """Hash of a file in the format of the list of files."""
     return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
 
 
 def write_wheel(path: Path, files: dict[str, bytes]) -> None:
-    """The same files give the same bytes."""
+    """Write a wheel; the same files give the same bytes."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in sorted(files.items()):
             entry = zipfile.ZipInfo(name, FIRST_DATE)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced: `open_archive deb|deb-src SUITE` gives an apt() that reads Debian's archive into $work, a folder of its own that
-# is removed at the end. Needs no privilege, and leaves the system's list of sources and packages alone.
+# Source this file: `open_archive deb|deb-src SUITE` defines an apt() that reads Debian's archive into $work, a separate
+# folder that is removed at the end. Needs no privileges, and leaves the system's lists unchanged.
 
 fail() { echo "$(basename "$0"): $1" >&2; exit 1; }
 
@@ -10,7 +10,7 @@ open_archive() {
     [ -f "$keyring" ] || fail "$keyring is missing: install the package debian-archive-keyring"
     work=$(mktemp -d)
     trap 'rm -rf "$work"' EXIT
-    chmod 755 "$work"  # apt fetches as a user of its own where it can
+    chmod 755 "$work"  # apt downloads as a separate user if possible
     mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
     echo "$1 [signed-by=$keyring] http://deb.debian.org/debian $2 main" >"$work/sources.list"
     apt update || { cat "$work/log" >&2; fail "the list of packages of Debian $2 could not be read"; }

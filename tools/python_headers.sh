@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# python_headers.sh VERSION SUITE DEST: puts the headers of a version of Python, from a Debian suite's package, into
-# DEST/VERSION. They are all that a module for another Python than the one that builds it needs. Needs no privilege.
+# python_headers.sh VERSION SUITE DEST: unpack the headers of a version of Python, from a package of a Debian suite, into
+# DEST/VERSION. Compiling a module for that version needs nothing else. Needs no privileges.
 set -eu
 [ $# -eq 3 ] || { echo "usage: python_headers.sh VERSION SUITE DEST" >&2; exit 2; }
 version=$1
@@ -16,7 +16,7 @@ open_archive deb "$suite"
 (cd "$work" && apt download "$package") || { cat "$work/log" >&2; fail "Debian $suite gave no $package"; }
 dpkg -x "$work/$package"_*.deb "$work/unpacked"
 [ -f "$work/unpacked/usr/include/python$version/Python.h" ] || fail "$package of Debian $suite holds no headers"
-# Renamed when complete: a run that was interrupted leaves nothing that looks finished.
+# Renamed when complete, so that an interrupted run leaves nothing that looks finished.
 mkdir -p "$destination"
 rm -rf "$destination/$version" "$destination/$version.partial"
 cp -R "$work/unpacked/usr/include" "$destination/$version.partial"

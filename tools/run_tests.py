@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run the named parts of the tests, all of them even when one fails, and print one summary at the end.
+"""Run the named parts of the tests, even if one of them fails, and print a summary at the end.
 
 Usage: run_tests.py PART...   with the parts native, sanitizers, threads, python, blender, lint and window.
 """
@@ -22,15 +22,15 @@ from junit_counts import Counts
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
-TIME_LIMIT = 3600  # seconds for one command: a last resort, several times what the longest takes
-WINDOW_SEQUENCES = 12  # of random events; `make test-window` plays more
+TIME_LIMIT = 3600  # seconds for one command: a last resort, several times the longest duration
+WINDOW_SEQUENCES = 12  # random events per sequence run; `make test-window` plays more
 LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types", "spelling", "documents")
 PRINTING = threading.Lock()
 
 
 @dataclass(frozen=True)
 class Job:
-    """One run of tests. Those that use every processor themselves run alone."""
+    """One run of tests. Jobs that use all processors run alone."""
 
     title: str
     run: Callable[[], Counts]
@@ -39,7 +39,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Row:
-    """What a job came to."""
+    """The result of a job."""
 
     title: str
     counts: Counts
@@ -47,7 +47,7 @@ class Row:
 
 
 def run(title: str, command: list[str | Path]) -> int:
-    """Run one command from the root of the source tree; its output is shown when it ends. One that hangs is ended."""
+    """Run a command from the root of the source tree, and print its output when it ends. Ends commands that hang."""
     log = REPORTS / f"{re.sub('[^a-z0-9.-]+', '-', title)}.log"
     with log.open("wb") as output:
         try:
@@ -89,7 +89,7 @@ def lint(title: str) -> Counts:
 
 
 def window(title: str) -> Counts:
-    """The add-on in a real window; skipped with the reason where no folder for it can be set up."""
+    """The add-on in a real window; skipped with the reason if no chroot can be created."""
     report = REPORTS / "window.xml"
     report.unlink(missing_ok=True)
     command = [sys.executable, "tests/window/run.py", "--report", report, "--sequences", str(WINDOW_SEQUENCES)]
@@ -126,7 +126,7 @@ def timed(job: Job) -> Row:
 
 
 def run_all(todo: list[Job]) -> list[Row]:
-    """Run the jobs: those that need the machine one by one, then the others side by side."""
+    """Run the jobs that need the whole machine one by one, then the others in parallel."""
     rows = [timed(job) for job in todo if job.alone]
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         rows += pool.map(timed, [job for job in todo if not job.alone])
@@ -134,7 +134,7 @@ def run_all(todo: list[Job]) -> list[Row]:
 
 
 def print_row(row: Row) -> None:
-    """One line of the summary, and a line for each reason for which tests were skipped."""
+    """One line of the summary, and a line for each reason for skipped tests."""
     counts = row.counts
     print(f"{row.title:<20}{counts.passed:>8}{counts.failed:>8}{counts.skipped.total():>9}{row.seconds:>9.0f}")
     for reason, number in sorted(counts.skipped.items()):

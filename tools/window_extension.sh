@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# window_extension.sh PYTHON SUITE FOLDER: the extension's zip into FOLDER for the Python of a Debian SUITE that is no older
-# than this system. Prints its name. Takes the wheel of this source tree if it is for that Python; otherwise compiles the
-# bindings once more, over the core that is in build/native already.
+# window_extension.sh PYTHON SUITE FOLDER: build the extension's zip into FOLDER for the Python of a Debian SUITE that is
+# not older than this system. Prints its name. Uses the wheel of this source tree if it is for that Python; otherwise
+# compiles the bindings again, with the core in build/native.
 set -eu
 python=$1
 suite=$2

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Break the lines of Markdown documents at the width that check_documents.py asks for.
+"""Wrap the lines of Markdown documents at the width of check_documents.py.
 
-Usage: wrap_documents.py FILE... Code, tables, headings, pictures and display equations stay as they are; code spans and
-formulas are not broken, and no line begins with what would be an item of a list.
+Usage: wrap_documents.py FILE... Code, tables, headings, pictures and display equations do not change; code
+spans and formulas are not broken, and no line starts like an item of a list.
 """
 
 import re
@@ -20,7 +20,7 @@ AS_IT_IS = ("|", "#", "<", "![", "---")
 
 
 def words(text: str) -> list[str]:
-    """What may stand on different lines."""
+    """Words and unbreakable spans."""
     spans: list[str] = []
 
     def hidden(found: re.Match[str]) -> str:
@@ -43,7 +43,7 @@ def filled(text: str, first: str, indent: str) -> Iterator[str]:
 
 
 def wrapped(document: str) -> str:
-    """A document with its paragraphs and items broken again."""
+    """A document with its paragraphs and items wrapped again."""
     lines: list[str] = []
     paragraph: list[str] = []
     first = indent = ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fixtures of cages: a sheet that folds onto itself, an open cage with creases."""
+"""Fixtures with cages: a sheet that folds onto itself, and an open cage with creases."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def bent_sheet(angle: float, radius: float = 0.15, length: float = 2.0, cells: i
     """A sheet bent about the y axis by `angle` radians along an arc of `radius`; its left half stays in z = 0."""
     flat = triangulated(grid(cells, cells, length, 1.0))
     along, y = flat.vertices[:, 0], flat.vertices[:, 1]
-    arc = np.clip(along + radius * angle / 2, 0, radius * angle) / radius  # turned so far, radians
+    arc = np.clip(along + radius * angle / 2, 0, radius * angle) / radius  # angle along the arc, radians
     before = np.minimum(along + radius * angle / 2, 0)
     after = np.maximum(along - radius * angle / 2, 0)
     x = before + radius * np.sin(arc) + after * np.cos(angle)
@@ -27,7 +27,7 @@ def bent_sheet(angle: float, radius: float = 0.15, length: float = 2.0, cells: i
 
 
 def self_folding_sheet() -> Fixture:
-    """A sheet bent back over itself whose upper flap is pushed down through its own lower half."""
+    """A sheet bent back over itself, whose upper flap is pushed through its lower half."""
     sheet = bent_sheet(0.8 * np.pi)
     flap = np.flatnonzero(np.arange(len(sheet.vertices)) >= 18 * 25)  # columns of the grid beyond the bend
     return Fixture(
@@ -40,7 +40,7 @@ def self_folding_sheet() -> Fixture:
 
 
 def _bowl() -> tuple[Shape, tuple[tuple[int, int, float], ...], tuple[tuple[int, float], ...]]:
-    """An open bowl of eight sides: an octagon for its floor, quads, and one quad cut into triangles; with creases."""
+    """An open bowl with eight sides: an octagonal floor, quads, one quad split into triangles, and creases."""
     rings = [(0.55, -0.6), (0.9, 0.0), (1.0, 0.7)]
     angles = 2 * np.pi * np.arange(8) / 8
     levels: list[NDArray[np.float64]] = [
@@ -59,7 +59,7 @@ def _bowl() -> tuple[Shape, tuple[tuple[int, int, float], ...], tuple[tuple[int,
 
 
 def cage_with_creases_and_boundary() -> Fixture:
-    """An open bowl with sharp and soft creases lowered over a ball; its rim is a boundary."""
+    """An open bowl with sharp and soft creases, lowered over a ball."""
     bowl, edges, vertices = _bowl()
     return Fixture(
         name="cage_with_creases_and_boundary",

@@ -19,7 +19,7 @@ from .pressing import (
 
 
 def all_fixtures() -> tuple[Fixture, ...]:
-    """Every fixture, built anew, in a fixed order."""
+    """All fixtures, newly built, in a fixed order."""
     return (
         cage_into_wavy_wall(),
         sheet_through_sheet(),

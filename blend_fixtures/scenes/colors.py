@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The few materials that all fixtures share, so that pictures look alike."""
+"""The materials that all fixtures share, for consistent pictures."""
 
 from .fixture import Material
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Steps on which detection is measured: a surface without intersections, and where its vertices go."""
+"""Steps for measuring detection: a surface without intersections, and the motion of its vertices."""
 
 from __future__ import annotations
 
@@ -32,15 +32,16 @@ class Step:
 
 
 def step(name: str, parts: list[Shape], ends: list[Array]) -> Step:
-    """The step that takes each of the parts to its positions in `ends`."""
+    """The step that moves each shape to its positions in `ends`."""
     whole = joined(parts)
     return Step(name, whole.triangles(), whole.vertices, np.concatenate(ends))
 
 
 def rounded_box(cuts: int, bumps: float = 0.0, radius: float = 1.0) -> Shape:
-    """A closed body of 12 cuts^2 triangles: a box blown up to a sphere with hills and valleys of about `bumps` radii.
+    """A closed body of 12 cuts^2 triangles: a box inflated to a sphere, with hills and valleys of about
+        `bumps` radii.
 
-    Bodies of different `cuts` lie on one smooth surface.
+    Bodies with different `cuts` sample the same smooth surface.
     """
     cube = triangulated(box(cuts))
     equal_angles = np.tan(cube.vertices * (np.pi / 4))
@@ -55,7 +56,7 @@ def pressed_inside(
 ) -> Step:
     """75,660 triangles: a bumpy closed body grows against the inside of a coarser closed one from all sides.
 
-    Hills of the body are higher than those of the shell by `roughness`: they meet it, and the valleys do not.
+    Hills of the body are higher than those of the shell by `roughness`: they touch it, and the valleys do not.
     """
     body = rounded_box(fine, 0.1 + roughness).turned((0.3, 0.2, 0.1))
     shell = rounded_box(coarse, 0.1, 1 + gap).turned((0.3, 0.2, 0.1))
@@ -63,14 +64,14 @@ def pressed_inside(
 
 
 def shoots_in_vase(squeeze: float = 0.925, growth: float = 0.04) -> Step:
-    """27,270 triangles: shoots that stand in a vase widen against its neck and lip."""
+    """27,270 triangles: shoots in a vase spread against its neck and lip."""
     bunch = shoots(Bunch(count=115)).scaled((squeeze, squeeze, 1)).moved((0, 0, 0.9))
     pot = vase(112, 55)
     return step("shoots in a vase", [bunch, pot], [bunch.scaled((1 + growth, 1 + growth, 1)).vertices, pot.vertices])
 
 
 def _leaves(side: int, size: float, chance: np.random.Generator) -> Shape:
-    """`side`^3 loose triangles in a box from -1 to 1, each in a cell of its own, so that none meets another."""
+    """`side`^3 loose triangles in a box from -1 to 1, each in its own cell, so that none intersect."""
     centres = (np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), 3).reshape(-1, 3) + 0.5) / side * 2 - 1
     directions = chance.normal(size=(len(centres), 3, 3))
     directions /= np.linalg.norm(directions, axis=2)[:, :, None]
@@ -94,7 +95,7 @@ def soup_in_corner(
 
 
 def knot(rings: int = 264, sides: int = 22, squeeze: float = 0.155) -> Step:
-    """11,616 triangles: a knotted tube moves along, its centre line squeezed, so that strands just meet."""
+    """11,616 triangles: a knotted tube moves while its centre line is squeezed, so that strands barely touch."""
     shape = triangulated(trefoil(rings, sides))
     height = shape.vertices[:, 2].reshape(rings, sides).mean(axis=1)
     fall = np.zeros_like(shape.vertices)
@@ -113,7 +114,7 @@ def shell_onto_body(shrink: float = 0.0245) -> Step:
 
 
 def local_edit(share: float = 0.02) -> Step:
-    """`pressed_inside`, but only the `share` of all vertices nearest to one point of the body moves."""
+    """`pressed_inside`, where only the fraction `share` of all vertices, nearest to one point of the body, moves."""
     whole = pressed_inside()
     distance = np.linalg.norm(whole.start - whole.start[0], axis=1)
     moves = distance <= np.sort(distance)[int(share * len(distance))]
@@ -121,15 +122,16 @@ def local_edit(share: float = 0.02) -> Step:
 
 
 def flat_panel(cells: int = 388, stretch: float = 5e-4) -> Step:
-    """301,088 triangles in one plane, stretched a little in it: nothing meets, and every cubic vanishes."""
+    """301,088 triangles in one plane, slightly stretched in it: no contacts, and every cubic vanishes."""
     panel = triangulated(grid(cells, cells))
     return step("flat panel", [panel], [panel.vertices * (1 + stretch, 1 + stretch, 1)])
 
 
 def growing(cuts: int) -> Step:
-    """24 cuts^2 triangles: a body grows against the inside of a shell as fine as itself, on a quarter of its surface.
+    """24 cuts^2 triangles: a body grows against the inside of an equally fine shell, on a quarter of its
+        surface.
 
-    Gap and step are counted in edge lengths: candidates and hits for each triangle are the same at any fineness.
+    Gap and step scale with the edge length, so candidates and hits per triangle do not depend on the resolution.
     """
     edge = np.pi / 2 / cuts
     body = rounded_box(cuts).turned((0.3, 0.2, 0.1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The seven families of edits on which the response is measured, each as surface, deformation, start and goal."""
+"""Seven families of edits for measuring the response, each with surface, deformation, start and goal."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Edit:
-    """One edit: controls (m, 3) that give the surface at the start, and the goal (m, 3) for them."""
+    """One edit: initial controls (m, 3), and their goal (m, 3)."""
 
     name: str
     surface: stiv.Surface
     deformation: stiv.Deformation
     controls: Array
     goal: Array
-    options: dict[str, object] = field(default_factory=dict)  #: of stiv.EditOptions, where not the default
+    options: dict[str, object] = field(default_factory=dict)  #: of stiv.EditOptions, unless default
 
 
 def _surface(shapes: Sequence[Shape], mobilities: Sequence[str]) -> stiv.Surface:
-    """Shapes side by side, each a body of its own."""
+    """Concatenated shapes, each a separate body."""
     whole = joined(shapes)
     bodies = [stiv.Body(f"{mobility} {number}", mobility) for number, mobility in enumerate(mobilities)]
     owner = np.repeat(np.arange(len(shapes)), [len(shape.vertices) for shape in shapes])
@@ -43,14 +43,14 @@ def _surface(shapes: Sequence[Shape], mobilities: Sequence[str]) -> stiv.Surface
 def _against_obstacle(
     name: str, mover: Shape, mobility: str, obstacle: Shape, deformation: stiv.Deformation, controls: Array, goal: Array
 ) -> Edit:
-    """A mover under `deformation` and an obstacle that stays where it is."""
+    """A mover under `deformation` and a fixed obstacle."""
     start = joined([mover, obstacle]).vertices
     whole = stiv.concatenate([(deformation, np.arange(len(mover.vertices)))], start)
     return Edit(name, _surface([mover, obstacle], [mobility, "fixed"]), whole, controls, goal)
 
 
 def _free_vertices(name: str, shapes: Sequence[Shape], offsets: Sequence[Sequence[float]]) -> Edit:
-    """Every vertex is a control; shape by shape the goal is a translation."""
+    """Every vertex is a control; the goal translates each shape."""
     start = joined(shapes).vertices
     motion = np.concatenate([np.tile(o, (len(s.vertices), 1)) for s, o in zip(shapes, offsets, strict=True)])
     surface = _surface(shapes, ["deformable"] * len(shapes))
@@ -58,7 +58,7 @@ def _free_vertices(name: str, shapes: Sequence[Shape], offsets: Sequence[Sequenc
 
 
 def spheres(depth: float, levels: int = 3) -> Edit:
-    """A sphere moved by `depth` into, and from 4.3 on through, another one that gives way too; 0.2 apart."""
+    """A sphere moved by `depth` into another deformable one 0.2 away, and through it from 4.3 on."""
     ball = icosphere(levels)
     other = ball.turned((0.4, 1.1, 2.3)).moved((2.2, 0.1, 0.07))
     return _free_vertices(f"spheres {depth:g}", [ball, other], [(depth, 0, 0), (0, 0, 0)])
@@ -74,7 +74,7 @@ def sheets(depth: float, cells: int = 15) -> Edit:
 
 
 def fold(angle: float = 1.35 * np.pi) -> Edit:
-    """A sheet bent by 0.8 pi, to be bent by `angle`: beyond about pi it goes through itself."""
+    """A sheet bent by 0.8 pi, to be bent by `angle`: beyond about pi it intersects itself."""
     start, goal = bent_sheet(0.8 * np.pi), bent_sheet(angle)
     surface = _surface([start], ["deformable"])
     return Edit(
@@ -83,7 +83,7 @@ def fold(angle: float = 1.35 * np.pi) -> Edit:
 
 
 def _catmull_clark(shape: Shape) -> tuple[Array, Shape]:
-    """One step on a closed mesh of quads: weights (n', n) and the finer mesh. [Catmull and Clark 1978]"""
+    """One subdivision of a closed quad mesh: weights (n', n) and the finer mesh. [Catmull and Clark 1978]"""
     quads = np.array(shape.faces)
     count = len(shape.vertices)
     sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
@@ -110,7 +110,7 @@ def _catmull_clark(shape: Shape) -> tuple[Array, Shape]:
 
 
 def subdivision(depth: float, levels: int = 3) -> Edit:
-    """A subdivided box under its cage of 26 points, moved down by `depth` into a wavy sheet."""
+    """A subdivided box with a cage of 26 points, moved down by `depth` into a wavy sheet."""
     cage = box(2).moved((0, 0, 1.25))
     weights, fine = np.eye(len(cage.vertices)), cage
     for _ in range(levels):
@@ -123,7 +123,7 @@ def subdivision(depth: float, levels: int = 3) -> Edit:
 
 
 def _loop_ball_on_wall(name: str, depth: float, handles: NDArray[np.int64] | None) -> Edit:
-    """A ball by Loop subdivision of 42 points, moved down by `depth` into a wavy sheet; by `handles` of them alone."""
+    """A Loop subdivision ball of 42 points, moved down by `depth` into a wavy sheet, optionally by `handles`."""
     cage = icosphere(1).moved((0, 0, 1.1))
     deformation, triangles = stiv.loop(stiv.Cage.of_faces(cage.faces), 2)
     fine = Shape(deformation.surface(cage.vertices), tuple(map(tuple, triangles.tolist())))
@@ -136,12 +136,12 @@ def _loop_ball_on_wall(name: str, depth: float, handles: NDArray[np.int64] | Non
 
 
 def loop(depth: float) -> Edit:
-    """A Loop subdivision surface under its cage; not one of the fourteen."""
+    """A Loop subdivision surface with its cage; not one of the fourteen."""
     return _loop_ball_on_wall("loop", depth, None)
 
 
 def loop_by_handles(depth: float) -> Edit:
-    """A Loop subdivision surface whose cage is under Laplacian editing by points of it; not one of the fourteen."""
+    """A Loop subdivision surface whose cage is edited by Laplacian handles; not one of the fourteen."""
     return _loop_ball_on_wall("loop by handles", depth, np.arange(0, 42, 3))
 
 
@@ -161,7 +161,7 @@ def _bspline_weights(points: Array, low: Array, high: Array, counts: tuple[int, 
 
 
 def _bunch(count: int) -> Shape:
-    """Shoots that lean outward, standing on a circle of three radii."""
+    """Shoots on a circle of three radii that lean outward."""
     shoots = []
     for number in range(count):
         angle = 2 * np.pi * number / count
@@ -173,7 +173,7 @@ def _bunch(count: int) -> Shape:
 
 
 def _open_vase(rings: int = 26, sides: int = 28) -> Shape:
-    """A surface of revolution without thickness, its neck narrower than the bunch."""
+    """A surface of revolution without thickness, with a neck narrower than the bunch."""
     height = np.linspace(-1.2, 1.2, rings)
     radius = 0.42 + 0.18 * np.cos(1.3 * height + 2.2) ** 2
     angle = 2 * np.pi * np.arange(sides) / sides
@@ -188,7 +188,7 @@ def _open_vase(rings: int = 26, sides: int = 28) -> Shape:
 
 
 def vase(depth: float, count: int = 12) -> Edit:
-    """Shoots in a tri-cubic lattice lowered by `depth` into a vase that is too narrow for them."""
+    """Shoots in a tri-cubic lattice, lowered by `depth` into a vase that is too narrow for them."""
     bunch = _bunch(count).moved((0, 0, 1.28))
     low, high = bunch.vertices.min(axis=0) - 0.01, bunch.vertices.max(axis=0) + 0.01
     weights, lattice = _bspline_weights(bunch.vertices, low, high, (6, 6, 8))
@@ -197,7 +197,7 @@ def vase(depth: float, count: int = 12) -> Edit:
 
 
 def rigid(depth: float, size: float = 1.0) -> Edit:
-    """A rigid tilted ellipsoid moved down by `depth` against a flat wall, 0.6 below it, and aside."""
+    """A tilted rigid ellipsoid moved down by `depth` and sideways, against a flat wall 0.6 below."""
     body = icosphere(2).scaled((0.8, 0.4, 0.25)).turned((0, 0.4, 0.3)).scaled(size).moved((0, 0, size))
     wall = triangulated(grid(19, 19, 4 * size, 4 * size))
     start = np.stack([body.vertices.mean(axis=0), np.zeros(3)])
@@ -221,7 +221,7 @@ def _laplacian_map(shape: Shape, handles: NDArray[np.int64]) -> tuple[Array, Arr
 
 
 def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
-    """A knotted tube under Laplacian editing: its foot is held, its top lifted by `lift`."""
+    """A knotted tube under Laplacian editing: its foot is fixed, and its top is lifted by `lift`."""
     shape = trefoil(rings, sides)
     y = shape.vertices[:, 1]
     foot, top = np.flatnonzero(y < np.quantile(y, 0.12)), np.flatnonzero(y > np.quantile(y, 0.9))
@@ -236,9 +236,9 @@ def knot(lift: float, rings: int = 150, sides: int = 10) -> Edit:
 
 
 def bulge(depth: float, cells: int = 16, rigid: bool = False) -> Edit:
-    """A sheet moved by handles, its rim held: a patch in the middle goes down by `depth` into a wavy sheet.
+    """A sheet moved by handles with a fixed boundary: its centre moves down by `depth` into a wavy sheet.
 
-    Handles beside the patch are pinned. Laplacian editing, or as rigid as possible. Not one of the fourteen.
+    Handles next to the centre are pinned. Laplacian or as-rigid-as-possible editing. Not one of the fourteen.
     """
     sheet = triangulated(grid(cells, cells)).moved((0, 0, 0.5))
     x, y = sheet.vertices[:, 0] / np.ptp(sheet.vertices[:, 0]), sheet.vertices[:, 1] / np.ptp(sheet.vertices[:, 1])
@@ -265,7 +265,7 @@ def bulge(depth: float, cells: int = 16, rigid: bool = False) -> Edit:
 
 
 def all_edits() -> list[Edit]:
-    """Fourteen edits of the seven families: shallow ones, deep ones, and ones that would go fully through."""
+    """Fourteen edits of the seven families: shallow, deep, and fully through the obstacle."""
     return [
         *(spheres(depth) for depth in (0.5, 1.5, 4.6)),
         *(sheets(depth) for depth in (0.5, 1.0)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solids as functions of space, negative inside and near to the distance outside, that can be put together smoothly."""
+"""Solids as functions of space, negative inside and close to the distance outside, that blend smoothly."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def ellipsoid(centre: ArrayLike, radii: ArrayLike) -> Field:
 
 
 def limb(first: ArrayLike, last: ArrayLike, radius: float, last_radius: float | None = None) -> Field:
-    """A rounded rod from `first` to `last` whose radius changes evenly."""
+    """A rounded rod from `first` to `last` whose radius changes linearly."""
     start, axis = np.asarray(first, float), np.subtract(last, first)
     end_radius = radius if last_radius is None else last_radius
 
@@ -45,7 +45,7 @@ def limb(first: ArrayLike, last: ArrayLike, radius: float, last_radius: float | 
 
 
 def path(points: ArrayLike, radii: ArrayLike) -> Field:
-    """Rods from point to point (k, 3) with a radius (k,) at each."""
+    """Rods between consecutive points (k, 3) with a radius (k,) at each."""
     stations, sizes = np.asarray(points, float), np.asarray(radii, float)
     return merged(
         *(limb(stations[i], stations[i + 1], sizes[i], sizes[i + 1]) for i in range(len(stations) - 1)), smooth=0.0
@@ -88,13 +88,13 @@ def merged(*fields: Field, smooth: float = 0.1) -> Field:
 
 
 def without(solid: Field, *others: Field, smooth: float = 0.0) -> Field:
-    """What is left of a solid when others are cut out of it."""
+    """A solid minus other solids."""
     cut = merged(lambda points: -solid(points), *others, smooth=smooth)
     return lambda points: -cut(points)
 
 
 def grown(solid: Field, distance: float) -> Field:
-    """The solid with a layer of `distance` more."""
+    """The solid, thickened by `distance`."""
     return lambda points: solid(points) - distance
 
 

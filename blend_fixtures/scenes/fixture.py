@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a fixture is: objects, a view, and the steps of its edit script; all plain data in world units and radians."""
+"""Fixtures as plain data: objects, a view, and the steps of an edit script, in world units and radians."""
 
 from __future__ import annotations
 
@@ -60,9 +60,10 @@ class VertexGroup:
 
 @dataclass(frozen=True)
 class MeshObject:
-    """A mesh, with a Lattice modifier (`lattice` names the object) before its Subdivision Surface modifier, if any.
+    """A mesh with an optional Lattice modifier (`lattice` names the object) before its Subdivision Surface
+        modifier.
 
-    `loop` levels of Loop subdivision are shown by an object beside it, as the add-on makes it; 0 for none.
+    An additional object, as the add-on creates it, shows `loop` levels of Loop subdivision; 0 for none.
     """
 
     name: str
@@ -79,7 +80,7 @@ class MeshObject:
 
 @dataclass(frozen=True)
 class LatticeObject:
-    """A lattice of (u, v, w) points; its points are one local unit apart, centred, as Blender makes them."""
+    """A centred lattice of (u, v, w) points, one local unit apart, as in Blender."""
 
     name: str
     resolution: tuple[int, int, int]
@@ -89,7 +90,7 @@ class LatticeObject:
 
 @dataclass(frozen=True)
 class EmptyObject:
-    """An object without data, there to be a parent."""
+    """An object without data, used as a parent."""
 
     name: str
     placement: Placement
@@ -97,7 +98,7 @@ class EmptyObject:
 
 @dataclass(frozen=True)
 class View:
-    """Where the camera stands, what it looks at, its focal length in millimetres, and the picture's size in pixels."""
+    """Position and target of the camera, its focal length in millimetres, and the size of the picture in pixels."""
 
     camera: Triple
     target: Triple = (0.0, 0.0, 0.0)
@@ -107,7 +108,7 @@ class View:
 
 @dataclass(frozen=True)
 class Fixture:
-    """One scene, named by the feature it shows, and the edit script that is run on it."""
+    """One scene, named after the feature it shows, and its edit script."""
 
     name: str
     summary: str
@@ -122,7 +123,7 @@ class Fixture:
 def lattice_around(
     name: str, low: Triple, high: Triple, resolution: tuple[int, int, int], interpolation: str = "KEY_BSPLINE"
 ) -> LatticeObject:
-    """An upright lattice whose outermost points span the box `low` .. `high`."""
+    """An axis-aligned lattice whose outermost points span the box `low` .. `high`."""
     extent = np.subtract(high, low) / (np.array(resolution) - 1)
     centre = np.add(low, high) / 2
     placement = Placement(location=tuple(centre.tolist()), scale=tuple(extent.tolist()))

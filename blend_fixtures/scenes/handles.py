@@ -15,12 +15,12 @@ RINGS, SIDES = 10, 8
 
 
 def ring_vertices(first: int, last: int) -> list[int]:
-    """Vertices of the rings first .. last of the arm; its tips are vertices 0 and the last one."""
+    """Vertices of the rings first .. last of the arm; its tips are the first and the last vertex."""
     return [1 + ring * SIDES + side for ring in range(first, last + 1) for side in range(SIDES)]
 
 
 def arm_with_handles() -> Fixture:
-    """An arm above a wavy wall: its hand is a handle, less ready to give way at the wrist, its shoulder is pinned."""
+    """An arm above a wavy wall: its hand is a handle that yields less at the wrist, and its shoulder is pinned."""
     x = np.linspace(-1.3, 1.3, RINGS)
     shape = tube(np.stack([x, 0 * x, 0.15 * np.cos(x)], axis=1), np.full(RINGS, 0.22), SIDES)
     tip = len(shape.vertices) - 1

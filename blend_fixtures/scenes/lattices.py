@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fixtures of lattices: each interpolation type, turned, partly outside; and one before a subdivision."""
+"""Fixtures with lattices: each interpolation type, rotated, partly outside; and one before a subdivision."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ INTERPOLATIONS = ("linear", "cardinal", "catmull_rom", "bspline")
 
 
 def lattice_of_type(interpolation: str) -> Fixture:
-    """A torus, partly outside a turned lattice of one interpolation type, pressed onto a plate and scaled up there."""
+    """A torus, partly outside a rotated lattice of one interpolation type, pressed onto a plate and scaled up."""
     lattice = LatticeObject(
         "Lattice",
         (4, 3, 5),
@@ -41,7 +41,7 @@ def lattice_of_type(interpolation: str) -> Fixture:
 
 
 def lattice_then_subdivision() -> Fixture:
-    """A cube in a lattice, then subdivided, pressed into a wavy wall by the lattice's points."""
+    """A cube in a lattice, then subdivided, pressed into a wavy wall through the lattice's points."""
     return Fixture(
         name="lattice_then_subdivision",
         summary="A Lattice modifier followed by a Subdivision Surface modifier, pressed into a wavy wall",

@@ -27,12 +27,12 @@ def move(selection: Step, value: Sequence[float], repeat: int = 1) -> Step:
 
 
 def contract(selection: Step, steps: int) -> Step:
-    """Contract until nothing intersects, at most so many `steps`."""
+    """Contract until nothing intersects, in at most `steps` steps."""
     return {"operator": "contract", **selection, "values": {"steps": steps, "until_free": True}}
 
 
 def expand(selection: Step, shares: Sequence[float]) -> list[Step]:
-    """Expand to the shape kept, to these ascending shares of the way, of which the last is 1."""
+    """Expand to the rest shape, in these ascending fractions of the way, of which the last is 1."""
     left = [1.0, *(1.0 - share for share in shares)]
     amounts = [1.0 - after / before for before, after in itertools.pairwise(left)]
     return [{"operator": "expand", **selection, "values": {"amount": amount}} for amount in amounts]
@@ -44,7 +44,7 @@ def repair(selection: Step) -> Step:
 
 
 def rotate(selection: Step, angle: float, axis: Sequence[float], repeat: int = 1) -> Step:
-    """Turn by `angle` radians about the world direction `axis` (3,) through the pivot, `repeat` times."""
+    """Rotate by `angle` radians about the world direction `axis` (3,) through the pivot, `repeat` times."""
     values = {"angle": float(angle), "axis": [float(x) for x in axis]}
     return {"operator": "rotate", **selection, "values": values, "repeat": repeat}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nine organ-like closed shapes as cages of triangles, each around the origin, and a bowl that they are packed into."""
+"""Nine closed organ-like shapes as triangle cages, each around the origin, and a bowl to pack them into."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .surface_nets import surface_net
 
 
 def _gut() -> Field:
-    """Two bends of a thick tube."""
+    """A thick tube with two bends."""
     turn = np.linspace(0, 1, 13)
     line = np.stack([0.38 * np.sin(2 * np.pi * turn), 0 * turn, 0.6 - 1.2 * turn], axis=1)
     return path(line, np.full(13, 0.2))
@@ -64,7 +64,7 @@ def organs(cell: float = 0.14) -> dict[str, Shape]:
 
 
 def bowl(cell: float = 0.11) -> Shape:
-    """A thick-walled bowl, open above."""
+    """A thick-walled bowl, open at the top."""
     outside, inside = ellipsoid((0, 0, -0.05), (1.13, 0.97, 1.13)), ellipsoid((0, 0, -0.05), (0.88, 0.72, 0.88))
     solid = without(outside, inside, half_space(2, 0.35, below=False), smooth=0.08)
     return triangulated(surface_net(solid, (-1.5,) * 3, (1.5,) * 3, cell))

@@ -15,7 +15,7 @@ LOWERINGS, SCALINGS = 48, 16
 
 
 def motion() -> tuple[Step, ...]:
-    """The bunch lowered into the vase, then scaled up there: 64 edits."""
+    """64 edits that lower the bunch into the vase and then scale it up."""
     everything = on_points("Lattice")
     growth = GROWTH ** (1 / SCALINGS)
     return (

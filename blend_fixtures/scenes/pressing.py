@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fixtures of one thing pressed into, or along, another."""
+"""Fixtures in which an object is pressed into or along another."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .walls import slab, wavy_wall
 
 
 def cage_into_wavy_wall() -> Fixture:
-    """A subdivided cube whose cage is pressed into a wavy wall, first its lower side, then all of it."""
+    """A subdivided cube whose cage is pressed into a wavy wall, first its lower side, then the whole cage."""
     cage = box(2, (2.0, 2.0, 2.0))
     lower = np.flatnonzero(cage.vertices[:, 2] < -0.5)
     return Fixture(
@@ -33,7 +33,7 @@ def cage_into_wavy_wall() -> Fixture:
 
 
 def sheet_through_sheet() -> Fixture:
-    """A small sheet pushed fully through a larger one in a single edit; both are free to give way where selected."""
+    """A small sheet pushed fully through a larger one in a single edit; both can yield if selected."""
     small = triangulated(grid(15, 15, 0.6, 0.6)).turned((0.0, 0.0, 0.2))
     bumpy = small.vertices + np.column_stack(
         [np.zeros((len(small.vertices), 2)), 0.05 * np.sin(5 * small.vertices[:, 0])]
@@ -81,7 +81,9 @@ def sphere_along_wall() -> Fixture:
 
 
 def rigid_ellipsoid() -> Fixture:
-    """An ellipsoid of negative, non-uniform scale under a turned and scaled parent, pushed and turned on a plate."""
+    """An ellipsoid with negative, non-uniform scale under a rotated and scaled parent, pushed and rotated on
+    a plate.
+    """
     selected = on_objects(["Ellipsoid"])
     return Fixture(
         name="rigid_ellipsoid",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Grids, boxes, spheres, tori: the simple shapes that fixtures are made of."""
+"""The simple shapes of fixtures: grids, boxes, spheres and tori."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .shape import Shape
 
 
 def grid(columns: int, rows: int, size_x: float = 1.0, size_y: float = 1.0) -> Shape:
-    """A flat sheet in the plane z = 0, centred: `columns` x `rows` quads, vertices with y running fastest."""
+    """A flat centred sheet in the plane z = 0: `columns` x `rows` quads, with y running fastest."""
     x, y = np.meshgrid(
         np.linspace(-size_x / 2, size_x / 2, columns + 1), np.linspace(-size_y / 2, size_y / 2, rows + 1), indexing="ij"
     )
@@ -23,7 +23,7 @@ def grid(columns: int, rows: int, size_x: float = 1.0, size_y: float = 1.0) -> S
 
 
 def triangulated(shape: Shape) -> Shape:
-    """The same vertices with every face cut into triangles; quads alternate their diagonal from face to face."""
+    """The same vertices with every face split into triangles; quads alternate their diagonal from face to face."""
     faces: list[tuple[int, ...]] = []
     for number, face in enumerate(shape.faces):
         first = number % 2 if len(face) == 4 else 0
@@ -49,7 +49,7 @@ def box(cuts: int = 1, size: tuple[float, float, float] = (2.0, 2.0, 2.0)) -> Sh
 
 
 def icosphere(levels: int, radius: float = 1.0) -> Shape:
-    """An icosahedron whose faces are quartered `levels` times, vertices on the sphere."""
+    """An icosahedron whose faces are split into four `levels` times, with vertices on the sphere."""
     golden = (1 + 5**0.5) / 2
     rows = [(sign_a, sign_b * golden) for sign_a in (-1, 1) for sign_b in (-1, 1)]
     vertices = [np.roll((0.0, a, b), shift) for shift in range(3) for a, b in rows]
@@ -66,7 +66,7 @@ def icosphere(levels: int, radius: float = 1.0) -> Shape:
 
 
 def _quartered(shape: Shape) -> Shape:
-    """Every triangle cut into four at the middles of its edges."""
+    """Every triangle split into four at the midpoints of its edges."""
     vertices: list[NDArray[np.float64]] = list(shape.vertices)
     middles: dict[tuple[int, int], int] = {}
 

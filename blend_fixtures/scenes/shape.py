@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A shape: vertices and polygons, nothing else, with the few operations that builders need."""
+"""A shape: only vertices and polygons, with the operations that builders need."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Shape:
         return Shape(self.vertices * np.asarray(factors, float), self.faces)
 
     def turned(self, angles: ArrayLike) -> Shape:
-        """The shape turned about the origin by XYZ Euler angles (3,), radians."""
+        """The shape rotated about the origin by XYZ Euler angles (3,) in radians."""
         return Shape(self.vertices @ rotation_matrix(angles).T, self.faces)
 
     def triangles(self) -> NDArray[np.int32]:
@@ -38,7 +38,7 @@ class Shape:
 
 
 def joined(shapes: Sequence[Shape]) -> Shape:
-    """One shape made of several, vertices and faces in the order given."""
+    """One shape made of several, with vertices and faces in the given order."""
     faces: list[tuple[int, ...]] = []
     start = 0
     for shape in shapes:

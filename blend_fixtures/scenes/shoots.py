@@ -13,13 +13,13 @@ from .sweeps import tube
 
 Array = NDArray[np.float64]
 
-CLEARANCE = 3.2  # between centre lines, in radii: two for the tubes, one for what the fanning and the chords take
+CLEARANCE = 3.2  # between centre lines, in radii: two for the tubes, one for the loss by fanning and chords
 ATTEMPTS = 200
 
 
 @dataclass(frozen=True)
 class Bunch:
-    """What the bunch is like; lengths in world units."""
+    """Parameters of the bunch; lengths in world units."""
 
     count: int = 183
     spacing: float = 0.062  # between neighbours at the foot
@@ -34,17 +34,17 @@ class Bunch:
 
 
 def feet(count: int, spacing: float) -> Array:
-    """The `count` points (count, 2) of a hexagonal grid that lie nearest to its centre."""
+    """The `count` points (count, 2) of a hexagonal grid nearest to its centre."""
     reach = int(np.sqrt(count)) + 2
     i, j = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1), indexing="ij")
     points = spacing * np.stack([i + j / 2, j * np.sqrt(0.75)], 2).reshape(-1, 2)
-    # An offset away from every symmetry gives each point a distance of its own, hence one order on any machine.
+    # An asymmetric offset makes all distances different, so the order is the same on any machine.
     order = np.argsort(np.linalg.norm(points - spacing * np.array([0.137, 0.071]), axis=1), kind="stable")
     return points[order[:count]]
 
 
 def paths(bunch: Bunch) -> Array:
-    """Centre lines (count, rings, 3), foot at z = 0, each swaying within the room its neighbours leave."""
+    """Centre lines (count, rings, 3) with the foot at z = 0, each swaying in the space between its neighbours."""
     chance = np.random.default_rng(bunch.seed)
     base = feet(bunch.count, bunch.spacing)
     height = np.linspace(0, 1, bunch.rings)
@@ -59,7 +59,7 @@ def paths(bunch: Bunch) -> Array:
 def _free_line(
     chance: np.random.Generator, foot: Array, height: Array, others: Array, bunch: Bunch, clearance: float
 ) -> Array:
-    """A line (rings, 2) from `foot` that keeps `clearance` from `others` at every height; the roomiest if none does."""
+    """A line (rings, 2) from `foot` with `clearance` from `others` at every height, or the best one if none has it."""
     best, room = np.tile(foot, (len(height), 1)), -1.0
     for attempt in range(ATTEMPTS):
         line = foot + _sway(chance, height, bunch.spacing * bunch.sway * (1 - attempt / ATTEMPTS))
@@ -72,7 +72,7 @@ def _free_line(
 
 
 def _sway(chance: np.random.Generator, height: Array, size: float) -> Array:
-    """A sideways bend (rings, 2): none at the foot, growing upward with one slow wave on top."""
+    """A sideways bend (rings, 2) that grows upward from zero, plus one slow wave."""
     direction, phase = chance.uniform(0, 2 * np.pi, 2)
     bend = size * chance.uniform(0.2, 1.0) * height**1.7
     wave = 0.25 * size * height * np.sin(4.2 * height + phase)
@@ -81,7 +81,7 @@ def _sway(chance: np.random.Generator, height: Array, size: float) -> Array:
 
 
 def _fanned(line: Array, height: Array, share: float, bunch: Bunch) -> Array:
-    """Widens a line outward with height, and lets outer shoots hang: one smooth map of space, so nothing meets."""
+    """The line widened with height, with hanging outer shoots: a smooth map of space, so nothing intersects."""
     at = np.linspace(0, share, len(height))
     plane = np.stack([np.interp(at, height, line[:, axis]) for axis in range(2)], 1)
     outer = np.linalg.norm(plane, axis=1) / (bunch.spacing * np.sqrt(bunch.count / 3.6))
@@ -90,7 +90,7 @@ def _fanned(line: Array, height: Array, share: float, bunch: Bunch) -> Array:
 
 
 def radii(bunch: Bunch, thickness: float) -> Array:
-    """Radius along a shoot (rings,): slender foot, fullest at a third, fine tip."""
+    """Radius along a shoot (rings,): slender foot, thickest at a third, fine tip."""
     along = np.linspace(0, 1, bunch.rings)
     return (
         bunch.radius * thickness * (0.75 + 0.25 * np.sin(np.pi * np.minimum(along * 1.5, 1))) * (1 - 0.82 * along**2.2)

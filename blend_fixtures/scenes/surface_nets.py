@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of solids given as functions: one vertex in each cell that the surface crosses [Gibson 1998]."""
+"""Meshes of implicit solids: one vertex in each cell that the surface crosses [Gibson 1998]."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Indices = NDArray[np.int64]
 def surface_net(solid: Field, low: ArrayLike, high: ArrayLike, cell: float, relaxation: int = 5) -> Shape:
     """A closed mesh of quads around `solid`, in cells of size `cell` that fill the box `low` .. `high`.
 
-    The solid lies within the box, and is everywhere thicker than about two cells. `relaxation` times, vertices go to
-    the middle of their neighbours and back onto the surface, which evens out the quads.
+    The solid lies within the box, and is everywhere thicker than about two cells. `relaxation` is the number of times
+        that vertices move to the mean of their neighbours and back onto the surface, which makes the quads more even.
     """
     origin = np.asarray(low, float)
     counts = np.ceil((np.asarray(high, float) - origin) / cell).astype(int) + 1
@@ -35,7 +35,9 @@ def surface_net(solid: Field, low: ArrayLike, high: ArrayLike, cell: float, rela
 
 
 def _quads(inside: NDArray[np.bool_]) -> Indices:
-    """Numbers (q, 4) of the four cells around each grid edge that leaves the solid, counter-clockwise from outside."""
+    """Indices (q, 4) of the four cells around each grid edge that crosses the surface, counter-clockwise from
+    outside.
+    """
     strides = np.array([inside.shape[1] * inside.shape[2], inside.shape[2], 1])
     found = []
     for axis in range(3):
@@ -52,7 +54,7 @@ def _quads(inside: NDArray[np.bool_]) -> Indices:
 
 
 def _on_surface(solid: Field, points: Array, cell: float, steps: int) -> Array:
-    """Points moved along the gradient to where the function is zero, at most a cell a step (Newton's method)."""
+    """Points moved along the gradient to zeros of the function, at most one cell per step (Newton's method)."""
     reach = 1e-3 * cell
     for _ in range(steps):
         gradient = np.stack(
@@ -66,7 +68,7 @@ def _on_surface(solid: Field, points: Array, cell: float, steps: int) -> Array:
 
 
 def _evened(vertices: Array, faces: Indices) -> Array:
-    """Each vertex half way to the mean of its neighbours."""
+    """Each vertex moved halfway to the mean of its neighbours."""
     ends = np.concatenate([faces, np.roll(faces, 1, axis=1)]).ravel()
     beside = np.concatenate([np.roll(faces, 1, axis=1), faces]).ravel()
     count = np.bincount(ends, minlength=len(vertices))

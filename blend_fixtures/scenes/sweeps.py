@@ -10,10 +10,10 @@ from .shape import Shape
 
 
 def capped_rings(rings: NDArray[np.float64], first: NDArray[np.float64], last: NDArray[np.float64]) -> Shape:
-    """A closed surface through `rings` (R, S, 3), ended by fans to the points `first` and `last` (3,): triangles only.
+    """A closed triangle mesh through `rings` (R, S, 3), closed by fans to the points `first` and `last` (3,).
 
-    Each ring runs counter-clockwise seen from the far end of the sweep, so that faces look outward. S R + 2 vertices,
-    2 S R triangles.
+    Each ring runs counter-clockwise seen from the far end of the sweep, so that faces point outward. S R + 2 vertices,
+        2 S R triangles.
     """
     count, sides = rings.shape[:2]
     vertices = np.concatenate([first[None], rings.reshape(-1, 3), last[None]])
@@ -31,14 +31,14 @@ def capped_rings(rings: NDArray[np.float64], first: NDArray[np.float64], last: N
 
 
 def tube(path: NDArray[np.float64], radii: NDArray[np.float64], sides: int, cap: float = 1.0) -> Shape:
-    """A closed tube along `path` (R, 3) with `radii` (R,): rings without twist, tips `cap` radii beyond the ends."""
+    """A closed tube along `path` (R, 3) with `radii` (R,), without twist, with tips `cap` radii beyond the ends."""
     tangents = np.gradient(path, axis=0)
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
     across = np.cross(tangents[0], [0.31, 0.93, 0.17])
     angles = 2 * np.pi * np.arange(sides) / sides
     rings = np.empty((len(path), sides, 3))
     for i, (point, tangent, radius) in enumerate(zip(path, tangents, radii, strict=True)):
-        across = across - tangent * (across @ tangent)  # parallel transport: the ring turns no more than the path
+        across = across - tangent * (across @ tangent)  # parallel transport: the ring does not twist
         across /= np.linalg.norm(across)
         other = np.cross(tangent, across)
         rings[i] = point + radius * (np.outer(np.cos(angles), across) + np.outer(np.sin(angles), other))
@@ -49,7 +49,7 @@ def tube(path: NDArray[np.float64], radii: NDArray[np.float64], sides: int, cap:
 def revolution(profile: NDArray[np.float64], sides: int) -> Shape:
     """A closed solid about the z axis from `profile` (R, 2) of radius and height; its ends lie on the axis.
 
-    The profile runs so that the solid lies on its left: bottom centre, outside, upward.
+    The solid lies to the left of the profile: bottom centre, outside, upward.
     """
     angles = 2 * np.pi * np.arange(sides) / sides
     radius, height = profile[1:-1, 0, None], profile[1:-1, 1, None]
@@ -60,12 +60,12 @@ def revolution(profile: NDArray[np.float64], sides: int) -> Shape:
 
 
 def trefoil(rings: int, sides: int) -> Shape:
-    """A closed tube of quads along a trefoil knot; its frames return to themselves after one round."""
+    """A closed quad tube along a trefoil knot, whose frames close after one round."""
     t = 2 * np.pi * np.arange(rings) / rings
     path = np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t)], axis=1)
     tangent = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    across = np.cross(tangent, [0.0, 0.0, 1.0])  # nowhere along the axis on this knot
+    across = np.cross(tangent, [0.0, 0.0, 1.0])  # never parallel to the axis on this knot
     across /= np.linalg.norm(across, axis=1)[:, None]
     other = np.cross(tangent, across)
     angle = 2 * np.pi * np.arange(sides) / sides

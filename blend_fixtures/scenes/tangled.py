@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that already intersect, for repair: tubes bent through themselves, an arm in a body, a shirt that is cut."""
+"""Intersecting surfaces for repair: tubes bent through themselves, an arm in a body, a body that cuts a shirt."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tangle:
-    """A surface and the positions (N, 3) at which it intersects."""
+    """A surface and its intersecting positions (N, 3)."""
 
     name: str
     surface: stiv.Surface
@@ -30,7 +30,7 @@ class Tangle:
 
 
 def _tangle(name: str, **shapes: Shape) -> Tangle:
-    """Shapes side by side, each a deformable body of its own."""
+    """Concatenated shapes, each a separate deformable body."""
     whole = joined(list(shapes.values()))
     owner = np.repeat(np.arange(len(shapes)), [len(shape.vertices) for shape in shapes.values()])
     bodies = [stiv.Body(body) for body in shapes]
@@ -39,7 +39,7 @@ def _tangle(name: str, **shapes: Shape) -> Tangle:
 
 
 def hairpin(radius: float, rings: int = 70, sides: int = 12) -> Tangle:
-    """A tube of the given radius that turns back upon itself; its two legs lie 0.45 apart, axis to axis."""
+    """A tube of the given radius that turns back on itself; the axes of its legs are 0.45 apart."""
     along = np.linspace(0, 1, rings)
     turn = np.pi * np.clip((along - 0.4) / 0.2, 0, 1)
     length = 3.5 / rings
@@ -48,7 +48,7 @@ def hairpin(radius: float, rings: int = 70, sides: int = 12) -> Tangle:
 
 
 def figure(levels: int = 3) -> Shape:
-    """A figure with head, arms stretched out along x and legs: a Catmull-Clark surface, about 6,000 vertices."""
+    """A figure with head, legs, and arms along x: a Catmull-Clark surface with about 6,000 vertices."""
     torso = set(itertools.product(range(-1, 2), (0, 1), range(4)))
     legs = set(itertools.product((-1, 1), (0,), range(-4, 0)))
     arms = set(itertools.product((*range(-6, -1), *range(2, 7)), (0,), (3,)))
@@ -59,7 +59,7 @@ def figure(levels: int = 3) -> Shape:
 
 
 def arm_in_body(angle: float = 1.9, levels: int = 3) -> Tangle:
-    """The figure with one arm bent down at the shoulder, by `angle` radians, until it is in the side of the body."""
+    """The figure with one arm bent down at the shoulder by `angle` radians, into the side of the body."""
     shape = figure(levels)
     shoulder, width = np.array([1.9, 0.0, 3.5]), 0.8
     share = np.clip((shape.vertices[:, 0] - shoulder[0]) / width + 0.5, 0, 1)
@@ -72,7 +72,7 @@ def arm_in_body(angle: float = 1.9, levels: int = 3) -> Tangle:
 
 
 def shirt_cut_by_torso(cuts: int = 26, cells: int = 56) -> Tangle:
-    """A torso with hills that stick out of an open shirt around it in many places."""
+    """A torso with hills that protrude from its open shirt in many places."""
     torso = rounded_box(cuts, 0.12).scaled((0.8, 0.55, 1.2))
     sheet = triangulated(grid(cells, cells // 2, 2 * np.pi, 1.5))
     angle, height = sheet.vertices[:, 0], sheet.vertices[:, 1]
@@ -91,5 +91,5 @@ def coincident_spheres(levels: int = 3) -> Tangle:
 
 
 def all_tangles() -> tuple[Tangle, ...]:
-    """What repair is measured on: the first four can be repaired, the last cannot."""
+    """The scenes for measuring repair: the first four can be repaired, the last cannot."""
     return hairpin(0.25), hairpin(0.32), arm_in_body(), shirt_cut_by_torso(), coincident_spheres()

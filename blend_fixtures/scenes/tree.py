@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A tree of loose pieces: trunk and branches are closed tubes that end short of each other, leaves lie free."""
+"""A tree of loose pieces: trunk and branches are separate closed tubes, and leaves are free."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tree:
-    """What the tree is like; lengths in world units."""
+    """Parameters of the tree; lengths in world units."""
 
     leaves: int = 7855
-    candidates: int = 15000  #: leaves tried; those that meet something are left out
+    candidates: int = 15000  #: candidate leaves; those that intersect something are omitted
     height: float = 2.0
     forks: tuple[int, ...] = (9, 4)  #: limbs of the trunk, twigs of a limb
     leaf: float = 0.085  #: length of a leaf
@@ -46,7 +46,7 @@ def tree(kind: Tree = Tree()) -> Shape:
 
 
 def _apart(shape: Shape, owner: NDArray[np.int64]) -> list[int]:
-    """The pieces, by number, that meet no piece kept before them; `owner` is the piece of each triangle."""
+    """Indices of the pieces that intersect no earlier chosen piece; `owner` is the piece of each triangle."""
     pairs = np.unique(np.sort(owner[stiv.find_intersections(shape.vertices, shape.triangles())], axis=1), axis=0)
     dropped: set[int] = set()
     for first, second in pairs[np.argsort(pairs[:, 1], kind="stable")].tolist():
@@ -72,7 +72,7 @@ def _branches(kind: Tree, chance: np.random.Generator) -> list[_Branch]:
 
 
 def _child(parent: _Branch, along: float, turn: float, level: int, kind: Tree, chance: np.random.Generator) -> _Branch:
-    """A branch that leaves `parent` at a share of its length; it begins a little outside of its bark."""
+    """A branch from `parent` at a fraction of its length, starting slightly outside its bark."""
     place = along * (len(parent.line) - 1)
     at = np.array([np.interp(place, np.arange(len(parent.line)), parent.line[:, k]) for k in range(3)])
     girth = float(np.interp(place, np.arange(len(parent.line)), parent.radii))
@@ -91,7 +91,7 @@ def _child(parent: _Branch, along: float, turn: float, level: int, kind: Tree, c
 def _curve(
     first: Array, last: Array, radius: float, end_radius: float, chance: np.random.Generator, lift: float = 0.0
 ) -> _Branch:
-    """A line of stations that bends aside a little and rises toward its end."""
+    """A line of points that bends slightly sideways and rises toward its end."""
     along = np.linspace(0, 1, 5)[:, None]
     aside = 0.08 * np.linalg.norm(last - first) * chance.normal(size=3) * (np.abs(last - first) < 1.4)
     line = first + along * (last - first) + np.sin(np.pi * along) * aside + lift * along**2 * [0, 0, 1]
@@ -99,7 +99,7 @@ def _curve(
 
 
 def _free_leaves(kind: Tree, chance: np.random.Generator, twigs: list[_Branch], wood: Shape) -> Shape:
-    """The first `leaves` of the candidates that meet neither wood nor a leaf kept before them."""
+    """The first `leaves` candidates that intersect neither wood nor an earlier chosen leaf."""
     tried = _leaves(kind.candidates, kind.leaf, twigs, chance)
     whole = joined([wood, tried])
     owner = np.maximum((np.arange(len(whole.faces)) - len(wood.faces)) // 2, -1) + 1  # 0 is the wood
@@ -109,12 +109,12 @@ def _free_leaves(kind: Tree, chance: np.random.Generator, twigs: list[_Branch], 
 
 
 def _leaf_faces(count: int) -> tuple[tuple[int, ...], ...]:
-    """Two triangles a leaf, that share its midrib."""
+    """Two triangles per leaf that share its midrib."""
     return tuple(face for a in range(0, 4 * count, 4) for face in ((a, a + 1, a + 2), (a, a + 2, a + 3)))
 
 
 def _leaves(count: int, length: float, twigs: list[_Branch], chance: np.random.Generator) -> Shape:
-    """Pointed leaves, folded along their midrib, that stand off twigs: stem, side, tip, side."""
+    """Pointed leaves, folded along their midrib and separate from twigs: stem, side, tip, side."""
     lines = np.stack([twig.line for twig in twigs])
     which, along = chance.integers(len(twigs), size=count), chance.uniform(0.15, 1.08, count) * 4
     cell = np.minimum(along.astype(int), 3)

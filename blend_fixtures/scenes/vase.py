@@ -13,18 +13,18 @@ HEIGHT = 1.6
 NECK_HEIGHT = 1.22
 WALL = 0.05
 
-# Radius of the inner wall over height, from the floor to the lip: knots of a smooth curve.
+# Radius of the inner wall over height, from the floor to the lip, as knots of a smooth curve.
 _INNER_HEIGHTS = np.array([0.06, 0.10, 0.25, 0.50, 0.80, 1.05, 1.22, 1.38, 1.50, 1.585])
 _INNER_RADII = np.array([0.30, 0.37, 0.47, 0.54, 0.49, 0.39, 0.355, 0.40, 0.50, 0.62])
 
 
 def inner_radius(height: float) -> float:
-    """Radius of the vase's inside at a height above its foot."""
+    """Inner radius of the vase at a height above its foot."""
     return float(_smooth(np.array([height]))[0])
 
 
 def _smooth(heights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The knots' Catmull-Rom curve (Hermite with central differences), which stays smooth at uneven knots."""
+    """The Catmull-Rom curve of the knots (Hermite with central differences), smooth at uneven knots."""
     slopes = np.gradient(_INNER_RADII, _INNER_HEIGHTS)
     i = np.clip(np.searchsorted(_INNER_HEIGHTS, heights) - 1, 0, len(slopes) - 2)
     width = _INNER_HEIGHTS[i + 1] - _INNER_HEIGHTS[i]
@@ -49,7 +49,7 @@ def profile(rings: int) -> NDArray[np.float64]:
 
 
 def vase(sides: int = 34, rings: int = 44) -> Shape:
-    """A solid vase standing on z = 0: sides x rings + 2 vertices, closed, faces outward."""
+    """A closed solid vase standing on z = 0, with sides x rings + 2 vertices and outward faces."""
     closed = profile(rings)
     assert len(closed) == rings + 2
     return revolution(closed, sides)

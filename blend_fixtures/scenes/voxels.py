@@ -14,7 +14,7 @@ Cell = tuple[int, int, int]
 
 
 def voxel_surface(cells: Iterable[Cell]) -> Shape:
-    """The quads between cells, cubes of size 1, and empty space, seen from outside counter-clockwise."""
+    """The quads between cells (unit cubes) and empty space, counter-clockwise seen from outside."""
     filled = set(cells)
     index: dict[tuple[int, ...], int] = {}
     faces = []

@@ -10,7 +10,7 @@ from .shape import Shape
 
 
 def wavy_wall(cells: int = 24, size: float = 4.0, amplitude: float = 0.15) -> Shape:
-    """A sheet about the plane z = 0 with hills and valleys of `amplitude`."""
+    """A sheet around the plane z = 0 with hills and valleys of `amplitude`."""
     flat = grid(cells, cells, size, size)
     x, y = flat.vertices[:, 0], flat.vertices[:, 1]
     height = amplitude * np.sin(4 * x) * np.cos(3 * y)

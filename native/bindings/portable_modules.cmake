@@ -1,5 +1,5 @@
-# One module for each version of Python in STIV_PYTHON_HEADERS, a list of VERSION=FOLDER, all over one core. Headers are
-# all that a module needs of a Python: its symbols are found in the process that loads it.
+# One module for each version of Python in STIV_PYTHON_HEADERS, a list of VERSION=FOLDER, all with the same core. A module
+# needs only the headers of its Python: the process that loads it provides the symbols.
 if(NOT TARGET pybind11::headers)
   set(PYBIND11_NOPYTHON ON)
   find_package(pybind11 CONFIG REQUIRED)
@@ -14,14 +14,14 @@ foreach(entry IN LISTS STIV_PYTHON_HEADERS)
   set(minor ${CMAKE_MATCH_1})
   set(folder "${CMAKE_MATCH_2}")
   add_library(_native_cp3${minor} MODULE EXCLUDE_FROM_ALL ${stiv_bindings})
-  # Debian's pyconfig.h asks for one below the folder, named by the processor.
+  # Debian's pyconfig.h includes another one in a subfolder named after the processor.
   target_include_directories(_native_cp3${minor} SYSTEM PRIVATE "${folder}/python3.${minor}" "${folder}")
   target_link_libraries(_native_cp3${minor} PRIVATE pybind11::headers)
   stiv_link_module(_native_cp3${minor})
   target_compile_options(_native_cp3${minor} PRIVATE -O1)  # they only translate, and are compiled several times
   set_target_properties(_native_cp3${minor} PROPERTIES
     PREFIX "" OUTPUT_NAME "_native.cpython-3${minor}-x86_64-linux-gnu" SUFFIX ".so")
-  # Without what debuggers read, nine tenths of the file.
+  # Without debug information, nine tenths of the file.
   add_custom_command(TARGET _native_cp3${minor} POST_BUILD COMMAND ${CMAKE_STRIP} $<TARGET_FILE:_native_cp3${minor}>)
   add_dependencies(stiv_portable_modules _native_cp3${minor})
 endforeach()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of a small mesh, one after the other: a detector that keeps its trees and candidates finds what brute force
-// finds anew, bit by bit, with every broad phase; the earliest time is the least of all.
+// Consecutive steps of a small mesh: a detector with cached trees and candidates finds exactly the events of brute
+// force, with every broad phase; the earliest time is their minimum.
 #include <algorithm>
 
 #include "small_mesh.hpp"

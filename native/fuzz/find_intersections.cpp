@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States of a small mesh, one after the other: trees, stars and filters find what the exact test of each pair finds,
-// and that does not depend on the order of triangles and corners.
+// Consecutive states of a small mesh: trees, stars and filters find the intersections of the exact test of each pair,
+// for any order of triangles and corners.
 #include <algorithm>
 
 #include "small_mesh.hpp"

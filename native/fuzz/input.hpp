@@ -12,7 +12,7 @@
 
 namespace stiv::fuzz {
 
-/// What the fuzzer made, read piece by piece; zeros after its end.
+/// Input of the fuzzer, read piece by piece; zeros after its end.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : bytes_(data, size) {}
@@ -29,8 +29,8 @@ class Input {
   /// A whole number in [0, count).
   Index below(Index count) { return byte() % count; }
 
-  /// A coordinate: mostly on a grid of sixteenths, where parallel, coplanar and touching things are frequent; of the
-  /// rest, some off it by a few units in the last place, and some any number of moderate size.
+  /// A coordinate: usually on a grid of sixteenths, where parallel, coplanar and touching primitives are frequent;
+  /// otherwise a few units in the last place off the grid, or any number of moderate size.
   double coordinate(bool on_grid) {
     const auto steps = static_cast<std::int8_t>(byte());
     if (on_grid) return steps / 16.0;
@@ -57,7 +57,7 @@ class Input {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Ends the run, which libFuzzer reports with the input.
+/// Ends the run; libFuzzer reports the input.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);

@@ -17,12 +17,12 @@ inline Corners corners(const Surface& surface, Index face) {
   return {row[0], row[1], row[2]};
 }
 
-/// A few vertices and triangles, corners repeated or shared at random, and a few loose edges.
+/// A few vertices, triangles with randomly repeated or shared corners, and a few loose edges.
 inline std::shared_ptr<const Surface> small_surface(Input& input) {
   SurfaceDefinition definition;
   definition.vertex_count = 3 + input.below(14);
   definition.triangles.resize(1 + input.below(14), 3);
-  // Fans around a vertex, as meshes have them, or any three.
+  // Fans around a vertex, as in meshes, or any three vertices.
   const bool fans = input.below(2) == 0;
   for (Index face = 0; face < definition.triangles.rows(); ++face) {
     for (Index k = 0; k < 3; ++k) definition.triangles(face, k) = input.below(definition.vertex_count);

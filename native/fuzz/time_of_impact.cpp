@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One pair of primitives: the time of impact is never later than a contact that an independent search finds, in any
+// One pair of primitives: the time of impact is never later than a contact found by an independent search, for any
 // order of the vertices.
 #include <algorithm>
 #include <initializer_list>

@@ -3,7 +3,8 @@
 
 Inner vertices and edges [Loop 1987], creases, boundaries, corners and limit positions [Hoppe et al. 1994,
 section 4; the limit mask of a crease between regular vertices], sharpness that decreases by one per level
-[DeRose et al. 1998]."""
+[DeRose et al. 1998].
+"""
 
 from __future__ import annotations
 

@@ -91,7 +91,8 @@ def reference(case: CageCase, levels: int, limit: bool) -> tuple[NDArray[np.floa
     """The result of the masks.
 
     The limit is taken after `quality` levels, where it matters: the masks of ends of creases are not exact.
-    At rounded corners of the boundary OpenSubdiv goes no further than those levels."""
+    At rounded corners of the boundary OpenSubdiv goes no further than those levels.
+    """
 
     def sharpness(crease: float) -> float:
         return FOREVER if crease == 1 else round(10 * crease**2, 6)

@@ -73,7 +73,8 @@ def test_all_bodies_may_move_together() -> None:
 
 def test_a_tip_that_pierces_a_sheet_can_leave_but_not_return() -> None:
     """All triangles around the tip intersect the sheet, so the tip may leave. Afterwards its pairs are still
-    excluded, but their number has fallen to zero and may not grow again."""
+    excluded, but their number has fallen to zero and may not grow again.
+    """
     sheet = np.array([[-1, -1, 0], [1, -1, 0], [0, 1.5, 0]], float)
     spike = np.array([[0, 0, -0.2], [0.1, 0, 1], [-0.1, 0.1, 1], [-0.1, -0.1, 1]], float)
     triangles = [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 4]]

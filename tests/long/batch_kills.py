@@ -4,7 +4,8 @@
     python tests/long/batch_kills.py [--scenes 200] [--kills 50] [--seed 1]
 
 Kills alternate between a worker and the parent, after which the job is resumed. The exit code is 1 if an
-output differs from that of an undisturbed run, or if the job does not finish. Needs /proc."""
+output differs from that of an undisturbed run, or if the job does not finish. Needs /proc.
+"""
 
 import argparse
 import os

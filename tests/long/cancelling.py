@@ -7,7 +7,8 @@ It alternates between drags, edits and settling; the progress callback cancels a
 is 1 in three cases: a cancelled call changed a bit of the controls or the surface, the cancelled session
 later gives other results than an uncancelled one, or a call took more than 100 ms of processor time to
 return. Other programs add to wall times; with one thread, the processor time of this process shows the cost
-of the code itself."""
+of the code itself.
+"""
 
 import argparse
 import hashlib

@@ -8,7 +8,8 @@ solve, but without a window. The mouse moves for a second and rests for half a s
 the current solve, writing and testing; then everything is restored. The delay is the time from the key to the
 end of the restore. The exit code is 1 if the scene changed by a bit, or if a drag took more than 100 ms of
 the main thread's processor time to return. Other programs add to wall times, and Blender's own threads to the
-time of the process. Needs Blender as a Python module, and the add-on as `stiv_addon`."""
+time of the process. Needs Blender as a Python module, and the add-on as `stiv_addon`.
+"""
 
 import argparse
 import hashlib

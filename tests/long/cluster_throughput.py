@@ -5,7 +5,8 @@
 
 Prints scenes per second of wall time, processor seconds per scene (over all worker processes), and the ratio.
 The exit code is 1 if the results differ, or if the median ratio is below 1.7. Two workers need two idle
-processors; on a busy machine, they only take time from other programs. Needs /proc."""
+processors; on a busy machine, they only take time from other programs. Needs /proc.
+"""
 
 import argparse
 import os

@@ -8,7 +8,8 @@ The readers are written in Python, so libFuzzer cannot trace them. This program 
 interpreter's own tracing: it mutates inputs, and adds those that reach a new pair of lines to the corpus.
 Meshes that can be read also run through the exact test. The exit code is 1, and the input is saved, if a
 reader raises anything but InputError with the file's name, or takes longer than ten seconds. Memory is
-limited to 4 GB."""
+limited to 4 GB.
+"""
 
 import argparse
 import faulthandler

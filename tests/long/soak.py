@@ -11,7 +11,8 @@ tenth, and at the end.
 
 The exit code is 1 if surfaces intersect, if a constant block differs, if either memory grows by 1 % or more
 after the first tenth, or if the constant block becomes slower by 10 % or more. Needs /proc and mallinfo2
-(glibc 2.33)."""
+(glibc 2.33).
+"""
 
 import argparse
 import ctypes

@@ -4,7 +4,8 @@
 Two primitives touch for the first time at 0, or when a polynomial in time changes sign or touches zero: the
 volume of the four points (cubic), or, for pairs that stay in one plane, an area of three of them (quadratic).
 At each root, isolated to 2^-160, the squared distance is compared. Doubles are integers over a common power
-of two."""
+of two.
+"""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction

@@ -5,7 +5,8 @@ Two convex sets are disjoint if some direction separates them. Along a fixed dir
 vertices in linear motion is linear in time, so its values at the ends of an interval bound all others. A
 direction that separates at both ends thus proves the whole interval clear. The choice of directions affects
 the speed but not the result. If an interval shorter than RESOLUTION cannot be proven clear, a contact is
-reported."""
+reported.
+"""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -127,7 +128,8 @@ def _overlapping(
     """Yield the rows of all boxes (low, high) that come within the clearance of each other.
 
     Along one axis, boxes that overlap a query begin below its end, and at most the largest width below its
-    start."""
+    start.
+    """
     (low, high), (others_low, others_high) = boxes, others
     if not len(low) or not len(others_low):
         return

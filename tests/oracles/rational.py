@@ -2,7 +2,8 @@
 """Intersections of triangles in rational arithmetic: slow, and correct by construction.
 
 It clips the parameter domain of one triangle by the linear constraints that describe the other, and shares
-only the definition with the core. It works for doubles of any size, and for triangles without area."""
+only the definition with the core. It works for doubles of any size, and for triangles without area.
+"""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction

@@ -2,7 +2,8 @@
 """Every example in every document runs exactly as printed, with the wheel installed by pip, in a subprocess.
 
 Python blocks run as scripts, or as tests if they use the fixture of the pytest plugin. Command lines run in a
-shell, in the folder of their files."""
+shell, in the folder of their files.
+"""
 
 import os
 import re

@@ -47,7 +47,8 @@ def copied_tree(tmp_path: Path) -> Path:
     """A copy of the source tree with a build folder.
 
     In the real tree, the backend's search for files may enter `build/` although it is ignored, and follow
-    links of a mounted Debian folder out of the tree."""
+    links of a mounted Debian folder out of the tree.
+    """
     tree = tmp_path / "tree"
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", "dist", ".git", "__pycache__", ".*_cache"))
     for name in ("build/native/log.txt", "dist/stiv.zip", "python/stiv/_native.so"):

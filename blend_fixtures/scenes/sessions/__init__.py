@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The modeling sessions that the paper shows, as plain data: surfaces, deformations, and edit after edit."""
+"""The modeling sessions of the paper as plain data: surfaces, deformations and edits."""

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure 1: an ogre is dressed. A shirt that cuts it, glasses and a hat too narrow for it; all Loop subdivision.
+"""Figure 1: an ogre is dressed in a shirt that cuts it, and in glasses and a hat that are too narrow; all
+Loop surfaces.
 
-Contract the body until the shirt no longer cuts it, expand it again with interference on; shrink the shirt onto it;
-move the glasses rigidly to the head, then press them on as cages so that they widen; the same with the hat.
+The body is contracted until the shirt no longer cuts it, and expanded again without intersections. The shirt
+is shrunk onto it. Glasses and hat move rigidly to the head and are then pressed on with their cages, so they
+widen.
 """
 
 from __future__ import annotations
@@ -22,24 +24,24 @@ from .subdivision_parts import Parts, part
 LEVELS = {"Ogre": 2, "Shirt": 2, "Glasses": 1, "Hat": 2}
 EXPANSIONS, SHRINKS, APPROACHES, PRESSES = 24, 20, 16, 16
 CONTRACTIONS = 12
-BODY_GIVES_WAY = 0.05  # of what the shirt does, while it expands
+BODY_WEIGHT = 0.05  # response weight of the shirt during the expansion
 SHRINK = 0.985
 WORN = {"Glasses": np.array([0, 0.55, 0]), "Hat": np.array([0, 0, -0.36])}  # and the way there
 PRESSED = 0.45  # of that way
 
 
 def cages() -> dict[str, Shape]:
-    """The cages as they are modeled."""
+    """The modeled cages."""
     return {"Ogre": ogre(), "Shirt": shirt(), "Glasses": glasses(), "Hat": hat()}
 
 
 def parts() -> Parts:
-    """Their surfaces: 13,318 vertices and 26,060 triangles in the paper; the same within 1 %."""
+    """Their surfaces: 13,318 vertices and 26,060 triangles in the paper, equal within 1 %."""
     return Parts({name: part(cage, LEVELS[name]) for name, cage in cages().items()})
 
 
 def contract_body(scene: Parts) -> None:
-    """Contract the cage of the ogre step by step until the exact test finds nothing between it and the shirt."""
+    """Contract the cage of the ogre stepwise until it no longer intersects the shirt in the exact test."""
     body = scene.parts["Ogre"].cage
     start, smoothing = body.vertices, 1.0
     for _ in range(CONTRACTIONS):
@@ -52,7 +54,7 @@ def contract_body(scene: Parts) -> None:
 
 
 def expansions(first: Array, last: Array, block: Array) -> tuple[Edit, ...]:
-    """Edits that take the controls of `block` from `first` to `last` in even steps, wherever they were held up."""
+    """Edits that move the controls of `block` from `first` to `last` in even steps, wherever they were stopped."""
 
     def toward(share: float) -> Edit:
         def goal(controls: Array) -> Array:
@@ -66,13 +68,13 @@ def expansions(first: Array, last: Array, block: Array) -> tuple[Edit, ...]:
 
 
 def stages(scene: Parts) -> Stages:
-    """The session from the contracted body to the hat, of any parts with these names."""
+    """The session from the contracted body to the hat, for any parts with these names."""
     full = scene.cages["Ogre"]
     contract_body(scene)
 
     both = ("Ogre", "Shirt")
     edits = expansions(scene.cages["Ogre"], full, scene.block(both, "Ogre"))
-    controls = yield scene.by_cages("expand", both, edits, {"Ogre": BODY_GIVES_WAY, "Shirt": 1.0})
+    controls = yield scene.by_cages("expand", both, edits, {"Ogre": BODY_WEIGHT, "Shirt": 1.0})
     scene.take_cages(both, controls)
 
     shrink = scaled(SHRINK)
@@ -96,9 +98,9 @@ def session() -> Session:
 
 
 def dressing() -> Fixture:
-    """The same session in Blender, from the shirt that cuts the body on."""
+    """The same session in Blender, starting with the shirt that cuts the body."""
     shapes, colors = cages(), {"Ogre": SKIN, "Shirt": CLOTH, "Glasses": HORN, "Hat": FELT}
-    stiff = VertexGroup("Gives way", dict.fromkeys(range(len(shapes["Ogre"].vertices)), BODY_GIVES_WAY))
+    stiff = VertexGroup("Gives way", dict.fromkeys(range(len(shapes["Ogre"].vertices)), BODY_WEIGHT))
     groups = {"Ogre": (stiff,)}
     meshes = (
         MeshObject(name, shape, colors[name], loop=LEVELS[name], groups=groups.get(name, ()))

@@ -21,7 +21,7 @@ def face(cells: int = 14) -> Shape:
     """The cage of a face that looks down, -z: an oval with brow, eye hollows, nose, lips and chin."""
     flat = triangulated(grid(cells, cells, 2.0, 2.0))
     u, v = flat.vertices[:, 0], flat.vertices[:, 1]
-    # the square's points drawn onto a disc, then an oval
+    # the points of the square mapped to a disc, then to an oval
     reach = np.maximum(np.abs(u), np.abs(v)) / np.maximum(np.hypot(u, v), 1e-12)
     x, y = 0.8 * u * reach, 1.05 * v * reach
 
@@ -48,17 +48,17 @@ def parts() -> Parts:
 
 
 def stage() -> Stage:
-    """The face pressed down; its cage gives way."""
+    """The face pressed down; its cage yields."""
     return parts().by_cages("pressed", ("Face",), (moved((0, 0, -DEPTH)),))
 
 
 def session() -> Session:
-    """One edit."""
+    """The session: one edit."""
     return Session("face", 7, "A subdivision face pressed into waves", single(stage))
 
 
 def face_into_waves() -> Fixture:
-    """The same in Blender."""
+    """The same session in Blender."""
     above, waves = cages()
     return Fixture(
         name="face_into_waves",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The paper's figures as fixtures, large ones, that are written as .blend files apart from the small ones."""
+"""The paper's figures as large fixtures, written as .blend files in a separate folder."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .weighted_handles import weighted_handles
 
 
 def knot_by_handles() -> Fixture:
-    """The knot whose top arch is dragged, its bottom pinned by weights, under Laplacian editing."""
+    """The knot under Laplacian editing: its top arch is dragged, and weights pin its bottom."""
     tube = knot.shape()
     height = tube.vertices[:, 1]
     arch = np.flatnonzero(height > np.quantile(height, 0.9)).tolist()
@@ -38,7 +38,7 @@ def knot_by_handles() -> Fixture:
 
 
 def untangling() -> Fixture:
-    """A figure whose arm was bent into its own body and leg; repair takes it out."""
+    """A figure whose arm was bent into its body and leg, for repair."""
     tangle = arm_in_body()
     shape = Shape(tangle.positions, tuple(map(tuple, tangle.surface.triangles.tolist())))
     return Fixture(
@@ -51,7 +51,7 @@ def untangling() -> Fixture:
 
 
 def organs_in_bowl() -> Fixture:
-    """The nine organs, one lowered after the other."""
+    """The nine organs, lowered one after another."""
     scene = packing.parts()
     colors = {material.name: material for material in ORGANS}
     names = [name for name in scene.parts if name != "Bowl"]
@@ -69,7 +69,7 @@ def organs_in_bowl() -> Fixture:
 
 
 def figure_fixtures() -> tuple[Fixture, ...]:
-    """Every large fixture, in the order of the paper's figures; its Figure 8 is the fixture `plant_in_vase`."""
+    """All large fixtures in the order of the paper's figures; Figure 8 is the fixture `plant_in_vase`."""
     return (
         dressing(),
         organs_in_bowl(),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One scene at four sizes: a hilly body in a lattice, scaled up inside a shell; both sample the same surfaces."""
+"""One scene at four resolutions: a hilly body in a lattice, scaled up inside a shell."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import stiv
 from ..detection_steps import rounded_box
 from .session import Session, Stage, repeated, scaled, single, surface_of
 
-#: Cuts of body and shell: 10, 76, 299 and 1,196 thousand triangles.
+# : Cuts of body and shell: 10, 76, 299 and 1,196 thousand triangles.
 SIZES = ((24, 16), (66, 44), (131, 88), (262, 176))
 GAP, ROUGHNESS, GROWTH, EDITS = 0.026, 0.02, 1.0015, 10
 
 
 def stage(fine: int, coarse: int) -> Stage:
-    """The body grows from just before the first contact: hills of the body are higher than those of the shell."""
+    """The body grows, starting just before the first contact; its hills are higher than those of the shell."""
     turn = (0.3, 0.2, 0.1)
     body = rounded_box(fine, 0.1 + ROUGHNESS).turned(turn)
     shell = rounded_box(coarse, 0.1, 1 + GAP).turned(turn)

@@ -17,12 +17,12 @@ from .lattice_stage import lattice_stage
 from .session import Session, single
 
 HARE_CELL, POT_CELL = 0.01146, 0.1
-START = 1.3  # of the size that the hare is described in: it just does not touch the pot
+START = 1.3  # fraction of the hare's described size at which it barely does not touch the pot
 GROWTH, SCALINGS = 1.5, 120
 
 
 def hare() -> Field:
-    """A sitting hare, about 1.2 long: rump, chest, head with laid-back ears, paws and a tail; it looks along -y."""
+    """A sitting hare, about 1.2 long, with laid-back ears, paws and a tail; it looks along -y."""
     trunk = merged(
         ellipsoid((0, 0.16, -0.06), (0.33, 0.42, 0.33)), ellipsoid((0, -0.2, -0.04), (0.25, 0.3, 0.29)), smooth=0.15
     )
@@ -42,7 +42,7 @@ def hare() -> Field:
 
 
 def pot() -> Field:
-    """A teapot, about 2.9 wide, with handle, spout and lid; its inside is closed off by the lid."""
+    """A teapot, about 2.9 wide, with handle, spout and a lid that closes its inside."""
     belly = without(ellipsoid((0, 0, -0.05), (1.26, 1.26, 1.08)), half_space(2, -0.98), smooth=0.15)
     lid = merged(ring((0, 0, 0.86), 2, 0.55, 0.1), ellipsoid((0, 0, 1.13), (0.17, 0.17, 0.15)), smooth=0.2)
     spout = path([(0, -1.05, -0.35), (0, -1.5, -0.05), (0, -1.74, 0.35), (0, -1.98, 0.62)], [0.36, 0.28, 0.24, 0.25])
@@ -58,19 +58,19 @@ def pot() -> Field:
 
 @cache
 def shapes() -> tuple[Shape, Shape]:
-    """Hare and pot, meshes of quads."""
+    """Hare and pot as quad meshes."""
     animal = surface_net(hare(), (-0.6, -0.9, -0.6), (0.6, 0.9, 0.7), HARE_CELL)
     vessel = surface_net(pot(), (-1.5, -2.4, -1.3), (1.5, 2.2, 1.5), POT_CELL)
     return _rounded(animal.scaled(START)), _rounded(vessel)
 
 
 def _rounded(shape: Shape) -> Shape:
-    """Coordinates as multiples of 2^-15, 0.2 % of the hare's edges: a .blend of them is half as large."""
+    """The shape with coordinates rounded to multiples of 2^-15 (0.2 % of the hare's edges), which halves the .blend."""
     return Shape(np.round(shape.vertices * 2**15) / 2**15, shape.faces)
 
 
 def hare_in_pot() -> Fixture:
-    """38,045 vertices and 75,943 triangles in the paper; the same within 1 %."""
+    """38,045 vertices and 75,943 triangles in the paper, equal within 1 %."""
     animal, vessel = shapes()
     low, high = animal.vertices.min(0) - 0.05, animal.vertices.max(0) + 0.05
     growth = GROWTH ** (1 / SCALINGS)

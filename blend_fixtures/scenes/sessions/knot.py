@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure 11: a knotted tube under Laplacian editing; its bottom is fixed, its top arch is dragged."""
+"""Figure 11: a knotted tube under Laplacian editing with a fixed bottom, dragged at its top arch."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def shape() -> Shape:
 
 
 def stage(lift: float = LIFT, aside: float = ASIDE, moves: int = MOVES) -> Stage:
-    """The top arch lifted, then drawn aside, each in half of the moves."""
+    """The top arch lifted in half of the moves, then dragged sideways in the other half."""
     tube = shape()
     height = tube.vertices[:, 1]
     bottom, arch = np.flatnonzero(height < np.quantile(height, 0.12)), np.flatnonzero(height > np.quantile(height, 0.9))
@@ -35,12 +35,12 @@ def stage(lift: float = LIFT, aside: float = ASIDE, moves: int = MOVES) -> Stage
 
 
 def session() -> Session:
-    """The arch dragged away from the bottom, and aside, in small moves."""
+    """The arch dragged away from the bottom and sideways, in small moves."""
     return Session("knot", 11, "A knot under Laplacian editing, its top arch dragged", single(stage))
 
 
 def large_moves() -> Session:
-    """The arch dragged twice as far in moves eight times as large: more contacts a round than the paper's."""
+    """The arch dragged twice as far in moves eight times as large, for more contacts per round than in the paper."""
     return Session(
         "knot",
         11,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions on a lattice, taken from the fixture that is written as a .blend: the same shapes, the same steps."""
+"""Sessions with a lattice, with the shapes and steps of the fixture that is written as a .blend."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def edit_of(step: Step) -> Edit:
 
 
 def lattice_stage(fixture: Fixture) -> Stage:
-    """The fixture's one lattice with the meshes in it, whose other meshes are obstacles."""
+    """The fixture's lattice with its meshes; all other meshes are obstacles."""
     (grid,) = fixture.lattices
     shapes = {mesh.name: mesh.shape for mesh in fixture.meshes}
     mobility = {mesh.name: "fixed" for mesh in fixture.meshes if not mesh.lattice}

@@ -9,7 +9,7 @@ from ..organs import bowl, organs
 from .session import Array, Edit, Session, Stage, single
 from .subdivision_parts import Parts, part
 
-#: Where each organ is at the start, and where it is wanted: they overlap there.
+# : Start and goal of each organ; the goals overlap.
 PLACES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "Gut": ((0.0, 0.0, 1.2), (0.0, 0.0, -0.5)),
     "Left kidney": ((0.5, 0.0, 2.6), (0.5, 0.1, -0.3)),
@@ -25,13 +25,13 @@ MOVES = 60
 
 
 def parts() -> Parts:
-    """The organs above the bowl, one beside the other."""
+    """The organs above the bowl, side by side."""
     cages = {name: shape.moved(PLACES[name][0]) for name, shape in organs().items()}
     return Parts({**{name: part(cage, 1) for name, cage in cages.items()}, "Bowl": part(bowl(), 0)})
 
 
 def toward(scene: Parts, names: list[str]) -> Edit:
-    """Each organ moved by one part of its way."""
+    """An edit that moves each organ by one step of its path."""
     ways = [np.subtract(PLACES[name][1], PLACES[name][0]) / MOVES for name in names]
     step = np.concatenate([np.tile(way, (len(scene.cages[name]), 1)) for name, way in zip(names, ways, strict=True)])
 
@@ -43,7 +43,7 @@ def toward(scene: Parts, names: list[str]) -> Edit:
 
 
 def stage() -> Stage:
-    """All organs lowered together, each toward a place of its own that others want too."""
+    """All organs lowered together, toward goals that overlap."""
     scene = parts()
     names = [name for name in scene.parts if name != "Bowl"]
     return scene.by_cages("packing", names, (toward(scene, names),) * MOVES)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 9 and 1 with models of others: an animal scaled up inside a teapot, a figure dressed.
+"""Figures 9 and 1 with published models: an animal scaled up inside a teapot, and a dressed figure.
 
-The models are given as shapes that stand upright along y, as their files have them, and are free of intersections.
+The models are shapes that stand upright along y, like in their files, and have no intersections.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ from .session import Session, Stage, repeated, scaled, single, surface_of
 from .subdivision_parts import Parts, part
 
 SCALINGS = 60
-ROOM = np.array([0.0, 1.2, 0.0])  #: of Newell's teapot, its body 1.5 to 2 in radius and 2.4 high: the middle inside
-SMALLEST, STEP = 0.3, 1.04  #: the animal's first size, and how much larger the next is, until it meets the wall
+ROOM = np.array(
+    [0.0, 1.2, 0.0]
+)  #: centre inside Newell's teapot, whose body has a radius of 1.5 to 2 and a height of 2.4
+SMALLEST, STEP = 0.3, 1.04  #: the animal's first size, and the factor to the next one, until it touches the wall
 MOST_STEPS, HALVINGS, CLEARANCE = 100, 14, 0.98
 HEIGHT = 2.0
 SLEEVES = ((0.2, 0.04, 1.3), (0.8, 0.02, 0.88))  #: along arms that hang
@@ -28,7 +30,7 @@ HEAD_SHARE, GLASSES_PLACE, HAT_PLACE = 0.74, (0.0, -0.13, 0.44), (0.0, -0.03, 0.
 
 
 def animal_in_teapot(animal: Shape, teapot: Shape) -> Session:
-    """Figure 9: the animal in a tri-cubic lattice, scaled up from just before its first contact."""
+    """Figure 9: the animal in a tri-cubic lattice, scaled up, starting just before its first contact."""
     return Session("bunny", 9, "An animal scaled up inside a teapot", single(lambda: _teapot_stage(animal, teapot)))
 
 
@@ -61,19 +63,19 @@ def _teapot_stage(animal: Shape, teapot: Shape) -> Stage:
 
 
 def upright(figure: Shape) -> Shape:
-    """From y up, facing z, to z up, facing -y; standing on z = 0, HEIGHT high."""
+    """The figure rotated from y up to z up, facing -y, standing on z = 0, scaled to HEIGHT."""
     turned = figure.vertices[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
     turned -= (0.0, 0.0, turned[:, 2].min())
     return Shape(HEIGHT / turned[:, 2].max() * turned, figure.faces)
 
 
 def dressed_figure(figure: Shape) -> Session:
-    """Figure 1: the session of our own ogre on another figure, whose vertices are the controls."""
+    """Figure 1: the session of our ogre with another figure, whose vertices are the controls."""
     return Session("ogre", 1, "A figure is dressed", lambda: dressing.stages(dressing_parts(figure)))
 
 
 def dressing_parts(figure: Shape) -> Parts:
-    """The figure, a shirt for arms that hang, glasses and hat made smaller."""
+    """The figure, a shirt for hanging arms, and smaller glasses and hat."""
     clothes = {
         "Shirt": (shirt(sleeve_line=SLEEVES).scaled(SHIRT_SIZE).moved(SHIRT_PLACE), 2),
         "Glasses": (glasses().scaled(HEAD_SHARE).moved(GLASSES_PLACE), 1),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a session is: stages one after the other, each a surface under a deformation with the edits made on it."""
+"""A session is a sequence of stages, each with a surface, a deformation and edits."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ Edit = Callable[[Array], Array]  #: from the accepted controls (m, 3) to the goa
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of a session that one deformation serves."""
+    """A part of a session with a single deformation."""
 
     name: str
     surface: stiv.Surface
     deformation: stiv.Deformation
     controls: Array  #: (m, 3) at the start
     edits: tuple[Edit, ...]
-    options: Mapping[str, object] = field(default_factory=dict)  #: of stiv.EditOptions, where not the default
+    options: Mapping[str, object] = field(default_factory=dict)  #: of stiv.EditOptions, unless default
 
 
-Stages = Generator[Stage, Array, None]  #: yields stages; is sent the controls (m, 3) that each of them ended with
+Stages = Generator[Stage, Array, None]  #: generator of stages; receives the controls (m, 3) at the end of each
 
 
 @dataclass(frozen=True)
 class Session:
-    """A session as the paper shows it."""
+    """A session of the paper."""
 
     name: str
     figure: int  #: of the paper
@@ -44,7 +44,7 @@ class Session:
 
 
 def single(make: Callable[[], Stage]) -> Callable[[], Stages]:
-    """The stages of a session that has one."""
+    """The stages of a session with one stage."""
 
     def stages() -> Stages:
         yield make()
@@ -53,7 +53,7 @@ def single(make: Callable[[], Stage]) -> Callable[[], Stages]:
 
 
 def surface_of(shapes: Mapping[str, Shape], mobility: Mapping[str, str] | None = None) -> tuple[stiv.Surface, Array]:
-    """Shapes side by side, each a body by its name, and their positions; deformable unless `mobility` names it."""
+    """Concatenated shapes, each a named body, and their positions; deformable unless `mobility` says otherwise."""
     whole = joined(list(shapes.values()))
     kinds = mobility or {}
     bodies = [stiv.Body(name, kinds.get(name, "deformable")) for name in shapes]
@@ -88,5 +88,5 @@ def _changed(change: Edit, which: Indices | None) -> Edit:
 
 
 def repeated(edit: Edit, count: int) -> tuple[Edit, ...]:
-    """The same edit again and again."""
+    """The same edit `count` times."""
     return (edit,) * count

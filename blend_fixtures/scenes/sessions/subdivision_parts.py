@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Several Loop subdivision surfaces side by side, moved by their cages or rigidly, one stage after the other."""
+"""Several Loop subdivision surfaces, moved by their cages or rigidly, in successive stages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .session import Array, Edit, Stage, surface_of
 
 @dataclass(frozen=True)
 class Part:
-    """A cage of triangles and the surface that Loop's scheme makes of it; `levels` 0 is the cage itself."""
+    """A triangle cage and its Loop subdivision surface; with `levels` 0, the cage itself."""
 
     cage: Shape
     levels: int
@@ -25,12 +25,12 @@ class Part:
     triangles: NDArray[np.int32]
 
     def surface(self, cage: Array) -> Shape:
-        """The subdivided surface of these positions (m, 3) of the cage's vertices."""
+        """The subdivided surface for these positions (m, 3) of the cage's vertices."""
         return Shape(self.deformation.surface(cage), tuple(map(tuple, self.triangles.tolist())))
 
 
 def part(cage: Shape, levels: int) -> Part:
-    """A part of a cage of triangles; positions are in single precision, as a scene stores them."""
+    """A part with a triangle cage; positions are in single precision, as stored in a scene."""
     stored = Shape(cage.vertices.astype(np.float32).astype(float), cage.faces)
     if levels == 0:
         return Part(stored, 0, stiv.identity(len(stored.vertices)), stored.triangles())
@@ -39,24 +39,24 @@ def part(cage: Shape, levels: int) -> Part:
 
 
 class Parts:
-    """Parts by name and where their cages are now."""
+    """Named parts and the current positions of their cages."""
 
     def __init__(self, parts: Mapping[str, Part]) -> None:
         self.parts = dict(parts)
         self.cages = {name: item.cage.vertices for name, item in parts.items()}
 
     def shapes(self) -> dict[str, Shape]:
-        """The subdivided surfaces as they are."""
+        """The current subdivided surfaces."""
         return {name: item.surface(self.cages[name]) for name, item in self.parts.items()}
 
     def pairs(self, names: Sequence[str] = ()) -> int:
-        """How many pairs of triangles of the parts (default: of all) intersect, by the exact test."""
+        """Number of intersecting pairs of triangles of these parts (default: all), by the exact test."""
         shapes = self.shapes()
         whole = joined([shapes[name] for name in names or shapes])
         return len(stiv.find_intersections(whole.vertices, whole.triangles()))
 
     def block(self, movers: Sequence[str], name: str) -> NDArray[np.int64]:
-        """The controls of one of several parts that a stage moves."""
+        """The rows of the controls of one part among those that a stage moves."""
         sizes = np.cumsum([0, *(len(self.cages[mover]) for mover in movers)])
         place = list(movers).index(name)
         return np.arange(sizes[place], sizes[place + 1])
@@ -64,7 +64,7 @@ class Parts:
     def by_cages(
         self, name: str, movers: Sequence[str], edits: Sequence[Edit], response: Mapping[str, float] | None = None
     ) -> Stage:
-        """A stage that moves the cages of `movers`, the others fixed; `response` is the weight of a part's controls."""
+        """A stage that moves the cages of `movers` and fixes the others; `response` gives the weights of a part."""
         surface, start = surface_of(self.shapes(), {other: "fixed" for other in self.parts if other not in movers})
         moved = [(self.parts[mover].deformation, self._vertices(surface, mover)) for mover in movers]
         controls = np.concatenate([self.cages[mover] for mover in movers])
@@ -84,12 +84,12 @@ class Parts:
         return Stage(name, surface, deformation, stiv.rigid_rest_controls(body), tuple(edits))
 
     def take_cages(self, movers: Sequence[str], controls: Array) -> None:
-        """Put the cages where a stage by cages ended."""
+        """Move the cages to the result of a stage with cages."""
         for mover in movers:
             self.cages[mover] = controls[self.block(movers, mover)]
 
     def take_rigid(self, mover: str, controls: Array) -> None:
-        """Put a cage where a rigid stage ended: subdivision commutes with rigid motions."""
+        """Move a cage to the result of a rigid stage; subdivision commutes with rigid motions."""
         centre = self.shapes()[mover].vertices.mean(axis=0)
         arms = self.cages[mover] - centre
         moved = controls[0] + arms @ _rotation(controls[1]).T

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure 10: a tree, mostly triangle soup, grows in a corner and creeps over the edges of its walls."""
+"""Figure 10: a tree, mostly triangle soup, grows in a corner and spreads over the edges of its walls."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .lattice_stage import lattice_stage
 from .session import Session, Stage, repeated, scaled, single
 
 GROWTH, SCALINGS = 1.7, 100
-LARGE_GROWTH, LARGE_SCALINGS = 2.34, 40  # more contacts a round than the paper's
+LARGE_GROWTH, LARGE_SCALINGS = 2.34, 40  # for more contacts per round than in the paper
 DISTANCE = 1.32  # of the trunk from both walls
 BRICK = 0.5
 
 
 def corner(size: int = 5, height: int = 4, start: int = -1) -> Shape:
-    """A floor and two walls, one brick thick, that meet at the origin; triangles."""
+    """A triangulated floor and two walls, one brick thick, that meet at the origin."""
     inner = range(start + 1, size)
     floor = set(itertools.product(inner, inner, (start,)))
     left = set(itertools.product((start,), range(start, size), range(start, height)))
@@ -38,7 +38,7 @@ def _shapes() -> tuple[Shape, Shape]:
 
 
 def tree_in_corner() -> Fixture:
-    """32,937 vertices and 18,745 triangles in the paper; the same within 1 %."""
+    """32,937 vertices and 18,745 triangles in the paper, equal within 1 %."""
     plant, walls = _shapes()
     low, high = plant.vertices.min(0) - 0.05, plant.vertices.max(0) + 0.05
     growth = GROWTH ** (1 / SCALINGS)
@@ -66,5 +66,5 @@ def _large_stage() -> Stage:
 
 
 def large_moves() -> Session:
-    """The tree grows larger, in scalings four times as large: more contacts a round than the paper's."""
+    """The tree grows larger, in scalings four times as large, for more contacts per round than in the paper."""
     return Session("tree", 10, "A tree grows in a corner by large scalings", single(_large_stage))

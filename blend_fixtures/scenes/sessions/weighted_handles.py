@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure 6: one push, four weightings of the response: a ball is pushed into a cushion, both subdivision surfaces."""
+"""Figure 6: a ball is pushed into a cushion with four weightings of the response; both are subdivision surfaces."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def cages() -> tuple[Shape, Shape]:
 
 
 def parts() -> Parts:
-    """Both subdivided."""
+    """Both surfaces, subdivided."""
     ball, cushion = cages()
     return Parts({"Ball": part(ball, 2), "Cushion": part(cushion, 2)})
 
 
 def weights(scene: Parts, weighting: str) -> Array:
-    """What gives way: both, one of them, or both but only to the left of x = 0."""
+    """Response weights: both yield, one of them, or both but only to the left of x = 0."""
     ball, cushion = len(scene.cages["Ball"]), len(scene.cages["Cushion"])
     if weighting == "left half":
         left = np.concatenate([scene.cages["Ball"], scene.cages["Cushion"]])[:, 0] < 0
@@ -43,7 +43,7 @@ def weights(scene: Parts, weighting: str) -> Array:
 
 
 def stage(weighting: str) -> Stage:
-    """The ball pushed down, the cushion wanted where it is."""
+    """The ball pushed down; the goal of the cushion is its current position."""
     scene = parts()
     both = ("Ball", "Cushion")
     push = moved((0, 0, -PUSH / PUSHES), scene.block(both, "Ball"))
@@ -59,12 +59,12 @@ def stage(weighting: str) -> Stage:
 
 
 def sessions() -> tuple[Session, ...]:
-    """One session a weighting."""
+    """One session per weighting."""
     return tuple(Session(f"push, {w}", 6, "One push", single(lambda w=w: stage(w))) for w in WEIGHTINGS)
 
 
 def weighted_handles() -> Fixture:
-    """The four side by side, in the order of WEIGHTINGS; each push leaves the other three alone."""
+    """All four side by side, in the order of WEIGHTINGS; each push affects only its own pair."""
     ball, cushion = cages()
     left = VertexGroup("Left", dict.fromkeys(np.flatnonzero(cushion.vertices[:, 0] < 0).tolist(), 1.0))
     meshes, names = [], {weighting: (f"Ball, {weighting}", f"Cushion, {weighting}") for weighting in WEIGHTINGS}
@@ -76,14 +76,14 @@ def weighted_handles() -> Fixture:
     objects[names["left half"][1]]["weight_group"] = "Left"
 
     def push(weighting: str) -> Step:
-        taking_part = names[weighting]
-        roles = {mesh.name: "auto" if mesh.name in taking_part else "obstacle" for mesh in meshes}
-        step = move(on_objects([taking_part[0]]), (0.0, 0.0, -PUSH / PUSHES), repeat=PUSHES)
+        participants = names[weighting]
+        roles = {mesh.name: "auto" if mesh.name in participants else "obstacle" for mesh in meshes}
+        step = move(on_objects([participants[0]]), (0.0, 0.0, -PUSH / PUSHES), repeat=PUSHES)
         return {**step, "settings": {"responders": RESPONDERS[weighting], "roles": roles}}
 
     return Fixture(
         name="weighted_handles",
-        summary="One push, four weightings: both give way, the cushion, the ball, the ball and the cushion's left half",
+        summary="One push, four weightings: both yield, the cushion, the ball, the ball and the cushion's left half",
         meshes=tuple(meshes),
         steps=tuple(push(weighting) for weighting in WEIGHTINGS),
         view=View((2.0, -13.5, 6.0), (0.0, 0.0, 0.1), 36.0, (1000, 400)),
