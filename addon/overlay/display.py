@@ -37,51 +37,28 @@ def _redraw(settings: object = None, context: object = None) -> None:
         area.tag_redraw()
 
 
-class StivOverlaySettings(bpy.types.PropertyGroup):
-    """The switches of the overlay; not saved."""
+def SwitchProperty(name: str, description: str, default: bool = True) -> object:  # noqa: N802 (as Blender's own)
+    """A switch that redraws the overlay and is not saved."""
+    return BoolProperty(name=name, description=description, default=default, options={"SKIP_SAVE"}, update=_redraw)
 
-    show: BoolProperty(
-        name="Overlay",
-        description="Show contacts, intersecting faces, clearance and speed in the 3D view",
-        default=True,
-        options={"SKIP_SAVE"},
-        update=_redraw,
+
+class StivOverlaySettings(bpy.types.PropertyGroup):
+    """The switches of the overlay."""
+
+    show: SwitchProperty(
+        name="Overlay", description="Show contacts, intersecting faces, clearance and speed in the 3D view"
     )
-    contacts: BoolProperty(
-        name="Contacts",
-        description="Show contacts that block an edit, and the blocked directions",
-        default=True,
-        options={"SKIP_SAVE"},
-        update=_redraw,
+    contacts: SwitchProperty(
+        name="Contacts", description="Show contacts that block an edit, and the blocked directions"
     )
-    intersections: BoolProperty(
-        name="Intersections",
-        description="Show intersecting faces that the last check found",
-        default=True,
-        options={"SKIP_SAVE"},
-        update=_redraw,
-    )
-    clearance: BoolProperty(
-        name="Clearance",
-        description="Show the closest pair of objects and its distance",
-        default=True,
-        options={"SKIP_SAVE"},
-        update=_redraw,
-    )
-    while_dragging: BoolProperty(
+    intersections: SwitchProperty(name="Intersections", description="Show intersecting faces that the last check found")
+    clearance: SwitchProperty(name="Clearance", description="Show the closest pair of objects and its distance")
+    while_dragging: SwitchProperty(
         name="Clearance While Dragging",
         description="Measure the closest pair at each step of a drag, which slows it down",
         default=False,
-        options={"SKIP_SAVE"},
-        update=_redraw,
     )
-    speed: BoolProperty(
-        name="Speed",
-        description="Show the milliseconds and frames per second of an edit",
-        default=True,
-        options={"SKIP_SAVE"},
-        update=_redraw,
-    )
+    speed: SwitchProperty(name="Speed", description="Show the milliseconds and frames per second of an edit")
 
 
 def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult) -> None:
