@@ -2,7 +2,7 @@
 """Lists every text of the add-on's interface that Blender can translate, from the sources.
 
 These are names and descriptions of properties and of their choices, labels and tooltips of operators, labels of panels
-and menus, constant texts of layouts, arguments of `translate("text")`, and values of dictionaries named ..._TEXTS.
+and menus, constant texts of layouts, arguments of `translate` and `counted`, values of dictionaries named ..._TEXTS.
 """
 
 import ast
@@ -37,8 +37,8 @@ def _of(node: ast.AST) -> Iterator[str]:
 
 def _of_call(node: ast.Call) -> Iterator[str]:
     name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-    if name == "translate":
-        yield from _constants(node.args[0])
+    for argument in {"translate": node.args[:1], "counted": node.args[1:]}.get(name, []):
+        yield from _constants(argument)
     wanted = {"name", "description"} if name.endswith("Property") else {"text"} if name in LAYOUT_CALLS else set()
     for keyword in node.keywords:
         if keyword.arg in wanted:

@@ -47,11 +47,6 @@ def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]
     return {"CANCELLED"}
 
 
-def counted(count: int, noun: str) -> str:
-    """A number and its noun: "1 object", "1,200 objects"."""
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
-
-
 def clearance_text(least: stiv_blender.LeastDistance) -> str:
     """The smallest distance between two objects, as a line."""
-    return f"{' and '.join(least.bodies)}: clearance {least.distance:.6g}"
+    return translate("{}: clearance {}").format(", ".join(least.bodies), f"{least.distance:.6g}")

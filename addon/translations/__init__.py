@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Translations of the interface: a catalogue for each language, from the English texts of the sources.
 
-Code that composes a text calls `translate("text")` and formats the result.
+Code that composes a text calls `translate("text")` and formats the result; `counted` chooses singular or plural.
 
 tools/interface_messages.py lists the texts to translate; a test compares sources and catalogues.
 """
@@ -32,6 +32,11 @@ def register() -> None:
 def unregister() -> None:
     """Unregister the catalogues."""
     bpy.app.translations.unregister(__name__)
+
+
+def counted(count: int, one: str, many: str) -> str:
+    """A number and its noun in the language of the interface: `one` is "1 object", `many` is "{} objects"."""
+    return translate(one if count == 1 else many).format(f"{count:,}")
 
 
 def translate(text: str) -> str:

@@ -12,7 +12,8 @@ from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
-from ..reports import clearance_text, counted, report_error
+from ...translations import counted, translate
+from ..reports import clearance_text, report_error
 
 MAX_PAIRS = 5  # pairs of objects that the summary lists
 
@@ -45,23 +46,32 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
 def summary(pairs: Counter[tuple[str, str]], triangle_pairs: int, selected: Mapping[str, int]) -> str:
     """Intersecting pairs of faces and of triangles, the number of selected faces, and the pairs of objects."""
     if not pairs:
-        return "No intersections"
-    faces = f", {counted(sum(selected.values()), 'face')} selected" if selected else ""
-    triangles = f" ({counted(triangle_pairs, 'triangle pair')})" if triangle_pairs != pairs.total() else ""
-    objects = counted(len({name for pair in pairs for name in pair}), "object")
-    lines = [f"{counted(pairs.total(), 'intersecting face pair')}{triangles} in {objects}{faces}"]
+        return translate("No intersections")
+    faces = counted(pairs.total(), "1 intersecting face pair", "{} intersecting face pairs")
+    if triangle_pairs != pairs.total():
+        faces += f" ({counted(triangle_pairs, '1 triangle pair', '{} triangle pairs')})"
+    objects = counted(len({name for pair in pairs for name in pair}), "1 object", "{} objects")
+    lines = [translate("{} in {}").format(faces, objects)]
+    if selected:
+        lines[0] += ", " + counted(sum(selected.values()), "1 face selected", "{} faces selected")
     for (first, second), count in pairs.most_common(MAX_PAIRS):
-        lines.append(f"{first}: {count} with itself" if first == second else f"{first}, {second}: {count}")
+        itself = translate("{}: {} with itself").format(first, count)
+        lines.append(itself if first == second else f"{first}, {second}: {count}")
     if len(pairs) > MAX_PAIRS:
-        lines.append(f"and {counted(len(pairs) - MAX_PAIRS, 'more object pair')}")
+        lines.append(translate("and {} more").format(len(pairs) - MAX_PAIRS))
     return "\n".join(lines)
 
 
 def tested(found: stiv_blender.SceneCheck) -> str:
     """The tested objects and triangles, and the objects that were not tested, as a line."""
-    left_out = f"; not tested, {stiv_blender.left_out_text(found.left_out)}" if found.left_out else ""
-    seams = f"; {counted(found.seams, 'face pair')} on seams" if found.seams else ""
-    return f"Tested {counted(found.objects, 'object')}, {counted(found.triangles, 'triangle')}{seams}{left_out}"
+    objects = counted(found.objects, "1 object", "{} objects")
+    triangles = counted(found.triangles, "1 triangle", "{} triangles")
+    parts = [translate("Tested {}, {}").format(objects, triangles)]
+    if found.seams:
+        parts.append(counted(found.seams, "1 face pair on seams", "{} face pairs on seams"))
+    if found.left_out:
+        parts.append(translate("not tested, {}").format(stiv_blender.left_out_text(found.left_out)))
+    return "; ".join(parts)
 
 
 def clearance(context: bpy.types.Context) -> str:

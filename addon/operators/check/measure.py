@@ -9,6 +9,7 @@ from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
+from ...translations import translate
 from ..reports import clearance_text, report_error
 
 
@@ -26,7 +27,7 @@ class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
         except ValueError as error:
             return report_error(self, error)
         if found is None:
-            self.report({"WARNING"}, "No two visible objects to measure")
+            self.report({"WARNING"}, translate("No two visible objects to measure"))
             return {"CANCELLED"}
         display.show_clearance(found)
         self.report({"INFO"}, clearance_text(found))

@@ -10,7 +10,8 @@ import bpy
 from ... import stiv_blender
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
-from ..reports import counted, report_error
+from ...translations import counted, translate
+from ..reports import report_error
 
 
 class ExclusionOperator(NeedsNativeModule):
@@ -32,10 +33,10 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
         except ValueError as error:
             return report_error(self, error)
         context.scene.stiv.excluded = excluded.to_json()
-        self.report({"INFO"}, f"Excluded {counted(len(excluded.pairs), 'face pair')}")
+        self.report({"INFO"}, _excluded(len(excluded.pairs)))
         if others:
-            name, pairs = others[0].first.object, counted(len(others), "pair")
-            self.report({"WARNING"}, f"{name}: {pairs} of edges, vertices or hair left. Set its role to No Collision")
+            text = translate("{}: {} pairs of edges, vertices or hair left. Set its role to No Collision")
+            self.report({"WARNING"}, text.format(others[0].first.object, len(others)))
         return {"FINISHED"}
 
 
@@ -58,7 +59,11 @@ def excluded_count(stored: str) -> str:
         count = len(stiv_blender.Exclusions.from_json(stored).pairs)
     except ValueError as error:
         return str(error)
-    return counted(count, "excluded face pair") if count else ""
+    return _excluded(count) if count else ""
+
+
+def _excluded(count: int) -> str:
+    return counted(count, "1 excluded face pair", "{} excluded face pairs")
 
 
 def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:

@@ -23,10 +23,10 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
     def is_available(cls, context: bpy.types.Context) -> bool:
         """While the guard watches an intersecting scene that was clear before."""
         if not watcher.is_on(context) or watcher.last_clear_state() is None:
-            cls.poll_message_set("The live guard has seen no clear state yet")
+            cls.poll_message_set(translate("The live guard has seen no clear state yet"))
             return False
         if watcher.problem() is None:
-            cls.poll_message_set("Nothing intersects")
+            cls.poll_message_set(translate("Nothing intersects"))
             return False
         return True
 

@@ -7,6 +7,7 @@ import bpy
 from bpy.props import IntProperty
 
 from ...native_module import NeedsNativeModule
+from ...translations import translate
 
 
 class _HandleOperator(NeedsNativeModule):
@@ -48,7 +49,7 @@ class STIV_OT_handle_remove(_HandleOperator, bpy.types.Operator):
         """Remove the row."""
         rows = context.active_object.stiv.handles
         if self.index >= len(rows):
-            self.report({"ERROR"}, f"Handle {self.index} does not exist: the list has {len(rows)}")
+            self.report({"ERROR"}, translate("Handle {} does not exist: the list has {}").format(self.index, len(rows)))
             return {"CANCELLED"}
         rows.remove(self.index)
         return {"FINISHED"}

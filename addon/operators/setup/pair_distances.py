@@ -7,6 +7,7 @@ import bpy
 from bpy.props import IntProperty
 
 from ...native_module import NeedsNativeModule
+from ...translations import translate
 
 
 class STIV_OT_separation_add(NeedsNativeModule, bpy.types.Operator):
@@ -20,7 +21,7 @@ class STIV_OT_separation_add(NeedsNativeModule, bpy.types.Operator):
         """Add a row."""
         selected = list(context.selected_objects)
         if len(selected) not in (1, 2):
-            self.report({"ERROR"}, f"Select 1 or 2 objects ({len(selected)} selected)")
+            self.report({"ERROR"}, translate("Select 1 or 2 objects ({} selected)").format(len(selected)))
             return {"CANCELLED"}
         row = context.scene.stiv.pair_separations.add()
         row.first, row.second = selected[0], selected[-1]
@@ -40,7 +41,7 @@ class STIV_OT_separation_remove(NeedsNativeModule, bpy.types.Operator):
         """Remove the row."""
         rows = context.scene.stiv.pair_separations
         if self.index >= len(rows):
-            self.report({"ERROR"}, f"Pair {self.index} does not exist: the list has {len(rows)}")
+            self.report({"ERROR"}, translate("Pair {} does not exist: the list has {}").format(self.index, len(rows)))
             return {"CANCELLED"}
         rows.remove(self.index)
         return {"FINISHED"}

@@ -61,7 +61,7 @@ class DragOperator(Mixin):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the drag: a file is loaded, the window closes."""
-        self._drag.abort(DragEnded("Blender ended the drag"))
+        self._drag.abort(DragEnded(translate("Blender ended the drag")))
         self._leave(context)
 
     def _start(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
@@ -92,7 +92,7 @@ class DragOperator(Mixin):
 
     def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> Effect:
         if context.mode != self._mode:
-            self._drag.abort(DragEnded("the mode changed during the drag"))
+            self._drag.abort(DragEnded(translate("the mode changed during the drag")))
             return Effect.NONE
         self._follow_view(context)
         if event.type == "TIMER":

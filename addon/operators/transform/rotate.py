@@ -10,6 +10,7 @@ import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty
 
 from ...transform.rotation import Rotation
+from ...translations import translate
 from .transform_operator import TransformOperator
 
 
@@ -30,7 +31,7 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
         axis = np.array(self.axis)
         length = np.linalg.norm(axis)
         if not length > 0.0:
-            raise ValueError("The rotation axis is (0, 0, 0): set a direction")
+            raise ValueError(translate("The rotation axis is (0, 0, 0): set a direction"))
         return Rotation(self.angle, axis / length)
 
     def own_values(self) -> tuple[Any, ...]:

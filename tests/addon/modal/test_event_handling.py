@@ -158,7 +158,8 @@ EVENTS = st.builds(
 )
 
 
-@given(st.lists(EVENTS, max_size=40), st.sampled_from(sorted(CONFIRM_KEYS | CANCEL_KEYS)))
+# Space is left out as the last key: within an expression it is typed, and does not confirm.
+@given(st.lists(EVENTS, max_size=40), st.sampled_from(sorted((CONFIRM_KEYS | CANCEL_KEYS) - {"SPACE"})))
 def test_every_sequence_ends_once_and_stays_ended(events: list[Event], last: str) -> None:
     state, endings = start(), []
     for event in [*events, Event(last), *events]:

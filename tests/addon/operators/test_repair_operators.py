@@ -275,7 +275,7 @@ def test_the_check_reports_the_clearance() -> None:
     add("Apart", *SPIKE, location=(0, 0, 1.25))
     assert bpy.ops.stiv.check() == {"FINISHED"}
     lines = bpy.context.window_manager.stiv_check.summary.splitlines()
-    assert lines[:2] == ["No intersections", "Grid and Apart: clearance 0.25"]
+    assert lines[:2] == ["No intersections", "Grid, Apart: clearance 0.25"]
     bpy.data.objects.remove(bpy.data.objects["Apart"])
     assert bpy.ops.stiv.check() == {"FINISHED"}
     lines = bpy.context.window_manager.stiv_check.summary.splitlines()

@@ -89,9 +89,7 @@ def test_ctrl_turns_snapping_round(snap: bool, ctrl: bool, kind: str, expected: 
         ({"INCREMENT"}, (1.9, 1.9, 1.0), None),
     ],
 )
-def test_the_smallest_element_near_the_pointer_wins(
-    elements: set, place: tuple, expected: tuple | None
-) -> None:
+def test_the_smallest_element_near_the_pointer_wins(elements: set, place: tuple, expected: tuple | None) -> None:
     pixel = VIEW.project(np.array(place))
     target = Snap(frozenset(elements), cast=lambda at: seen_at(place)).target(pixel, VIEW)
     if expected is None:
