@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lattices without Blender: what holds for all of them."""
+"""Lattices without Blender: properties of all interpolation types."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Subdivision without Blender: what holds for every cage."""
+"""Subdivision without Blender: properties of every cage."""
 
 from collections.abc import Callable
 from typing import Any

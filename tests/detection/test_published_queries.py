@@ -56,7 +56,7 @@ def test_no_query_is_missed_and_none_is_late(path: Path) -> None:
         truth = first_contact(kind, queries[row][:4], queries[row][4:])
         assert (truth is not None) == meets[row]
         if truth is None:
-            assert nearness(kind, queries[row], times[row]) < 2**-44, f"query {row} is nowhere near"
+            assert relative_distance(kind, queries[row], times[row]) < 2**-44, f"query {row} is not in contact"
         else:
             assert Fraction(times[row]) <= truth + WIDTH, f"query {row} is late"
             early.append(float(truth) - times[row])
@@ -64,7 +64,7 @@ def test_no_query_is_missed_and_none_is_late(path: Path) -> None:
     print(f"{len(meets)} queries, {np.sum(meets)} meet, {np.sum(found & ~meets)} nearer than rounding")
 
 
-def nearness(kind: str, points: list[list[Fraction]], time: float) -> float:
+def relative_distance(kind: str, points: list[list[Fraction]], time: float) -> float:
     """Distance at a time, relative to the largest coordinate."""
     t = Fraction(time)
     at_time = [tuple((1 - t) * a + t * b for a, b in zip(points[k], points[k + 4], strict=True)) for k in range(4)]

@@ -13,7 +13,7 @@ from tests.oracles.first_contact import WIDTH, first_contact
 COUNT = 1000
 KINDS = ["vf", "ee"]
 UNDECIDED = 0.02
-"""Of misses by 2^-50, a pair's budget may end before they are told from contacts: so many, and they are reported."""
+"""Near misses by 2^-50 that may be reported, because the budget of a pair ends before they differ from contacts."""
 CORNERS = {"vf": ([0, 2, 3, 1], [0, 2, 1, 3]), "ee": ([1, 0, 2, 3], [0, 1, 3, 2], [2, 3, 0, 1])}
 
 

@@ -31,11 +31,11 @@ def test_four_parallel_sessions_equal_serial_ones_exactly():
 def test_a_second_call_on_a_session_in_use_is_refused():
     editing = session(levels=2, side=40)
     goal = editing.controls + SHIFTS[0]
-    reached, go_on, refused = threading.Event(), threading.Event(), []
+    reached, may_return, refused = threading.Event(), threading.Event(), []
 
     def hold(phase: str, fraction: float) -> None:
         reached.set()
-        go_on.wait(30)
+        may_return.wait(30)
 
     solving = threading.Thread(target=lambda: editing.drag(goal, progress=hold))
     solving.start()
@@ -44,7 +44,7 @@ def test_a_second_call_on_a_session_in_use_is_refused():
         editing.settle()
     except (RuntimeError, stiv.InputError) as error:
         refused.append(str(error))
-    go_on.set()
+    may_return.set()
     solving.join()
     assert refused and "use" in refused[0]
     assert len(stiv.find_intersections(editing.surface, session(levels=2, side=40)._topology)) == 0

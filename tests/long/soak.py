@@ -161,11 +161,11 @@ def run(drags: int, seed: int, moves: int) -> Account:
         account.repeated_seconds.append(seconds)
         account.repeated_results.add(ends)
         account.memory.append(memory_after(account.drags))
-        print(f"{told(account.memory[-1])}, {seconds:.2f} s", flush=True)
+        print(f"{report_line(account.memory[-1])}, {seconds:.2f} s", flush=True)
     return account
 
 
-def told(memory: Memory) -> str:
+def report_line(memory: Memory) -> str:
     """A line of the report."""
     return f"{memory.drags} drags: {memory.resident / 1e6:.2f} MB resident, {memory.allocated / 1e6:.2f} MB allocated"
 
@@ -198,7 +198,12 @@ def main() -> int:
     growth, drift = growth_of_memory(account), drift_of_time(account)
     counts = ", ".join(f"{count} {status}" for status, count in sorted(account.statuses.items()))
     print(f"{account.drags} drags of {chosen.moves} moves ({counts}), {account.intersections} intersections")
-    print(told(account.memory[0]), told(account.memory[settled_by(account)]), told(account.memory[-1]), sep="\n")
+    print(
+        report_line(account.memory[0]),
+        report_line(account.memory[settled_by(account)]),
+        report_line(account.memory[-1]),
+        sep="\n",
+    )
     print(f"memory {100 * growth:+.2f} %, time {100 * drift:+.1f} %, {len(account.repeated_results)} ends of one block")
     same = len(account.repeated_results) == 1
     return int(account.intersections > 0 or not same or growth >= MOST_GROWTH or drift >= MOST_DRIFT)

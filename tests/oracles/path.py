@@ -212,6 +212,6 @@ def _march(start: Floats, end: Floats, clearance: Floats) -> Floats:
         width = np.where(free, np.minimum(2 * width, 1 - time), width / 2)
         stuck = ~free & (width < RESOLUTION)
         contact[row[stuck]] = time[stuck]
-        going_on = ~stuck & (time < 1)
-        row, time, width = row[going_on], time[going_on], width[going_on]
+        unfinished = ~stuck & (time < 1)
+        row, time, width = row[unfinished], time[unfinished], width[unfinished]
     return contact

@@ -138,7 +138,7 @@ def test_scripts_of_a_file_are_not_run(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("data", [b"", b"no scene", b"BLENDER-v402" + bytes(200)])
-def test_a_file_that_is_no_blend_ends_with_2(tmp_path: Path, capsys, data: bytes) -> None:
+def test_a_file_in_another_format_ends_with_2(tmp_path: Path, capsys, data: bytes) -> None:
     scene = tmp_path / "broken ü.blend"
     scene.write_bytes(data)
     assert program.run(["check", str(scene)]) == 2
