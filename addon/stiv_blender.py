@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from stiv.blender import *  # noqa: F403
     from stiv.blender.edit.culled_edit import NearbyEdit
     from stiv.blender.scene.assembly import Element as Element
-    from stiv.checks.findings import left_out_text as left_out_text
+    from stiv.checks.findings import untested_text as untested_text
 
     Edit = BlenderEdit | NearbyEdit  # noqa: F405
     Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair  # noqa: F405

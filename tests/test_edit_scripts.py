@@ -73,7 +73,7 @@ def test_the_plant_takes_at_least_sixty_edits():
         ({"values": {"value": [0, 0, float("nan")]}}, "step 0: value: 3 finite numbers expected"),
         ({"values": {"value": [0, 0, 10**400]}}, "step 0: value: 3 finite numbers expected"),
         ({"repeat": 0}, "repeat 0 is not a whole number above 0"),
-        ({"repeat": 10**8}, "100000000 edits in all"),
+        ({"repeat": 10**8}, "100000000 edits, more than the limit"),
         ({"colour": "red"}, 'unknown field "colour"'),
         ({"settings": []}, "step 0: settings: not an object"),
     ],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edit scripts: what to select and which operator to run, step by step, as JSON. The format: docs/edit_scripts.md."""
+"""Edit scripts: JSON files with steps, each a selection and an operator. docs/edit_scripts.md describes the format."""
 
 from __future__ import annotations
 
@@ -10,18 +10,22 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
-from stiv.json_files import read_json
+from stiv.json_files import read_json, require_format
 
 SCHEMA, VERSION = "stiv-edits", 1
 MAX_EDITS = 1_000_000
 MAX_BYTES = 64 * 2**20
-TRANSFORMS = {"move": {"value": 3}, "scale": {"value": 3}, "rotate": {"angle": 1, "axis": 3}}  #: all values needed
+TRANSFORMS = {
+    "move": {"value": 3},
+    "scale": {"value": 3},
+    "rotate": {"angle": 1, "axis": 3},
+}  #: all values are required
 RESHAPES: dict[str, dict[str, type]] = {
     "contract": {"steps": int, "smoothing": float, "until_free": bool},
     "expand": {"amount": float},
     "settle": {"rounds": int, "smoothness": float},
     "repair": {"max_deviation": float, "weld": bool},
-}  #: each value may be left out
+}  #: each value is optional
 _STEP_KEYS = {"operator", "mode", "objects", "points", "values", "repeat", "settings"}
 
 
@@ -29,9 +33,10 @@ _STEP_KEYS = {"operator", "mode", "objects", "points", "values", "repeat", "sett
 class EditStep:
     """One operator call on a selection.
 
-    `operator` is one of TRANSFORMS or RESHAPES. `points` are indices of cage vertices or lattice points in Edit Mode,
-    None for all of them. `values` are the operator's properties in world units and radians. `settings` are the add-on's
-    settings for this step by name.
+    operator  one of TRANSFORMS or RESHAPES
+    points    in Edit Mode, the indices of cage vertices or lattice points; None: all
+    values    the operator's properties, in world units and radians
+    settings  the add-on's settings for this step by name
     """
 
     operator: str
@@ -45,25 +50,25 @@ class EditStep:
 
 @dataclass(frozen=True)
 class EditScript:
-    """The steps of a script, with the settings that all of them start from."""
+    """The steps of a script, with the settings of all steps."""
 
     steps: tuple[EditStep, ...]
     settings: Mapping[str, Any] = field(default_factory=dict)
     description: str = ""
 
     def edits(self) -> Iterator[EditStep]:
-        """Every single edit: each step as often as it repeats."""
+        """Yields a step for each edit, as often as the step repeats."""
         for step in self.steps:
             for _ in range(step.repeat):
                 yield step
 
     def __len__(self) -> int:
-        """Number of edits, repeats counted."""
+        """Number of edits, with repetitions."""
         return sum(step.repeat for step in self.steps)
 
 
 def read_edit_script(path: Path | str) -> EditScript:
-    """The script in a file. Raises InputError naming file, step and field."""
+    """Reads a script. Raises InputError naming file, step and field."""
     path = Path(path)
     data = read_json(path, MAX_BYTES)
     try:
@@ -73,21 +78,18 @@ def read_edit_script(path: Path | str) -> EditScript:
 
 
 def parse_edit_script(data: object) -> EditScript:
-    """The script in parsed JSON. Raises InputError naming step and field."""
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise InputError(f'not an edit script: the field "schema" is not "{SCHEMA}"')
-    if data.get("version") != VERSION:
-        raise InputError(f"version {data.get('version')!r} of the format is not known; this program reads {VERSION}")
-    steps = data.get("steps")
+    """The script of parsed JSON. Raises InputError naming step and field."""
+    fields = require_format(data, SCHEMA, (VERSION,))
+    steps = fields.get("steps")
     if not isinstance(steps, list):
         raise InputError('the field "steps" is not a list')
     script = EditScript(
         tuple(_step(step, f"step {number}") for number, step in enumerate(steps)),
-        _mapping(data.get("settings", {}), "settings"),
-        str(data.get("description", "")),
+        _mapping(fields.get("settings", {}), "settings"),
+        str(fields.get("description", "")),
     )
     if len(script) > MAX_EDITS:
-        raise InputError(f"{len(script)} edits in all; at most {MAX_EDITS} are run")
+        raise InputError(f"{len(script)} edits, more than the limit of {MAX_EDITS}")
     return script
 
 
@@ -95,7 +97,7 @@ def _step(data: object, where: str) -> EditStep:
     step = _mapping(data, where)
     unknown = sorted(set(step) - _STEP_KEYS)
     if unknown:
-        raise InputError(f'{where}: unknown field "{unknown[0]}"; there are {", ".join(sorted(_STEP_KEYS))}')
+        raise InputError(f'{where}: unknown field "{unknown[0]}"; the fields are {", ".join(sorted(_STEP_KEYS))}')
     operator = step.get("operator")
     if not isinstance(operator, str) or operator not in (*TRANSFORMS, *RESHAPES):
         raise InputError(f"{where}: operator {operator!r} is none of {', '.join((*TRANSFORMS, *RESHAPES))}")

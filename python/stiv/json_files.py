@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,16 @@ def read_json(path: Path, max_bytes: int) -> Any:
         raise
     except ValueError as error:
         raise InputError(f"{path}: not JSON in UTF-8: {error}") from error
+
+
+def require_format(data: object, schema: str, versions: Collection[int]) -> dict[str, Any]:
+    """The data of a file of this format. Raises InputError for another format or version."""
+    if not isinstance(data, dict) or data.get("schema") != schema:
+        raise InputError(f'the field "schema" is not "{schema}"')
+    if data.get("version") not in versions:
+        supported = " and ".join(map(str, versions))
+        raise InputError(f"version {data.get('version')!r} is not supported; this program reads {supported}")
+    return data
 
 
 def write_json(path: Path, data: dict[str, Any]) -> None:

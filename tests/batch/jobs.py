@@ -24,7 +24,7 @@ def write_job(folder: Path, count: int, repeat: int = 3, **more: Any) -> Path:
     entries = [
         {
             "name": NAME.format(number),
-            "do": "replay",
+            "command": "replay",
             "scene": f"in/{number}.npz",
             "edits": f"in/{number}.json",
             "output": f"out/result {number}.npz",
@@ -32,7 +32,7 @@ def write_job(folder: Path, count: int, repeat: int = 3, **more: Any) -> Path:
         for number in range(count)
     ]
     job = folder / "job ü.json"
-    job.write_text(json.dumps({"schema": "stiv-batch", "version": 1, "entries": entries, **more}))
+    job.write_text(json.dumps({"schema": "stiv-batch", "version": 2, "entries": entries, **more}))
     return job
 
 

@@ -29,7 +29,7 @@ def test_every_scene_gets_its_result_and_the_report_says_what_it_took(tmp_path, 
     assert run(job, "--report", str(report)) == 0
     assert "3 of 3 scenes done (0 by an earlier run)" in capsys.readouterr().out
     data = read_valid(report, "batch_report")
-    assert [(entry["name"], entry["code"], entry["attempts"]) for entry in data["entries"]] == [
+    assert [(entry["name"], entry["exit_code"], entry["attempts"]) for entry in data["entries"]] == [
         (NAME.format(number), 0, 1) for number in range(3)
     ]
     assert all(entry["seconds"] > 0 and entry["peak_megabytes"] > 10 for entry in data["entries"])
@@ -72,9 +72,9 @@ def test_a_bad_scene_costs_only_itself(tmp_path, capsys):
 
 def test_a_bad_job_ends_with_2_and_names_the_entry(tmp_path, capsys):
     job = tmp_path / "job.json"
-    job.write_text('{"schema": "stiv-batch", "version": 1, "entries": [{"name": "x", "do": "melt"}]}')
+    job.write_text('{"schema": "stiv-batch", "version": 2, "entries": [{"name": "x", "command": "melt"}]}')
     assert run(job) == 2
-    assert 'job.json: entry 0 ("x"): "do" is' in capsys.readouterr().err
+    assert 'job.json: entry 0 ("x"): "command" is' in capsys.readouterr().err
 
 
 def test_a_scene_over_its_time_is_given_up_after_one_retry(tmp_path, capsys):
@@ -98,11 +98,11 @@ def test_meshes_are_checked_and_repaired(tmp_path, capsys):
     corners[corners[:, 2] > 0.9] -= (0, 0, 2.2)  # the cap is pushed out through the bottom
     write_mesh(tmp_path / "dented.npz", checked_mesh(corners, ball.triangles(), ("Ball",)))
     entries = [
-        {"name": "look", "do": "check", "scene": "dented.npz", "report": "look.json"},
-        {"name": "mend", "do": "repair", "scene": "dented.npz", "output": "mended.npz", "report": "mend.json"},
+        {"name": "look", "command": "check", "scene": "dented.npz", "report": "look.json"},
+        {"name": "mend", "command": "repair", "scene": "dented.npz", "output": "mended.npz", "report": "mend.json"},
     ]
     job = tmp_path / "job.json"
-    job.write_text(json.dumps({"schema": "stiv-batch", "version": 1, "entries": entries}))
+    job.write_text(json.dumps({"schema": "stiv-batch", "version": 2, "entries": entries}))
     assert run(job) == 4
     out = capsys.readouterr().out
     assert "look: not free" in out and "2 of 2 scenes done" in out

@@ -15,17 +15,25 @@ from json_schemas import schema_of
 import stiv
 from stiv.batch.job import Job, parse_job, read_job
 
-CHECK = {"name": "a", "do": "check", "scene": "a.blend"}
-REPLAY = {"name": "b ü", "do": "replay", "scene": "a.blend", "edits": "e.json", "output": "b.blend", "report": "b.json"}
-CHECK_ALL = {"name": "e", "do": "check", "scene": "a.blend", "scene_name": "B", "render": False, "hidden": True}
+OLD = Path(__file__).with_name("job_of_0.1.0.json")
+CHECK = {"name": "a", "command": "check", "scene": "a.blend"}
+REPLAY = {
+    "name": "b ü",
+    "command": "replay",
+    "scene": "a.blend",
+    "edits": "e.json",
+    "output": "b.blend",
+    "report": "b.json",
+}
+CHECK_ALL = {"name": "e", "command": "check", "scene": "a.blend", "scene_name": "B", "render": False, "hidden": True}
 CHECK_ALL["guard"] = "render"
-RESOLVE = {"name": "c", "do": "resolve", "scene": "a.blend", "frames": "1:9", "output": "c.blend", "hold": ["-x"]}
+RESOLVE = {"name": "c", "command": "resolve", "scene": "a.blend", "frames": "1:9", "output": "c.blend", "hold": ["-x"]}
 RESOLVE["guard"] = "both"
-REPAIR = {"name": "d", "do": "repair", "scene": "a.blend", "output": "d.blend", "guard": "viewport"}
+REPAIR = {"name": "d", "command": "repair", "scene": "a.blend", "output": "d.blend", "guard": "viewport"}
 
 
 def job(*entries, **more):
-    return {"schema": "stiv-batch", "version": 1, "entries": list(entries), **more}
+    return {"schema": "stiv-batch", "version": 2, "entries": list(entries), **more}
 
 
 def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
@@ -45,26 +53,37 @@ def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
     assert read.time_limit == 60
 
 
+def test_a_job_of_version_0_1_0_is_read(tmp_path):
+    data = json.loads(OLD.read_text(encoding="utf-8"))
+    new = data | {
+        "version": 2,
+        "entries": [{{"do": "command"}.get(k, k): v for k, v in entry.items()} for entry in data["entries"]],
+    }
+    assert [entry["do"] for entry in data["entries"]] == ["replay", "resolve", "repair", "check"]
+    assert parse_job(data, tmp_path) == parse_job(new, tmp_path)
+    jsonschema.validate(new, schema_of("batch_job"))
+
+
 WRONG = [
     ({}, 'the field "schema" is not "stiv-batch"'),
-    (job() | {"version": 2}, "version 2 of the format is not known"),
+    (job() | {"version": 3}, "version 3 is not supported; this program reads 1 and 2"),
     (job() | {"entries": {}}, 'the field "entries" is not a list'),
     (job(colour=1), 'the job: unknown field "colour"'),
     (job(time_limit=-1), '"time_limit" is not a number of seconds'),
     (job(3), "entry 0: not an object"),
     (job(CHECK | {"name": ""}), 'entry 0: "name" must have'),
     (job(CHECK | {"name": "a\nb"}), 'entry 0: "name" must have'),
-    (job(CHECK | {"do": "melt"}), 'entry 0 ("a"): "do" is \'melt\', none of check, replay, repair, resolve'),
-    (job({"name": "a", "do": "replay", "scene": "x"}), 'entry 0 ("a"): replay needs the field "edits"'),
-    (job(CHECK | {"edits": "x"}), 'entry 0 ("a"): unknown field "edits"; there are baseline'),
+    (job(CHECK | {"command": "melt"}), 'entry 0 ("a"): "command" is \'melt\', none of check, replay, repair, resolve'),
+    (job({"name": "a", "command": "replay", "scene": "x"}), 'entry 0 ("a"): replay needs the field "edits"'),
+    (job(CHECK | {"edits": "x"}), 'entry 0 ("a"): unknown field "edits"; the fields are baseline'),
     (job(CHECK | {"scene": 3}), 'entry 0 ("a"): "scene" is not a text'),
     (job(CHECK | {"scene": ""}), 'entry 0 ("a"): "scene" is not the path of a file'),
     (job(CHECK | {"frames": "9:1"}), "entry 0 (\"a\"): frames '9:1' must ascend"),
     (job(CHECK | {"hidden": 1}), 'entry 0 ("a"): "hidden" is neither true nor false'),
     (job(REPAIR | {"guard": "All"}), 'entry 0 ("d"): "guard" is \'All\', none of auto, viewport, render, both'),
     (job(CHECK | {"scene_name": 1}), 'entry 0 ("a"): "scene_name" is not a text'),
-    (job(CHECK | {"objects": "x"}), 'entry 0 ("a"): "objects" is not a list of names'),
-    (job(CHECK, CHECK), 'entry 1: the name "a" is that of entry 0 too'),
+    (job(CHECK | {"objects": "x"}), 'entry 0 ("a"): "objects" is not a list of object names'),
+    (job(CHECK, CHECK), 'entry 1: entry 0 also has the name "a"'),
     (job(REPLAY, REPAIR | {"output": "b.blend"}), 'entry 1 ("d"): '),
     (job(CHECK, REPAIR | {"output": "a.blend"}), 'entry 0 ("a"): '),
 ]

@@ -31,15 +31,17 @@ def test_a_batch_of_scenes_gives_what_single_commands_give(tmp_path: Path, monke
         shutil.copy(FOLDER / f"{name}.blend", tmp_path)
         shutil.copy(FOLDER / f"{name}.edits.json", tmp_path)
         files = {"scene": f"{name}.blend", "edits": f"{name}.edits.json", "output": f"out/{name}.blend"}
-        entries.append({"name": name, "do": "replay", **files})
-        entries.append({"name": f"check {name}", "do": "check", "scene": f"{name}.blend", "report": f"{name}.json"})
+        entries.append({"name": name, "command": "replay", **files})
+        entries.append(
+            {"name": f"check {name}", "command": "check", "scene": f"{name}.blend", "report": f"{name}.json"}
+        )
     job = tmp_path / "job.json"
-    job.write_text(json.dumps({"schema": "stiv-batch", "version": 1, "entries": entries}))
+    job.write_text(json.dumps({"schema": "stiv-batch", "version": 2, "entries": entries}))
     packages = Path(stiv_addon.__file__).parents[1]
     monkeypatch.setenv("PYTHONPATH", str(packages))
     assert program.run(["batch", str(job), "--workers", "1", "--report", str(tmp_path / "report.json")]) == 0
     report = json.loads((tmp_path / "report.json").read_text())
-    assert [entry["code"] for entry in report["entries"]] == [0, 0, 0, 0]
+    assert [entry["exit_code"] for entry in report["entries"]] == [0, 0, 0, 0]
     for name in NAMES:
         alone = tmp_path / f"{name}-alone.blend"
         files = [str(tmp_path / f"{name}{suffix}") for suffix in (".blend", ".edits.json")]

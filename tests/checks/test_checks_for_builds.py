@@ -83,7 +83,7 @@ def test_a_baseline_does_not_accept_other_objects(tmp_path):
         ("{", "known.json: not JSON in UTF-8"),
         ("[" * 100_000, "known.json: "),
         ("{}", 'the field "schema" is not "stiv-baseline"'),
-        ('{"schema": "stiv-baseline", "version": 9}', "version 9 of the format is not known"),
+        ('{"schema": "stiv-baseline", "version": 9}', "version 9 is not supported"),
         ('{"schema": "stiv-baseline", "version": 1, "accepted": [3]}', 'accepted 0: "file" is not the name of a file'),
         (
             '{"schema": "stiv-baseline", "version": 1, "accepted": [{"file": "a", "objects": ["a"]}]}',

@@ -70,7 +70,7 @@ def tested(found: stiv_blender.SceneCheck) -> str:
     if found.seams:
         parts.append(counted(found.seams, "1 face pair on seams", "{} face pairs on seams"))
     if found.left_out:
-        parts.append(translate("not tested, {}").format(stiv_blender.left_out_text(found.left_out)))
+        parts.append(translate("not tested, {}").format(stiv_blender.untested_text(found.left_out)))
     return "; ".join(parts)
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many scenes at once: a job file, worker processes that may die, results that are whole or not there."""
+"""Batches of scenes: a job file, worker processes that may crash, and results that are complete or absent."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries on a Dask cluster (`distributed`, of the extra `cluster`); its workers must see the same files.
+"""Runs entries on a Dask cluster (`distributed`, from the extra `cluster`) whose workers see the same files.
 
-Each thread of a Dask worker keeps one worker process of ours, with one Blender, so that a scene that ends Blender does
-not end the Dask worker. Dask itself repeats what a lost machine was doing. A thread of Dask stands for one processor,
-so each worker process of ours edits with one thread, or with as many as STIV_THREADS says where the Dask worker runs.
+Each thread of a Dask worker has a worker process with one Blender, so that a crash of Blender does not end the Dask
+worker. Dask repeats the entries of a lost machine. A Dask thread stands for one processor: its worker process edits
+with one thread, or with STIV_THREADS of the environment of the Dask worker.
 """
 
 from __future__ import annotations

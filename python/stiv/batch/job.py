@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Job files: which scenes, what to do with each, where results go. The format: docs/batch.md."""
+"""Job files: scenes, a command for each, and output files. docs/batch.md describes the format."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from typing import Any
 from stiv import InputError
 from stiv.choices import GUARDS
 from stiv.frame_ranges import parse_frames
-from stiv.json_files import read_json
+from stiv.json_files import read_json, require_format
 
-SCHEMA, VERSION = "stiv-batch", 1
+SCHEMA, VERSIONS = "stiv-batch", (1, 2)
+RENAMED = {"do": "command"}  # fields of version 1 by their present names
 MAX_BYTES = 64 * 2**20
 MAX_NAME = 100
 
 _FILES_IN = ("scene", "edits", "baseline")
 _FILES_OUT = ("output", "report")
-_FIELDS: Mapping[str, tuple[set[str], set[str]]] = {  # by what is done: fields that must be there, and that may be
+_FIELDS: Mapping[str, tuple[set[str], set[str]]] = {  # by command: required and optional fields
     "check": ({"scene"}, {"report", "frames", "objects", "baseline", "scene_name", "render", "hidden", "guard"}),
     "replay": ({"scene", "edits", "output"}, {"report", "guard"}),
     "repair": ({"scene", "output"}, {"report", "guard"}),
@@ -30,7 +31,7 @@ _FIELDS: Mapping[str, tuple[set[str], set[str]]] = {  # by what is done: fields 
 
 @dataclass(frozen=True)
 class Entry:
-    """One scene and what is done with it, as arguments of the command `stiv`."""
+    """One scene with its command, as arguments of `stiv`."""
 
     name: str
     arguments: tuple[str, ...]
@@ -40,7 +41,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Job:
-    """All entries; `time_limit` in seconds for each, 0 for none."""
+    """All entries. `time_limit`: seconds for each, 0 for no limit."""
 
     entries: tuple[Entry, ...]
     time_limit: float = 0.0
@@ -48,7 +49,7 @@ class Job:
 
 
 def read_job(path: Path) -> Job:
-    """The job in a file; paths in it are relative to its folder. Raises InputError naming file, entry and field."""
+    """Reads a job; its paths are relative to its folder. Raises InputError naming file, entry and field."""
     data = read_json(path, MAX_BYTES)
     try:
         return parse_job(data, path.resolve().parent)
@@ -57,54 +58,52 @@ def read_job(path: Path) -> Job:
 
 
 def parse_job(data: object, folder: Path) -> Job:
-    """The job in parsed JSON. Raises InputError naming entry and field."""
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise InputError(f'not a job: the field "schema" is not "{SCHEMA}"')
-    if data.get("version") != VERSION:
-        raise InputError(f"version {data.get('version')!r} of the format is not known; this program reads {VERSION}")
-    _refuse_unknown(data, {"schema", "version", "description", "time_limit", "entries"}, "the job")
-    entries = data.get("entries")
+    """The job of parsed JSON. Raises InputError naming entry and field."""
+    fields = require_format(data, SCHEMA, VERSIONS)
+    _refuse_unknown(fields, {"schema", "version", "description", "time_limit", "entries"}, "the job")
+    entries = fields.get("entries")
     if not isinstance(entries, list):
         raise InputError('the field "entries" is not a list')
-    parsed = tuple(_entry(entry, f"entry {number}", folder) for number, entry in enumerate(entries))
+    renamed = RENAMED if fields["version"] == 1 else {}
+    parsed = tuple(_entry(entry, f"entry {number}", folder, renamed) for number, entry in enumerate(entries))
     _refuse_clashes(parsed)
-    return Job(
-        parsed, _seconds(data.get("time_limit", 0)), _text(data.get("description", ""), "description", "the job")
-    )
+    description = _text(fields.get("description", ""), "description", "the job")
+    return Job(parsed, _seconds(fields.get("time_limit", 0)), description)
 
 
-def _entry(data: object, where: str, folder: Path) -> Entry:
-    if not isinstance(data, dict):
+def _entry(given: object, where: str, folder: Path, renamed: Mapping[str, str]) -> Entry:
+    if not isinstance(given, dict):
         raise InputError(f"{where}: not an object with named fields")
+    data = {renamed.get(name, name): value for name, value in given.items()}
     name = _text(data.get("name"), "name", where)
     if not name or len(name) > MAX_NAME or not name.isprintable():
         raise InputError(f'{where}: "name" must have 1 to {MAX_NAME} printable characters')
     where = f'{where} ("{name}")'
-    task = data.get("do")
-    if not isinstance(task, str) or task not in _FIELDS:
-        raise InputError(f'{where}: "do" is {task!r}, none of {", ".join(_FIELDS)}')
-    required, optional = _FIELDS[task]
+    command = data.get("command")
+    if not isinstance(command, str) or command not in _FIELDS:
+        raise InputError(f'{where}: "command" is {command!r}, none of {", ".join(_FIELDS)}')
+    required, optional = _FIELDS[command]
     for field in sorted(required - set(data)):
-        raise InputError(f'{where}: {task} needs the field "{field}"')
-    _refuse_unknown(data, {"name", "do"} | required | optional, where)
+        raise InputError(f'{where}: {command} needs the field "{field}"')
+    _refuse_unknown(data, {"name", "command"} | required | optional, where)
     files = {f: folder / _path(data[f], f, where) for f in (*_FILES_IN, *_FILES_OUT) if f in data}
     return Entry(
         name,
-        tuple(_arguments(task, data, files, where)),
+        tuple(_arguments(command, data, files, where)),
         tuple(files[field] for field in _FILES_IN if field in files),
         tuple(files[field] for field in _FILES_OUT if field in files),
     )
 
 
-def _arguments(task: str, data: Mapping[str, Any], files: Mapping[str, Path], where: str) -> list[str]:
-    """What `stiv` is called with; values that begin with a dash stay values."""
-    arguments = [task, str(files["scene"])]
+def _arguments(command: str, data: Mapping[str, Any], files: Mapping[str, Path], where: str) -> list[str]:
+    """The arguments of `stiv`. Options take their values after "=", because a value may begin with a dash."""
+    arguments = [command, str(files["scene"])]
     if "edits" in files:
         arguments.append(str(files["edits"]))
     if "output" in files:
         arguments.append(f"--output={files['output']}")
     if "report" in files:
-        arguments.append(f"--{'json' if task == 'check' else 'report'}={files['report']}")
+        arguments.append(f"--{'json' if command == 'check' else 'report'}={files['report']}")
     if "baseline" in files:
         arguments.append(f"--baseline={files['baseline']}")
     if "frames" in data:
@@ -121,26 +120,24 @@ def _arguments(task: str, data: Mapping[str, Any], files: Mapping[str, Path], wh
 def _refuse_unknown(data: Mapping[str, Any], known: set[str], where: str) -> None:
     unknown = sorted(set(data) - known)
     if unknown:
-        raise InputError(f'{where}: unknown field "{unknown[0]}"; there are {", ".join(sorted(known))}')
+        raise InputError(f'{where}: unknown field "{unknown[0]}"; the fields are {", ".join(sorted(known))}')
 
 
 def _refuse_clashes(entries: tuple[Entry, ...]) -> None:
-    """No two entries of one name, and no file written twice or both read and written."""
+    """Raises InputError if two entries have one name, or a file is written twice or both read and written."""
     names: dict[str, int] = {}
     written: dict[Path, str] = {}
     for number, entry in enumerate(entries):
         if names.setdefault(entry.name, number) != number:
-            raise InputError(f'entry {number}: the name "{entry.name}" is that of entry {names[entry.name]} too')
+            raise InputError(f'entry {number}: entry {names[entry.name]} also has the name "{entry.name}"')
         for path in entry.outputs:
             if path in written:
-                raise InputError(f'entry {number} ("{entry.name}"): {path} is written by "{written[path]}" too')
+                raise InputError(f'entry {number} ("{entry.name}"): "{written[path]}" also writes {path}')
             written[path] = entry.name
     for number, entry in enumerate(entries):
         for path in entry.inputs:
             if path in written:
-                raise InputError(
-                    f'entry {number} ("{entry.name}"): {path} is read here and written by "{written[path]}"'
-                )
+                raise InputError(f'entry {number} ("{entry.name}"): reads {path}, which "{written[path]}" writes')
 
 
 def _path(value: object, field: str, where: str) -> Path:
@@ -170,7 +167,7 @@ def _guard(value: object, where: str) -> str:
 
 def _names(value: object, field: str, where: str) -> list[str]:
     if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-        raise InputError(f'{where}: "{field}" is not a list of names of objects')
+        raise InputError(f'{where}: "{field}" is not a list of object names')
     return value
 
 

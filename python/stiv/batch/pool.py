@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries on a pool of worker processes; a worker that dies costs its entry one retry, and nothing else."""
+"""Runs entries on a pool of worker processes. If a worker dies, its entry is tried once more."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from stiv.batch.records import Record
 from stiv.batch.worker_process import WorkerProcess
 
 ATTEMPTS = 2
-STILLBORN = 3  # workers in a row that end before they are ready: then there is no use in starting more
+FAILED_STARTS = 3  # consecutive workers that end before they are ready; then the pool gives up
 START_LIMIT = 300.0  # seconds until a worker is ready
 
 Message = tuple[WorkerProcess, dict[str, Any] | None]
 
 
 class PoolError(RuntimeError):
-    """Workers cannot be started at all."""
+    """Workers cannot be started."""
 
 
 class Pool:
@@ -41,8 +41,8 @@ class Pool:
         self._limit = time_limit
         self._log = log
         self._messages: queue.Queue[Message] = queue.Queue()
-        self._workers: dict[WorkerProcess, float] = {}  # since when each is starting or busy
-        self._stillborn = 0
+        self._workers: dict[WorkerProcess, float] = {}  # time since each is starting or busy
+        self._failed_starts = 0
 
     def run(
         self,
@@ -51,7 +51,7 @@ class Pool:
         on_done: Callable[[int, Record], None],
         keep: bool = False,
     ) -> None:
-        """Runs every command; `on_done` is told of each by its number. Ends all workers, or keeps idle ones for later.
+        """Runs every command and calls `on_done` with the number of each. Ends all workers; `keep`: leaves them idle.
 
         Raises PoolError.
         """
@@ -70,10 +70,10 @@ class Pool:
                         self._workers[worker] = time.monotonic()
                 worker, reply = self._next_message()
                 number_done = worker.number
-                record = self._heard(worker, reply, names, attempts)
+                record = self._record(worker, reply, names, attempts)
                 if record is None or number_done is None:
                     continue
-                if record.code is None and attempts[number_done] < ATTEMPTS:
+                if record.exit_code is None and attempts[number_done] < ATTEMPTS:
                     waiting.appendleft((number_done, attempts[number_done] + 1))
                     continue
                 left -= 1
@@ -108,20 +108,20 @@ class Pool:
                 return message
 
     def _kill_late(self) -> None:
-        """Their ends are heard of as those of any other worker."""
+        """Kills workers that exceed a time limit. Their end arrives as a message."""
         for worker, since in self._workers.items():
             limit = START_LIMIT if not worker.ready else self._limit if worker.number is not None else 0.0
             if limit and time.monotonic() - since > limit:
                 worker.kill()
 
-    def _heard(
+    def _record(
         self, worker: WorkerProcess, reply: dict[str, Any] | None, names: Sequence[str], attempts: dict[int, int]
     ) -> Record | None:
-        """What a message says about an entry."""
+        """The record of the entry that a message ends, or None."""
         number = worker.number
         if reply is None:
             since = self._workers.pop(worker)
-            self._count_stillborn(worker)
+            self._count_failed_starts(worker)
             if number is None:
                 return None
             seconds = time.monotonic() - since
@@ -129,14 +129,14 @@ class Pool:
             why = f"took longer than {self._limit:g} s" if late else "its worker process died"
             return Record(names[number], None, why, round(seconds, 3), attempts[number])
         if "ready" in reply:
-            worker.ready, self._stillborn = True, 0
+            worker.ready, self._failed_starts = True, 0
             return None
         assert number is not None and reply.pop("number") == number
         worker.number = None
         return Record(names[number], attempts=attempts[number], **reply)
 
-    def _count_stillborn(self, worker: WorkerProcess) -> None:
-        self._stillborn += not worker.ready
-        if self._stillborn >= STILLBORN:
-            where = "" if self._log is None else f"; what they said is in {self._log}"
-            raise PoolError(f"{STILLBORN} worker processes in a row ended before they were ready{where}")
+    def _count_failed_starts(self, worker: WorkerProcess) -> None:
+        self._failed_starts += not worker.ready
+        if self._failed_starts >= FAILED_STARTS:
+            where = "" if self._log is None else f"; see {self._log}"
+            raise PoolError(f"{FAILED_STARTS} worker processes in a row ended before they were ready{where}")

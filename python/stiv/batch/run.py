@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a job: what is finished is skipped if asked for, the rest goes to workers, and every result is recorded."""
+"""Runs a job: skips finished entries on request, runs the others on workers, and records every result."""
 
 from __future__ import annotations
 
@@ -24,48 +24,48 @@ from stiv.batch.records import (
 )
 from stiv.exit_codes import ExitCode
 
-SCHEMA, VERSION = "stiv-batch-report", 1
+SCHEMA, VERSION = "stiv-batch-report", 2
 
-# What runs commands: names, commands, and what is called with the number and record of each one done.
+# Runs commands: names, commands, and a function to call with the number and record of each finished one.
 Runner = Callable[[Sequence[str], Sequence[Sequence[str]], Callable[[int, Record], None]], None]
 
 
 @dataclass(frozen=True)
-class Choices:
-    """How a job is run."""
+class RunOptions:
+    """How a job runs."""
 
     state: Path  #: folder of the records
     resume: bool = False
     blender: str = ""
-    lock: str = "lock"  #: name of the file that a run holds; parts of a job that run at once have one each
+    lock: str = "lock"  #: name of the lock file; parts of a job that run at the same time have their own
 
 
 def run_job(
-    job: Job, choices: Choices, runner: Runner, on_entry: Callable[[Record], None] = lambda record: None
+    job: Job, options: RunOptions, runner: Runner, on_entry: Callable[[Record], None] = lambda record: None
 ) -> list[Record]:
-    """What every entry came to, in the order of the job; `on_entry` is told of each when it is done."""
-    with _alone(choices.state, choices.lock):
+    """Runs a job and returns a record for each entry, in the order of the job. Calls `on_entry` with each record."""
+    with _locked(options.state, options.lock):
         _remove_leftovers(job)
         records: dict[str, Record] = {}
         waiting: list[tuple[Entry, str]] = []
-        version = program_version(choices.blender)
+        version = program_version(options.blender)
 
         def note(record: Record) -> None:
             records[record.name] = record
             on_entry(record)
 
         for entry in job.entries:
-            done = _settled(entry, version, choices)
+            done = _known_result(entry, version, options)
             if isinstance(done, Record):
                 note(done)
             else:
-                remove_record(choices.state, entry.name)
+                remove_record(options.state, entry.name)
                 waiting.append((entry, done))
 
         def finish(number: int, record: Record) -> None:
             entry, mark = waiting[number]
             written = replace(with_outputs(record, entry), fingerprint=mark)
-            write_record(choices.state, written)
+            write_record(options.state, written)
             note(written)
 
         _make_folders(entry for entry, _ in waiting)
@@ -74,7 +74,7 @@ def run_job(
 
 
 def report_of(job: Job, records: Sequence[Record], seconds: float) -> dict[str, Any]:
-    """The final report, ready for JSON."""
+    """The report, as JSON data."""
     return {
         "schema": SCHEMA,
         "version": VERSION,
@@ -85,19 +85,19 @@ def report_of(job: Job, records: Sequence[Record], seconds: float) -> dict[str, 
 
 
 def exit_code(records: Sequence[Record]) -> ExitCode:
-    """The worst that any entry came to."""
-    codes = {ExitCode.INTERNAL_ERROR if record.code is None else ExitCode(record.code) for record in records}
+    """The worst exit code of all entries."""
+    codes = {ExitCode.INTERNAL_ERROR if record.exit_code is None else ExitCode(record.exit_code) for record in records}
     order = (ExitCode.CANCELLED, ExitCode.INTERNAL_ERROR, ExitCode.USAGE, ExitCode.BAD_INPUT, ExitCode.NOT_FREE)
     return next((code for code in order if code in codes), ExitCode.DONE)
 
 
-def _settled(entry: Entry, version: str, choices: Choices) -> Record | str:
-    """The record of an entry that need not or cannot be run, else its fingerprint."""
+def _known_result(entry: Entry, version: str, options: RunOptions) -> Record | str:
+    """The record of an entry that need not or cannot run, otherwise its fingerprint."""
     try:
         mark = fingerprint(entry, version)
     except InputError as error:
         return Record(entry.name, ExitCode.BAD_INPUT, str(error), attempts=0)
-    done = finished_record(choices.state, entry, mark) if choices.resume else None
+    done = finished_record(options.state, entry, mark) if options.resume else None
     return mark if done is None else replace(done, skipped=True)
 
 
@@ -107,11 +107,11 @@ def _make_folders(entries: Iterator[Entry]) -> None:
             try:
                 path.parent.mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise InputError(f"{path.parent}: cannot be made: {error.strerror or error}") from error
+                raise InputError(f"{path.parent}: cannot be created: {error.strerror or error}") from error
 
 
 def _remove_leftovers(job: Job) -> None:
-    """Deletes what runs that were killed left half written beside outputs, under the names such files have."""
+    """Deletes the temporary files of killed runs, which are next to the outputs."""
     for folder in {path.parent for entry in job.entries for path in entry.outputs}:
         names = {(path.stem, path.suffix) for entry in job.entries for path in entry.outputs if path.parent == folder}
         for found in folder.glob(".*") if folder.is_dir() else ():
@@ -121,8 +121,8 @@ def _remove_leftovers(job: Job) -> None:
 
 
 @contextmanager
-def _alone(state: Path, name: str) -> Iterator[None]:
-    """Makes the folder, and holds it for this process alone; a process that is killed lets go of it."""
+def _locked(state: Path, name: str) -> Iterator[None]:
+    """Creates the folder and locks it for this process. The lock ends with the process."""
     try:
         state.mkdir(parents=True, exist_ok=True)
         lock = (state / name).open("w")

@@ -42,7 +42,7 @@ def run_command(run: Run, arguments: list[str]) -> dict[str, Any]:
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         code = run(arguments)
     return {
-        "code": code,
+        "exit_code": code,
         "message": shortened(said.getvalue().strip()),
         "seconds": round(time.perf_counter() - begin, 3),
         "peak_megabytes": _peak_megabytes(),
@@ -50,7 +50,7 @@ def run_command(run: Run, arguments: list[str]) -> dict[str, Any]:
 
 
 def shortened(text: str) -> str:
-    """The first line and the last characters of a long text; a command's result comes first, its error last."""
+    """The first line and the end of a long text. A command prints its result first and its error last."""
     if len(text) <= MESSAGE:
         return text
     first = text.splitlines()[0][: MESSAGE // 2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker process as its owner sees it: send it a command, hear its reply or its end."""
+"""A worker process from the side of its owner, which sends commands and receives replies."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Listener = Callable[["WorkerProcess", dict[str, Any] | None], None]
 
 
 class WorkerProcess:
-    """Attributes: `ready` once it has said so, and `number` of the entry that it is busy with, or None."""
+    """Attributes: `ready`, and `number` of the current entry, or None."""
 
     def __init__(self, command: Sequence[str], listen: Listener, log: Path | None = None, threads: int = 1) -> None:
-        """Start it. `listen` is called from another thread with each reply, and with None at its end.
+        """Start it. Another thread calls `listen` with each reply, and with None at the end of the process.
 
-        `threads`: what its edits take at most, unless the environment says so with STIV_THREADS.
+        threads: limit for its edits, unless STIV_THREADS in the environment sets another.
         """
         paths = [str(PACKAGES), *filter(None, [os.environ.get("PYTHONPATH")])]
         errors = subprocess.DEVNULL if log is None else log.open("ab")
@@ -41,11 +41,11 @@ class WorkerProcess:
 
     @property
     def pid(self) -> int:
-        """Number of the process."""
+        """Id of the process."""
         return self._process.pid
 
     def send(self, number: int, arguments: Sequence[str]) -> None:
-        """Give it an entry; a worker that is dead already is heard of by its end."""
+        """Send an entry. If the worker is already dead, `listen` is called with None."""
         self.number = number
         assert self._process.stdin is not None
         try:
@@ -55,7 +55,7 @@ class WorkerProcess:
             pass
 
     def kill(self) -> None:
-        """End it at once, and wait until it is gone."""
+        """Kill it, and wait until it has ended."""
         self._process.kill()
         self._process.wait()
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Findings that are known and accepted: by file, pair of objects and kind, with the number of pairs.
+"""Baselines: known findings that are accepted, by file, pair of objects and kind, with the number of pairs.
 
-Numbers of faces change with every edit of a mesh, so the objects are what a baseline remembers. Where two objects meet
-in more places than accepted, all of them are found again.
+A baseline stores objects instead of faces, because every edit of a mesh changes the indices of its faces. If two
+objects intersect in more places than accepted, all of these are reported again.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 from stiv import InputError
 from stiv.checks.findings import CROSSING, INTERSECTION, FileCheck, Finding
-from stiv.json_files import read_json
+from stiv.json_files import read_json, require_format
 
 SCHEMA, VERSION = "stiv-baseline", 1
 MAX_BYTES = 64 * 2**20
@@ -26,7 +26,7 @@ Baseline = Mapping[Key, int]
 
 
 def read_baseline(path: Path) -> Baseline:
-    """The baseline in a file; files in it are relative to its folder. Raises InputError naming entry and field."""
+    """Reads a baseline; its files are relative to its folder. Raises InputError naming entry and field."""
     data = read_json(path, MAX_BYTES)
     try:
         return _parsed(data)
@@ -35,7 +35,7 @@ def read_baseline(path: Path) -> Baseline:
 
 
 def baseline_of(checks: Iterable[FileCheck], folder: Path) -> dict[str, Any]:
-    """A baseline that accepts all that was found, ready for JSON, to be written into `folder`."""
+    """A baseline that accepts all findings, as JSON data for a file in `folder`."""
     counts: Counter[Key] = Counter()
     for check in checks:
         counts.update(_key(finding, check.file, folder) for finding in (*check.findings, *check.accepted))
@@ -47,7 +47,7 @@ def baseline_of(checks: Iterable[FileCheck], folder: Path) -> dict[str, Any]:
 
 
 def without_accepted(check: FileCheck, baseline: Baseline, folder: Path) -> FileCheck:
-    """The check with what the baseline (read from `folder`) accepts moved from `findings` to `accepted`."""
+    """Moves the findings that the baseline (read from `folder`) accepts from `findings` to `accepted`."""
     keys = [_key(finding, check.file, folder) for finding in check.findings]
     counts = Counter(keys)
     known = [counts[key] <= baseline.get(key, 0) for key in keys]
@@ -62,13 +62,10 @@ def _key(finding: Finding, file: str, folder: Path) -> Key:
 
 
 def _parsed(data: Any) -> dict[Key, int]:
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise InputError(f'not a baseline: the field "schema" is not "{SCHEMA}"')
-    if data.get("version") != VERSION:
-        raise InputError(f"version {data.get('version')!r} of the format is not known; this program reads {VERSION}")
-    if not isinstance(data.get("accepted"), list):
+    accepted = require_format(data, SCHEMA, (VERSION,)).get("accepted")
+    if not isinstance(accepted, list):
         raise InputError('the field "accepted" is not a list')
-    return dict(_entry(entry, f"accepted {number}") for number, entry in enumerate(data["accepted"]))
+    return dict(_entry(entry, f"accepted {number}") for number, entry in enumerate(accepted))
 
 
 def _entry(entry: Any, where: str) -> tuple[Key, int]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks as JUnit XML, which build servers show: a test suite for each file, a test case for each frame."""
+"""Checks as JUnit XML for build servers: a test suite for each file, a test case for each frame."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable, Sequence
 
-from stiv.checks.findings import FileCheck, Finding, counted, left_out_text, when
+from stiv.checks.findings import FileCheck, Finding, counted, untested_text, when
 
-LISTED = 50  # pairs in a failure
+LISTED = 50  # pairs in the text of a failure
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -35,10 +35,10 @@ def _add_suite(root: ElementTree.Element, check: FileCheck) -> None:
             _add(case, "error", message=check.error)
         elif findings:
             _add(case, "failure", message=_headline(findings)).text = _clean(_listed(findings))
-    told = [f"not tested, {left_out_text(check.left_out)}"] if check.left_out else []
-    told += [f"accepted by the baseline:\n{_listed(check.accepted)}"] if check.accepted else []
-    if told:
-        _add(suite, "system-out").text = _clean("\n".join(told))
+    output = [f"not tested, {untested_text(check.untested)}"] if check.untested else []
+    output += [f"accepted by the baseline:\n{_listed(check.accepted)}"] if check.accepted else []
+    if output:
+        _add(suite, "system-out").text = _clean("\n".join(output))
 
 
 def _cases(check: FileCheck) -> list[tuple[str, list[Finding]]]:
@@ -53,9 +53,9 @@ def _cases(check: FileCheck) -> list[tuple[str, list[Finding]]]:
 
 def _headline(findings: Sequence[Finding]) -> str:
     pairs = sorted({finding.objects for finding in findings})
-    told = ", ".join(f'"{one}" and "{other}"' for one, other in pairs[:5])
+    objects = ", ".join(f'"{one}" and "{other}"' for one, other in pairs[:5])
     count = counted(len(findings), sum(finding.triangle_pairs for finding in findings))
-    return f"{count}, of {told}" + (f" and {len(pairs) - 5} more" if len(pairs) > 5 else "")
+    return f"{count}, of {objects}" + (f" and {len(pairs) - 5} more" if len(pairs) > 5 else "")
 
 
 def _listed(findings: Sequence[Finding]) -> str:
@@ -68,5 +68,5 @@ def _add(parent: ElementTree.Element, tag: str, **attributes: str) -> ElementTre
 
 
 def _clean(text: str) -> str:
-    """Without the characters that XML has no way to write; an object's name may hold any."""
+    """Replaces characters that XML cannot contain. The name of an object may contain any."""
     return _NOT_IN_XML.sub("\ufffd", text)

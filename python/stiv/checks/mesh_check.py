@@ -18,7 +18,7 @@ from stiv.seams import Seams, object_seams, seam_pairs
 
 
 def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
-    """Every pair of triangles that meets, of all objects or of those named. Raises InputError for unknown names."""
+    """Tests all objects, or those named. Raises InputError for unknown names."""
     shapes = shapes_of(_limited(mesh, objects))
 
     def element(triangle: int) -> Element:
@@ -33,7 +33,7 @@ def check_mesh(mesh: Mesh, objects: Collection[str] = ()) -> Look:
 
 
 def _seam_pairs(shapes: Shapes, seams: Seams | None, intersecting: Indices, touching: Indices) -> tuple[SeamPairs, ...]:
-    """The pairs of triangles on seams of each object, with those that touch in edges, without those that intersect."""
+    """Pairs of triangles of each object on seams or touching only along edges, without those that intersect."""
     pairs = seam_pairs(seams, shapes.triangles, np.arange(len(shapes.triangles), dtype=np.int32))
     if len(touching):
         pairs = np.unique(np.concatenate([pairs, touching]), axis=0)
@@ -53,7 +53,7 @@ def _pairs(shapes: Shapes, seams: Seams | None) -> Indices:
 
 
 def shapes_of(mesh: Mesh) -> Shapes:
-    """The mesh's triangles, numbered within their objects."""
+    """The triangles of a mesh, with their indices within objects."""
     owner = mesh.triangle_object
     order = np.argsort(owner, kind="stable")
     first = np.searchsorted(owner[order], np.arange(len(mesh.object_names)))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture of a finding: the two objects, and close up the faces that meet, marked red. Needs no display.
+"""Pictures of findings: both objects, and a close-up with the intersecting faces in red. Needs no display.
 
-The pixels are made here (`raster`); matplotlib, of the extra `pictures`, adds the words and writes the file.
+`raster` draws the pixels. matplotlib, from the extra `pictures`, adds text and writes the file.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ SIZE = 480  # pixels of each of the two views
 _COLORS = np.array([[0.45, 0.62, 0.85], [0.95, 0.78, 0.45]])
 _MARKED = np.array([0.90, 0.10, 0.12])
 _DIRECTION = np.array([0.55, -0.75, 0.5])
-_HIDDEN = 0.55  # how strongly marked faces shine through what hides them
-_CLOSE = 6.0  # height of the close view, in sizes of the largest marked face
+_HIDDEN = 0.55  # opacity of marked faces behind others
+_CLOSE = 6.0  # height of the close-up, in sizes of the first pair of marked faces
 
 
 def require_matplotlib() -> None:
-    """Raises InputError if matplotlib is not installed: before any work is done."""
+    """Raises InputError if matplotlib is not installed. Called before any work is done."""
     if importlib.util.find_spec("matplotlib") is None:
         raise InputError("pictures need matplotlib, which is not installed: `pip install stiv[pictures]`")
 
 
 def write_picture(path: Path, shapes: Shapes, findings: Sequence[Finding], title: str) -> None:
-    """A PNG file of findings between the same two objects, in one pose."""
+    """Writes a PNG file of the findings between two objects in one pose."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -44,14 +44,14 @@ def write_picture(path: Path, shapes: Shapes, findings: Sequence[Finding], title
         axes.imshow(image)
         axes.set_axis_off()
     first = f"{findings[0].first} - {findings[0].second}"
-    told = f"{when(findings[0])}{len(findings)} pairs meet, marked red: the first, {first}"
+    caption = f"{when(findings[0])}{len(findings)} intersecting pairs, in red; the first: {first}"
     figure.text(0.01, 0.97, _plain(f'{title}: "{one}" (blue), "{other}" (yellow)'), va="top", fontsize=10)
-    figure.text(0.01, 0.92, _plain(told), va="top", fontsize=8)
+    figure.text(0.01, 0.92, _plain(caption), va="top", fontsize=8)
     figure.savefig(path, format="png")
 
 
 def views(shapes: Shapes, findings: Sequence[Finding]) -> tuple[Floats, Floats]:
-    """Both objects whole, and close to the first finding: two pictures, (SIZE, SIZE, 3)."""
+    """Both objects, and a close-up of the first finding: two images, (SIZE, SIZE, 3)."""
     one, other = findings[0].objects
     colors, kept = _colors(shapes, one, other)
     marked = _marked(shapes, findings)
@@ -77,13 +77,13 @@ def _view(shapes: Shapes, kept: NDArray[np.bool_], marked: NDArray[np.bool_], co
 
 
 def _colors(shapes: Shapes, one: str, other: str) -> tuple[Floats, NDArray[np.bool_]]:
-    """Colour of each triangle, (F, 3), and which belong to one of the two objects."""
+    """Color of each triangle, (F, 3), and whether it belongs to one of the two objects, (F,)."""
     names = np.array(shapes.names)[shapes.owner] if len(shapes.owner) else np.zeros(0, str)
     return _COLORS[(names == other).astype(int) * int(one != other)], (names == one) | (names == other)
 
 
 def _marked(shapes: Shapes, findings: Sequence[Finding]) -> NDArray[np.bool_]:
-    """Which triangles belong to faces of the findings."""
+    """Whether each triangle belongs to a face of the findings, (F,)."""
     index = {name: place for place, name in enumerate(shapes.names)}
     faces = {
         (index[each.object], each.number)
@@ -97,6 +97,6 @@ def _marked(shapes: Shapes, findings: Sequence[Finding]) -> NDArray[np.bool_]:
 
 
 def _plain(text: str, length: int = 130) -> str:
-    """Without the signs that matplotlib reads as formulas, and not too long."""
+    """Escapes the characters that matplotlib reads as formulas, and shortens the text."""
     cut = text if len(text) <= length else text[: length - 3] + "..."
     return cut.replace("$", r"\$")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangles into pixels with NumPy alone: orthographic, flat shaded, hidden parts by depth; needs no display."""
+"""Rasterizes triangles with NumPy: orthographic, flat shading, a depth buffer. Needs no display."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-_AT_ONCE = 2**21  # pixels that are tested together
+_AT_ONCE = 2**21  # pixels that are tested at once
 
 
 @dataclass(frozen=True)
 class Camera:
-    """An orthographic view. `axes`: rows right, up and toward the eye; `height` world units fill the picture."""
+    """An orthographic view. The rows of `axes` point right, up and toward the eye. `height` in world units."""
 
     axes: Floats  #: (3, 3)
     centre: Floats  #: (3,)
     height: float
 
     def seen(self, points: Floats, size: tuple[int, int]) -> Floats:
-        """Column, row and nearness of points, (n, 3), in a picture of this width and height."""
+        """Column, row and nearness of points, (n, 3), in an image of this width and height."""
         width, height = size
         right, up, near = ((points - self.centre) @ self.axes.T).T
         scale = height / self.height
@@ -29,7 +29,7 @@ class Camera:
 
 
 def camera_at(points: Floats, direction: Floats, margin: float = 1.15, aspect: float = 1.0) -> Camera:
-    """A camera that looks along -`direction` and shows all points, (n, 3)."""
+    """A camera that looks along -`direction` and sees all points, (n, 3)."""
     toward = direction / np.linalg.norm(direction)
     helper = np.array([0.0, 0.0, 1.0]) if abs(toward[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
     right = np.cross(helper, toward)
@@ -45,9 +45,9 @@ def camera_at(points: Floats, direction: Floats, margin: float = 1.15, aspect: f
 def draw(
     positions: Floats, triangles: NDArray[np.int32], colors: Floats, camera: Camera, size: tuple[int, int]
 ) -> tuple[Floats, Floats]:
-    """The picture, (height, width, 3) in 0..1, white where nothing is, and the nearness there, -inf for nothing.
+    """Draws triangles: the image, (height, width, 3) in [0, 1], and the nearness of each pixel.
 
-    colors: (F, 3) of each triangle before shading.
+    colors: (F, 3), before shading. The background is white, with nearness -inf.
     """
     width, height = size
     corners = camera.seen(positions, size)[triangles]
@@ -58,10 +58,10 @@ def draw(
     extent = np.maximum(high - low, 0).max(axis=1)
     visible = (high > low).all(axis=1)
     side = 2
-    while True:  # triangles of like size are tested together, each against a square of pixels around it
+    while True:  # triangles of similar size together, each in a square of pixels
         chosen = np.flatnonzero(visible & (extent <= side) & (extent > (0 if side == 2 else side // 2)))
-        for part in np.array_split(chosen, max(1, -(-len(chosen) * side * side // _AT_ONCE))):
-            _fill(image, depth, corners[part], shaded[part], low[part], side, size)
+        for batch in np.array_split(chosen, max(1, -(-len(chosen) * side * side // _AT_ONCE))):
+            _fill(image, depth, corners[batch], shaded[batch], low[batch], side, size)
         if side >= max(size):
             return image.reshape(height, width, 3), depth.reshape(height, width)
         side *= 2
@@ -86,14 +86,14 @@ def _fill(
     near = (u * a[:, 2] + v * b[:, 2] + w * c[:, 2])[inside]
     pixel = (y * width + x)[inside]
     color = np.broadcast_to(colors[:, None, :], (*inside.shape, 3))[inside]
-    order = np.argsort(near, kind="stable")  # of several at one pixel the last, the nearest, stays
+    order = np.argsort(near, kind="stable")  # the last write to a pixel, the nearest, wins
     pixel, near, color = pixel[order], near[order], color[order]
     nearer = near > depth[pixel]
     depth[pixel[nearer]], image[pixel[nearer]] = near[nearer], color[nearer]
 
 
 def _shade(corners: Floats, camera: Camera) -> Floats:
-    """Brightness of triangles, (F,), whichever side is seen: light comes from above the eye."""
+    """Brightness of triangles, (F,), the same on both sides. The light comes from above the eye."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1)
     light = np.array([0.25, 0.45, 0.86]) @ camera.axes

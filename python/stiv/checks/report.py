@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks as JSON (python/stiv/schemas/check.schema.json) and as lines for people."""
+"""Checks as JSON (python/stiv/schemas/check.schema.json) and as text."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from stiv.checks.findings import Element, FileCheck, Finding, LeftOut, counted, left_out_text
+from stiv.checks.findings import Element, FileCheck, Finding, Untested, counted, untested_text
 
 SCHEMA, VERSION = "stiv-check", 2
 LISTED_PAIRS = 100  # of each file, in the report
-LISTED_LEFT_OUT = 100  # objects of each file that were not tested, in the report
+LISTED_UNTESTED = 100  # objects of each file that were not tested, in the report
 SHOWN_PAIRS = 10  # of each file, on the terminal
 
 
@@ -28,7 +28,7 @@ def report_of(checks: Sequence[FileCheck], with_seams: bool = False) -> dict[str
 
 
 def file_report(check: FileCheck, with_seams: bool = False) -> dict[str, Any]:
-    """The part of the report on one file; seams are counted, and with `with_seams` listed."""
+    """The report on one file. `with_seams` lists seams, which are otherwise only counted."""
     listed = {"seam_pairs": [_pair(seam) for each in check.seams for seam in each.findings()]} if with_seams else {}
     return listed | {
         "file": check.file,
@@ -44,8 +44,8 @@ def file_report(check: FileCheck, with_seams: bool = False) -> dict[str, Any]:
         "pairs": [_pair(finding) for finding in check.findings[:LISTED_PAIRS]],
         "pictures": list(check.pictures),
         "scenes": list(check.scenes),
-        "left_out": [_left_out(each) for each in check.left_out[:LISTED_LEFT_OUT]],
-        "left_out_counts": dict(sorted(Counter(each.why for each in check.left_out).items())),
+        "untested": [_untested(each) for each in check.untested[:LISTED_UNTESTED]],
+        "untested_counts": dict(sorted(Counter(each.reason for each in check.untested).items())),
         "notes": list(check.notes),
         "error": check.error,
         "seconds": round(check.seconds, 3),
@@ -53,7 +53,7 @@ def file_report(check: FileCheck, with_seams: bool = False) -> dict[str, Any]:
 
 
 def summary(check: FileCheck, with_seams: bool = False) -> str:
-    """What a file was found to be, one line a fact; with `with_seams` the pairs of faces on seams too."""
+    """The results for one file as text; `with_seams` includes the pairs of faces on seams."""
     if check.error:
         return f"stiv: {check.file}: {check.error}"
     size = f"{check.vertices:,} vertices, {check.triangles:,} triangles, {len(check.objects)} objects"
@@ -62,9 +62,9 @@ def summary(check: FileCheck, with_seams: bool = False) -> str:
     if check.frames:
         size += f", {len(check.frames)} frames"
     accepted = f"; {len(check.accepted):,} pairs accepted by the baseline" if check.accepted else ""
-    notes = [f"  not tested, {left_out_text(check.left_out)}"] if check.left_out else []
+    notes = [f"  not tested, {untested_text(check.untested)}"] if check.untested else []
     notes += [f"  note: {note}" for note in check.notes]
-    notes += [f"  pairs of faces that touch along seams alone: {check.seam_count:,}"] if check.seams else []
+    notes += [f"  pairs of faces that touch only along seams: {check.seam_count:,}"] if check.seams else []
     notes += [f"  seam: {seam}" for each in check.seams for seam in each.findings()] if with_seams else []
     if check.free:
         return "\n".join([f"{check.file}: free of intersections ({size}, {check.seconds:.2f} s){accepted}", *notes])
@@ -75,17 +75,25 @@ def summary(check: FileCheck, with_seams: bool = False) -> str:
 
 
 def _pair(finding: Finding) -> dict[str, Any]:
-    told: dict[str, Any] = {"kind": finding.kind}
-    told |= {"first": _element(finding.first), "second": _element(finding.second)}
-    told |= {"triangle_pairs": finding.triangle_pairs}
-    given: dict[str, Any] = {"scene": finding.scene or None, "rendered": finding.rendered or None}
-    given |= {"frame": finding.frame, "to_frame": finding.to_frame, "time": finding.time}
-    return told | {name: value for name, value in given.items() if value is not None}
+    optional = {
+        "scene": finding.scene or None,
+        "rendered": finding.rendered or None,
+        "frame": finding.frame,
+        "to_frame": finding.to_frame,
+        "time": finding.time,
+    }
+    return {
+        "kind": finding.kind,
+        "first": _element(finding.first),
+        "second": _element(finding.second),
+        "triangle_pairs": finding.triangle_pairs,
+        **{name: value for name, value in optional.items() if value is not None},
+    }
 
 
-def _left_out(left_out: LeftOut) -> dict[str, Any]:
-    told = {"object": left_out.object, "why": left_out.why}
-    return told | ({"scene": left_out.scene} if left_out.scene else {})
+def _untested(untested: Untested) -> dict[str, Any]:
+    data = {"object": untested.object, "reason": untested.reason}
+    return data | ({"scene": untested.scene} if untested.scene else {})
 
 
 def _element(element: Element) -> dict[str, Any]:

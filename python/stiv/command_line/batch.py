@@ -19,7 +19,7 @@ from stiv.batch.dask_cluster import require_distributed, run_on_cluster
 from stiv.batch.job import Job, read_job
 from stiv.batch.pool import Pool, PoolError
 from stiv.batch.records import Record
-from stiv.batch.run import Choices, exit_code, report_of, run_job
+from stiv.batch.run import RunOptions, exit_code, report_of, run_job
 from stiv.command_line.installed_blender import blender_command
 from stiv.command_line.progress import progress_bar
 from stiv.exit_codes import ExitCode
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 _DESCRIPTION = """\
-Runs a job: a file that lists scenes, what to do with each (check, replay, repair, resolve), and where results go. Each
-result is whole or not there. A worker process that dies costs its scene one retry. Its format: docs/batch.md."""
+Runs a job: a file that lists scenes, a command for each (check, replay, repair, resolve) and output files. Each output
+is complete or absent. If a worker process dies, its scene is tried once more. docs/batch.md describes the format."""
 _EXAMPLES = """\
 examples:
   stiv batch job.json --workers 4
-  stiv batch job.json --workers 4 --resume            go on where an earlier run ended
-  stiv batch job.json --scheduler tcp://farm:8786     on a Dask cluster that sees the same files
+  stiv batch job.json --workers 4 --resume            continue where an earlier run ended
+  stiv batch job.json --scheduler tcp://farm:8786     on a Dask cluster with access to the same files
   stiv batch job.json --part 3/8 --resume             the third of eight parts, for a render farm
 
 exit codes: the worst of all scenes: 0 done, 4 intersections found, 2 bad input, 1 wrong usage, 3 a scene whose
@@ -56,9 +56,11 @@ def add_to(subcommands: Subparsers) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", type=int, metavar="N", help="worker processes (default: one for each processor)")
     where.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler")
-    parser.add_argument("--resume", action="store_true", help="skip what is finished and has the same inputs")
-    parser.add_argument("--part", metavar="K/N", type=_part, help="run only every Nth entry, from the Kth")
-    parser.add_argument("--report", type=Path, metavar="F", help="write what each scene got and took to F, as JSON")
+    parser.add_argument("--resume", action="store_true", help="skip finished scenes with unchanged inputs")
+    parser.add_argument("--part", metavar="K/N", type=_part, help="run every Nth entry, starting with the Kth")
+    parser.add_argument(
+        "--report", type=Path, metavar="F", help="write the result and cost of each scene to F, as JSON"
+    )
     parser.add_argument(
         "--blender", dest="worker_blender", default="", metavar="PATH", help="workers use this installed Blender"
     )
@@ -73,12 +75,12 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     job = whole if arguments.part is None else _part_of(whole, *arguments.part)
     state = arguments.job.resolve().with_suffix(".state")
     part = "" if arguments.part is None else "-{}-of-{}".format(*arguments.part)
-    choices = Choices(state, arguments.resume, arguments.worker_blender, f"lock{part}")
+    options = RunOptions(state, arguments.resume, arguments.worker_blender, f"lock{part}")
     signal.signal(signal.SIGTERM, _cancel)
     begin = time.perf_counter()
     with progress_bar("scenes", len(job.entries)) as advance:
         try:
-            records = run_job(job, choices, _runner(arguments, job, state), lambda record: advance(record.name))
+            records = run_job(job, options, _runner(arguments, job, state), lambda record: advance(record.name))
         except PoolError as error:
             raise InputError(str(error)) from error
     seconds = time.perf_counter() - begin
@@ -89,7 +91,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def summary(records: Sequence[Record], seconds: float) -> str:
-    """What each scene got and took, one line each, and a line on all."""
+    """Result and cost of each scene, one per line, and a total."""
     lines = [_line(record) for record in records]
     done = sum(record.finished for record in records)
     skipped = sum(record.skipped for record in records)
@@ -98,15 +100,17 @@ def summary(records: Sequence[Record], seconds: float) -> str:
 
 
 def _line(record: Record) -> str:
-    result = {0: "done", 4: "not free", 2: "bad input", None: "lost"}.get(record.code, f"exit code {record.code}")
+    result = {0: "done", 4: "not free", 2: "bad input", None: "lost"}.get(
+        record.exit_code, f"exit code {record.exit_code}"
+    )
     retried = f", attempt {record.attempts}" if record.attempts > 1 else ""
-    told = headline(record.message, record.code) if record.code != 0 else ""
+    message = headline(record.message, record.exit_code) if record.exit_code != 0 else ""
     how = "before" if record.skipped else f"{record.seconds:.1f} s, {record.peak_megabytes:.0f} MB{retried}"
-    return f"{record.name}: {result} ({how})" + (f": {told}" if told else "")
+    return f"{record.name}: {result} ({how})" + (f": {message}" if message else "")
 
 
 def headline(message: str, code: int | None) -> str:
-    """The line of what a command said that tells most: a result comes first, an error last."""
+    """The most informative line of a command's output: the first of a result, the last of an error."""
     lines = message.splitlines() or [""]
     return lines[0 if code == ExitCode.NOT_FREE else -1]
 
@@ -136,7 +140,7 @@ def worker_command(blender: str) -> list[str]:
 
 
 def _processors() -> int:
-    """Those that this process may run on."""
+    """Number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

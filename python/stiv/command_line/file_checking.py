@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiv import InputError
-from stiv.checks.findings import FileCheck, Finding, LeftOut, Look, SeamPairs, merged_seams
+from stiv.checks.findings import FileCheck, Finding, Look, SeamPairs, Untested, merged_seams
 from stiv.checks.mesh_check import check_mesh
 from stiv.checks.pictures import write_picture
 from stiv.command_line.blender_module import quiet_blender, require_blender
@@ -115,7 +115,7 @@ def _summed(
     frames: set[float] = set()
     pictures: list[str] = []
     names: dict[str, None] = {}
-    left_out: dict[LeftOut, None] = {}
+    untested: dict[Untested, None] = {}
     sizes: dict[str, tuple[int, int]] = {}
     shown: set[tuple[str, str]] = set()
     for look in looks:
@@ -128,7 +128,7 @@ def _summed(
         found += [replace(finding, scene=look.scene) for finding in look.findings]
         notes += [note if note not in notes else "" for note in look.notes]
         seams += look.seams
-        left_out.update(dict.fromkeys(replace(each, scene=look.scene) for each in look.left_out))
+        untested.update(dict.fromkeys(replace(each, scene=look.scene) for each in look.untested))
         if choices.pictures is not None:
             pictures += _pictures(path, look, choices.pictures, shown)
     vertices, triangles = (sum(size[k] for size in sizes.values()) for k in range(2))
@@ -136,7 +136,7 @@ def _summed(
     check = FileCheck(
         path.as_posix(), tuple(names), vertices, triangles, tuple(sorted(frames)), tuple(found), (),
         tuple(note for note in notes if note), "", time.perf_counter() - begin, tuple(pictures), merged_seams(seams),
-        scenes, tuple(left_out),
+        scenes, tuple(untested),
     )  # fmt: skip
     return check if len(scenes) > 1 else _without_scene(check)
 
@@ -146,7 +146,7 @@ def _without_scene(check: FileCheck) -> FileCheck:
     return replace(
         check,
         findings=tuple(replace(each, scene="") for each in check.findings),
-        left_out=tuple(replace(each, scene="") for each in check.left_out),
+        untested=tuple(replace(each, scene="") for each in check.untested),
     )
 
 

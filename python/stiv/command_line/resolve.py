@@ -21,7 +21,7 @@ from stiv.output_files import require_folder, written_atomically
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
-SCHEMA, VERSION = "stiv-resolve", 1
+SCHEMA, VERSION = "stiv-resolve", 2
 
 _DESCRIPTION = """\
 Corrects an animation so that nothing goes through anything: the pose of each frame is the goal, and what was accepted

@@ -52,7 +52,7 @@ def test_an_object_that_tunnels_through_a_plate_stays_before_it(tmp_path: Path) 
     jsonschema.validate(report, json.loads(schema.read_text()))
     assert findings(6) == [] and report["free"]
     assert [frame["frame"] for frame in report["frames"]] == [1, 2, 3, 4, 5, 6]
-    assert all(frame["free_backward"] for frame in report["frames"])
+    assert all(frame["reversible"] for frame in report["frames"])
     assert all((positions("Bullet ü", frame)[:, 2] > 0).all() for frame in range(1, 7))
     np.testing.assert_allclose(positions("Bullet ü", 2)[:, 2].mean(), 1, atol=1e-6)  # as animated where it is free
     np.testing.assert_allclose(positions("Bullet ü", 6)[:, 2].mean(), 1, atol=1e-5)  # and again when it comes back

@@ -245,17 +245,17 @@ def test_entries_of_a_batch_have_their_guards(tmp_path: Path) -> None:
     for guard in ("viewport", "render", "both"):
         still, report = {"scene": "still.blend", "guard": guard}, f"resolved {guard}.json"
         moves = {"scene": "moves.blend", "frames": f"1:{LAST}", "report": report, "output": f"{guard}.blend"}
-        entries.append({"name": f"check {guard}", "do": "check", **still})
-        entries.append({"name": f"repair {guard}", "do": "repair", **still, "output": f"repaired {guard}.blend"})
-        entries.append({"name": f"resolve {guard}", "do": "resolve", **moves, "guard": guard})
+        entries.append({"name": f"check {guard}", "command": "check", **still})
+        entries.append({"name": f"repair {guard}", "command": "repair", **still, "output": f"repaired {guard}.blend"})
+        entries.append({"name": f"resolve {guard}", "command": "resolve", **moves, "guard": guard})
     job = tmp_path / "job.json"
-    job.write_text(json.dumps({"schema": "stiv-batch", "version": 1, "entries": entries}), encoding="utf-8")
+    job.write_text(json.dumps({"schema": "stiv-batch", "version": 2, "entries": entries}), encoding="utf-8")
     assert program.run(["batch", str(job), "--workers", "1", "--report", str(tmp_path / "report.json")]) == 4
     said = {entry["name"]: entry for entry in json.loads((tmp_path / "report.json").read_text())["entries"]}
     for guard in ("viewport", "render", "both"):
-        assert said[f"check {guard}"]["code"] == (0 if guard == "viewport" else 4)
+        assert said[f"check {guard}"]["exit_code"] == (0 if guard == "viewport" else 4)
         assert ("nothing intersects" in said[f"repair {guard}"]["message"]) == (guard == "viewport")
-        assert said[f"resolve {guard}"]["code"] == 0
+        assert said[f"resolve {guard}"]["exit_code"] == 0
         assert json.loads((tmp_path / f"resolved {guard}.json").read_text())["guard"] == guard
         met = meetings(tmp_path / f"{guard}.blend")
         assert [bool(each) for each in met] == [guard == "render" and met[0] > 0, guard == "viewport"]

@@ -171,7 +171,7 @@ def test_too_many_segments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     cube = add_cube("Cube")
     pushed(cube)
     assert cube.location.x == pytest.approx(4)
-    assert {(each.object, each.why) for each in check_scene(bpy.context).left_out} == {
+    assert {(each.object, each.reason) for each in check_scene(bpy.context).left_out} == {
         ("Hair", "hair curves of more than 1 segments"), ("Lawn", "particle hair of more than 1 segments"),
     }  # fmt: skip
 

@@ -72,19 +72,19 @@ def test_hidden_objects_are_counted_and_tested_where_asked_for(tmp_path: Path, c
     bpy.data.objects["Eye"].hide_set(True)
     code, file = checked(tmp_path)
     assert code == 0 and file["objects"] == ["Shown"]
-    assert file["left_out_counts"] == {"hidden": 2, "in an excluded collection": 1}
+    assert file["untested_counts"] == {"hidden": 2, "in an excluded collection": 1}
     said = 'not tested, hidden: 2 ("Eye", "Monitor"); in an excluded collection: 1 ("Excluded")'
     assert said in capsys.readouterr().out
     code, file = checked(tmp_path, "--hidden")
     assert code == 4 and sorted(file["objects"]) == ["Excluded", "Eye", "Monitor", "Shown"]
-    assert file["left_out_counts"] == {} and file["intersections"] > 0
+    assert file["untested_counts"] == {} and file["intersections"] > 0
 
 
 def test_what_is_rendered_and_not_shown_is_tested(tmp_path: Path) -> None:
     add_cube("Shown")
     add_cube("Rendered", (0.5, 0.4, 0.3)).hide_set(True)
     code, file = checked(tmp_path)
-    assert code == 4 and all(pair["rendered"] for pair in file["pairs"]) and file["left_out"] == []
+    assert code == 4 and all(pair["rendered"] for pair in file["pairs"]) and file["untested"] == []
     bpy.data.objects["Rendered"].hide_render = True
     assert checked(tmp_path)[0] == 0
 
@@ -129,9 +129,9 @@ def test_what_cannot_be_tested_is_named(tmp_path: Path, capsys, monkeypatch) -> 
         add(name, data, (5, 0, 0))
     add_modifier(add_grid("Lawn", 2, 1.0, (9, 0, 0)), "PARTICLE_SYSTEM").particle_system.settings.type = "HAIR"
     code, file = checked(tmp_path)
-    assert code == 0 and {(each["object"], each["why"]) for each in file["left_out"]} == {
+    assert code == 0 and {(each["object"], each["reason"]) for each in file["untested"]} == {
         ("Guide", "helper curves"), ("Dust", "point clouds"), ("Smoke", "volumes"),
         ("Lawn", "particle hair of more than 0 segments"),
     }  # fmt: skip
     assert 'helper curves: 1 ("Guide")' in capsys.readouterr().out
-    assert {each["why"] for each in checked(tmp_path, "--object", "Cube")[1]["left_out"]} == {"not named"}
+    assert {each["reason"] for each in checked(tmp_path, "--object", "Cube")[1]["untested"]} == {"not named"}

@@ -175,5 +175,5 @@ def _told(
         "distance": away,
         "blocking": list(blocking),
         "subframes": subframes,
-        "free_backward": back,
+        "reversible": back,
     }

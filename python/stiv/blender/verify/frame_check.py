@@ -55,7 +55,7 @@ def check_frames(
         tested = {name for pose in present.values() for name in pose.look.shapes.names}
         left_out = find_left_out(context, tested, objects) if number == 0 else ()
         for pose in present.values():
-            yield replace(pose.look, left_out=left_out)
+            yield replace(pose.look, untested=left_out)
         before = present
 
 

@@ -17,7 +17,7 @@ from stiv.blender.scene.strand_reading import (
     why_no_particle_hair,
     why_no_strands,
 )
-from stiv.checks.findings import LeftOut, left_out_text
+from stiv.checks.findings import Untested, untested_text
 
 WITHOUT_SURFACE = {
     "POINTCLOUD": "point clouds",
@@ -27,7 +27,7 @@ WITHOUT_SURFACE = {
 
 def find_left_out(
     context: bpy.types.Context, tested: Collection[str], named: Collection[str] = ()
-) -> tuple[LeftOut, ...]:
+) -> tuple[Untested, ...]:
     """What of the scene is not in a test of these objects, by name; each object once for a reason.
 
     named: names that the test is limited to, if any. Objects that never have a surface, such as lights, do not come.
@@ -38,7 +38,7 @@ def find_left_out(
         *((ob.name, why) for ob in candidates if (not named or ob.name in named) and (why := _reason(context, ob))),
         *(each for each in _without_surface(context) if not named or each[0] in named),
     ]
-    return tuple(LeftOut(name, why) for name, why in dict.fromkeys(reasons))
+    return tuple(Untested(name, why) for name, why in dict.fromkeys(reasons))
 
 
 def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
@@ -48,10 +48,10 @@ def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], c
     carried: names of the objects whose strands move along with what is edited.
     """
     reasons = [*_without_surface(context), *((name, "hair and curves that move along") for name in sorted(carried))]
-    found = [LeftOut(name, why) for name, why in dict.fromkeys(reasons)]
+    found = [Untested(name, why) for name, why in dict.fromkeys(reasons)]
     if RENDER not in evaluations:
-        found += [LeftOut(name, "rendered only") for name in _rendered_only(context)]
-    return f"Not guarded, {left_out_text(found)}" if found else ""
+        found += [Untested(name, "rendered only") for name in _rendered_only(context)]
+    return f"Not guarded, {untested_text(found)}" if found else ""
 
 
 def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:

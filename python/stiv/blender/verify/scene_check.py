@@ -18,7 +18,7 @@ from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.left_out import find_left_out
 from stiv.blender.verify.verification import FacePair, named_pairs
-from stiv.checks.findings import LeftOut
+from stiv.checks.findings import Untested
 from stiv.edge_contacts import edge_contacts
 from stiv.seams import seam_pairs
 
@@ -45,7 +45,7 @@ class SceneCheck:
     seams: int = 0
     guard: str = "viewport"
     reason: str = ""
-    left_out: tuple[LeftOut, ...] = ()
+    left_out: tuple[Untested, ...] = ()
 
     @property
     def triangle_pairs(self) -> int:
