@@ -53,7 +53,7 @@ def test_words_of_the_dialect_are_found_in_code(text: str, found: list[int]) -> 
 @pytest.mark.parametrize(
     ("check", "bad", "good"),
     [
-        (check_documents.long_sentences, "- one\n- " + "word " * 31 + ".", "- one\n- " + "word " * 29 + "word."),
+        (check_documents.long_sentences, "- one\n- " + "word " * 26 + ".", "- one\n- " + "word " * 24 + "word."),
         (check_documents.long_lines, "\n" + "word " * 23, "\n| " + "word " * 23),
     ],
 )
