@@ -54,4 +54,4 @@ def forget() -> None:
     drag_results.clear()
     cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # loaded only with the native module
     if cache is not None:
-        cache.forget_all()
+        cache.clear_cache()

@@ -10,11 +10,9 @@ if TYPE_CHECKING:
     from stiv import InputError as InputError
     from stiv import LeastDistance as LeastDistance
     from stiv.blender import *  # noqa: F403
-    from stiv.blender.edit.culled_edit import NearbyEdit
-    from stiv.blender.scene.assembly import Element as Element
     from stiv.checks.findings import untested_text as untested_text
 
-    Edit = BlenderEdit | NearbyEdit  # noqa: F405
+    Edit = BlenderEdit | CulledEdit  # noqa: F405
     Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair  # noqa: F405
 else:
 

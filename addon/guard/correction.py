@@ -38,7 +38,7 @@ def test(context: bpy.types.Context) -> Outcome:
     """Test whether the current scene is clear, except for excluded pairs."""
     settings = _settings(context)
     try:
-        pairs = settings.excluded.others(stiv_blender.check_scene(context, settings).pairs)
+        pairs = stiv_blender.without_excluded(stiv_blender.check_scene(context, settings).pairs, settings.excluded)
     except ValueError as error:
         return Outcome(Problem(reason=str(error)))
     return Outcome(Problem(tuple(dict.fromkeys(pairs))) if pairs else None)
@@ -47,10 +47,10 @@ def test(context: bpy.types.Context) -> Outcome:
 def correct(context: bpy.types.Context, accepted: stiv_blender.SceneState) -> Outcome:
     """Edit from the accepted state toward the current scene; changes that no edit can make are only tested."""
     changes = stiv_blender.compare(accepted, stiv_blender.read_state(context))
-    if changes.obstacle or not changes.changes:
-        return _tested_only(context, changes.obstacle)
+    if changes.unsupported or not changes.changes:
+        return _tested_only(context, changes.unsupported)
     try:
-        followed = stiv_blender.follow(context, _settings(context), accepted, changes)
+        followed = stiv_blender.correct_after_tool(context, _settings(context), accepted, changes)
     except (ValueError, stiv_blender.SceneChangedError) as error:
         return _tested_only(context, str(error))
     found = Outcome()

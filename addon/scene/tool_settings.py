@@ -42,7 +42,7 @@ def _cast(context: bpy.types.Context, view: View | None, pixel: Pixel, moving: f
     if view is None:
         return None
     near, far = view.unproject(pixel, -1.0), view.unproject(pixel, 1.0)
-    found = stiv_blender.first_seen(context, near, far - near, moving)
+    found = stiv_blender.first_hit(context, near, far - near, moving)
     return None if found is None else Hit(*found)
 
 

@@ -17,7 +17,7 @@ import bpy
 
 import stiv
 from benchmarks.sessions.frame_times import goal_matrix, name_of
-from stiv.blender.edit.culled_edit import begin_nearby
+from stiv.blender.edit.culled_edit import begin_culled_edit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scripts.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings
@@ -159,7 +159,7 @@ class _Dragging:
         return time.perf_counter() - self._start
 
     def _begin(self) -> Any:
-        edit = begin_nearby(bpy.context, self.settings_of(bpy.context.scene), self.step.operator)
+        edit = begin_culled_edit(bpy.context, self.settings_of(bpy.context.scene), self.step.operator)
         self._pivot = edit.controls.mean(axis=0)
         return edit
 

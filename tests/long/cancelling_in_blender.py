@@ -28,7 +28,7 @@ import building  # noqa: E402
 import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
 
-from stiv.blender import EditSettings, begin_nearby  # noqa: E402
+from stiv.blender import EditSettings, begin_culled_edit  # noqa: E402
 from stiv_addon.modal.drag_loop import DragLoop, Progress  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
@@ -63,7 +63,7 @@ def new_drag(threads: int) -> DragLoop:
     """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
     return DragLoop(
-        lambda request: begin_nearby(bpy.context, settings, kind=request.kind),
+        lambda request: begin_culled_edit(bpy.context, settings, kind=request.kind),
         lambda state: state.pointer.effective[0] / 1000,
         lambda share, state: building.shift(*(share * SHIFT)),
         State(Pointer.at((0.0, 0.0)), Request("move")),

@@ -69,8 +69,8 @@ def tested(found: stiv_blender.SceneCheck) -> str:
     parts = [translate("Tested {}, {}").format(objects, triangles)]
     if found.seams:
         parts.append(counted(found.seams, "1 face pair on seams", "{} face pairs on seams"))
-    if found.left_out:
-        parts.append(translate("not tested, {}").format(stiv_blender.untested_text(found.left_out)))
+    if found.untested:
+        parts.append(translate("not tested, {}").format(stiv_blender.untested_text(found.untested)))
     return "; ".join(parts)
 
 

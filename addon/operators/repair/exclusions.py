@@ -29,7 +29,7 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find all intersecting pairs and store them in the scene, replacing earlier ones."""
         try:
-            excluded, others = stiv_blender.exclusions_now(context, _settings(context))
+            excluded, others = stiv_blender.find_exclusions(context, _settings(context))
         except ValueError as error:
             return report_error(self, error)
         context.scene.stiv.excluded = excluded.to_json()

@@ -70,7 +70,7 @@ class ReshapeOperator(NeedsNativeModule):
         manager = context.window_manager
         manager.progress_begin(0, 100)
         try:
-            report = stiv_blender.carry_out(
+            report = stiv_blender.run_to_end(
                 self.begin(context), progress=lambda phase, fraction: manager.progress_update(100 * fraction)
             )
         except Exception as error:  # nothing may stay half done, whatever went wrong

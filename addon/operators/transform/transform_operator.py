@@ -105,7 +105,7 @@ def _reused(
     edit: stiv_blender.BlenderEdit, dragged: drag_results.DragResult | None
 ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport] | None:
     """The result of a drag, written again; None if it began from another state or is not clear here."""
-    if dragged is None or dragged.start != edit.start_digest or not edit.take_up(dragged.controls):
+    if dragged is None or dragged.start != edit.start_digest or not edit.resume_from(dragged.controls):
         return None
     report = edit.write()
     if report.passed:
@@ -129,7 +129,9 @@ def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.Ble
 
 def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Edit:
     """Begin an edit for a drag, which leaves out far obstacles of a large scene, and limits the time of each solve."""
-    edit = stiv_blender.begin_nearby(context, edit_settings(context.scene, request, DRAG_BUDGET), kind=request.kind)
+    edit = stiv_blender.begin_culled_edit(
+        context, edit_settings(context.scene, request, DRAG_BUDGET), kind=request.kind
+    )
     _note_unguarded(context, edit)
     return edit
 
@@ -137,6 +139,6 @@ def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Edi
 def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
     """Show in the panel which objects the edit does not guard, and which exclusions it dropped."""
     check = context.window_manager.stiv_check
-    check.left_out = stiv_blender.text_not_guarded(context, edit.guard.evaluations, edit.carried)
-    if edit.dropped:  # `summary` has more warnings, but looks at every triangle, too slow for a drag
-        check.summary = edit.dropped
+    check.left_out = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried)
+    if edit.dropped_exclusions:  # `summary` has more warnings, but looks at every triangle, too slow for a drag
+        check.summary = edit.dropped_exclusions

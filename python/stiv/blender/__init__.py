@@ -1,32 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one place that reads a Blender scene and writes controls back."""
+"""Edits, tests and repairs scenes in Blender; the only part of STIV that imports `bpy`."""
 
-from stiv.blender.controls.loop_objects import add_refined, remove_refined
-from stiv.blender.controls.loop_surfaces import refresh
+from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.edit.blender_edit import BlenderEdit
-from stiv.blender.edit.culled_edit import begin_nearby
+from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit
 from stiv.blender.edit.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.changes import Change, Changes, compare
-from stiv.blender.guard.correction import Followed, follow
-from stiv.blender.guard.reverting import revert
-from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
+from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
+from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state, revert
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
-from stiv.blender.repair.repair import BlenderRepair, RepairSettings, carry_out, repair_scene
+from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
-from stiv.blender.scene.errors import SceneChangedError
-from stiv.blender.scene.exclusions import Exclusions
+from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
-from stiv.blender.scene.ray_casting import first_seen
+from stiv.blender.scene.ray_casting import first_hit
+from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scripts.enabling import enable
-from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
+from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
-from stiv.blender.verify.left_out import text_not_guarded
-from stiv.blender.verify.nearest_pair import nearest_pair
-from stiv.blender.verify.scene_check import SceneCheck, check_scene, exclusions_now, read_surface
-from stiv.blender.verify.verification import FacePair
+from stiv.blender.verify.scene_check import SceneCheck, check_scene, find_exclusions, nearest_pair, read_surface
+from stiv.blender.verify.untested import unguarded_text
+
+follow = correct_after_tool  # its name in version 0.1.0
 
 __all__ = [
     "BlenderContraction",
@@ -37,11 +36,12 @@ __all__ = [
     "Changes",
     "Contacts",
     "ContractionSettings",
+    "CulledEdit",
     "EditSettings",
+    "Element",
     "Exclusions",
     "ExpansionSettings",
     "FacePair",
-    "Followed",
     "Guard",
     "Handles",
     "Influence",
@@ -53,21 +53,22 @@ __all__ = [
     "SceneChangedError",
     "SceneCheck",
     "SceneState",
+    "ToolCorrection",
     "WeightGroup",
     "WriteReport",
     "add_refined",
-    "begin_nearby",
-    "carry_out",
+    "begin_culled_edit",
     "check_scene",
     "choose_guard",
     "compare",
     "contacts_of",
     "contract_scene",
+    "correct_after_tool",
     "enable",
-    "exclusions_now",
     "expand_scene",
     "faces_of",
-    "first_seen",
+    "find_exclusions",
+    "first_hit",
     "follow",
     "nearest_pair",
     "read_state",
@@ -76,7 +77,9 @@ __all__ = [
     "remove_refined",
     "repair_scene",
     "revert",
+    "run_to_end",
     "select_faces",
-    "text_not_guarded",
     "triangles_of",
+    "unguarded_text",
+    "without_excluded",
 ]

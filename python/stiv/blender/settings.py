@@ -1,28 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the user may choose for an edit, as plain values."""
+"""The choices of an edit, as plain data."""
 
+from __future__ import annotations
+
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from stiv import InputError
-from stiv.blender.scene.exclusions import Exclusions
 from stiv.choices import BOUNDARIES, DEFORMATIONS, GUARDS, OBJECT_RESPONSES, OPERATORS, RESPONDERS, RESTS, ROLES
 from stiv.edit_options import SharedOptions
 
 Kind = Literal["move", "rotate", "scale"]
+FaceKey = tuple[str, int]  # object, number of a face of its evaluated mesh
 
 
 @dataclass(frozen=True)
 class Handles:
-    """By what the vertices of a mesh are moved, where its deformation is "laplacian" or "arap".
+    """Handles of a mesh whose deformation is "laplacian" or "arap".
 
     Attributes:
         groups: vertex groups, each a handle. In Edit Mode the selected vertices are a handle too, and the one that
-            moves; in Object Mode the active group moves if it is a handle, otherwise all of them.
-        anchor: a vertex group that stays where it is, handles in it as well; "" for none.
-        rest: all other vertices: "follows" or "stays".
-        pull: how hard a handle pulls, times the weight in its group; 0: it holds its vertices exactly.
+            moves. In Object Mode the active group moves if it is a handle, otherwise all handles move.
+        anchor: vertex group that stays fixed, including handles in it; "" for none.
+        rest: all other vertices: "follows" (deformed) or "stays" (fixed).
+        pull: handle stiffness, multiplied by the weight in the group; 0 holds the vertices exactly.
     """
 
     groups: tuple[str, ...] = ()
@@ -34,20 +37,20 @@ class Handles:
         """Refuse unknown choices."""
         _require("rest", self.rest, RESTS)
         if not 0 <= self.pull < float("inf"):
-            raise InputError(f"pull: {self.pull!r} is not a number from 0 on")
+            raise InputError(f"pull: {self.pull!r} must be a finite number of at least 0")
 
 
 @dataclass(frozen=True)
 class WeightGroup:
-    """How far each control of an object gives way: its weight in a vertex group, 0 where it is not in the group.
+    """Response weight of each control: its weight in a vertex group, 0 outside the group.
 
-    0 pins it, so that not even the edit moves it.
+    Weight 0 pins a control, so that not even the edit moves it.
 
     Attributes:
         name: the vertex group.
         inverted: use one minus the weight.
-        axes: to which axes of the object's local space the weight applies, X, Y, Z; along the others it is 1. Blender's
-            own locks of an object's location are along its parent's axes instead.
+        axes: local axes X, Y, Z to which the weight applies; along the others it is 1. Blender's location locks use the
+            axes of the parent instead.
     """
 
     name: str
@@ -57,17 +60,17 @@ class WeightGroup:
     def __post_init__(self) -> None:
         """Refuse anything but a choice for each axis."""
         if len(self.axes) != 3 or any(each not in (True, False) for each in self.axes):
-            raise InputError(f"axes: {self.axes!r} is not true or false for each of X, Y, Z")
+            raise InputError(f"axes: {self.axes!r} must be true or false for each of X, Y, Z")
 
 
 @dataclass(frozen=True)
 class LoopSurface:
-    """A cage of triangles, subdivided by Loop's scheme, and the object that shows it.
+    """A triangle cage with Loop subdivision, and the object that shows it.
 
     Attributes:
-        object: its name; it is a child of the cage and takes part in the cage's place.
+        object: name of the object that shows the cage; a child of the cage that participates instead of it.
         levels: 1 to 3.
-        boundary: "all": corners of the boundary are rounded; "preserve_corners": they stay.
+        boundary: "all" rounds corners of the boundary, "preserve_corners" keeps them.
     """
 
     object: str
@@ -78,38 +81,66 @@ class LoopSurface:
         """Refuse unknown choices."""
         _require("boundary", self.boundary, BOUNDARIES)
         if self.levels not in (1, 2, 3):
-            raise InputError(f"levels: {self.levels!r} is none of 1, 2, 3")
+            raise InputError(f"levels: {self.levels!r} must be 1, 2 or 3")
+
+
+@dataclass(frozen=True)
+class Exclusions:
+    """Excluded pairs of faces, which may intersect.
+
+    Attributes:
+        pairs: both faces of each pair, the smaller key first.
+        shapes: digest of the faces of each object by name. The pairs of an object with another digest are stale.
+    """
+
+    pairs: frozenset[tuple[FaceKey, FaceKey]] = frozenset()
+    shapes: Mapping[str, str] = field(default_factory=dict)
+
+    @staticmethod
+    def from_json(text: str) -> Exclusions:
+        """Read the text of `to_json`; "" gives no pairs. Raises InputError for any other text."""
+        if not text:
+            return Exclusions()
+        try:
+            data = json.loads(text)
+            pairs = frozenset(((str(a), int(i)), (str(b), int(j))) for a, i, b, j in data["pairs"])
+            return Exclusions(pairs, {str(name): str(shape) for name, shape in data["shapes"].items()})
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            raise InputError("the scene's excluded pairs cannot be read; use Clear Exclusions") from error
+
+    def to_json(self) -> str:
+        """Text for a property of the scene; "" for no pairs."""
+        if not self.pairs:
+            return ""
+        return json.dumps({"pairs": [[a, i, b, j] for (a, i), (b, j) in sorted(self.pairs)], "shapes": {**self.shapes}})
 
 
 @dataclass(frozen=True)
 class EditSettings(SharedOptions):
-    """Choices for one edit. `stiv.EditOptions` describes separation, smoothness, constraints, time_budget and threads.
+    """Choices for one edit; separation, smoothness, constraints, time_budget and threads as in stiv.EditOptions.
 
     Attributes:
-        pair_separations: distances that pairs of objects keep instead, by their names; twice the same name for an
-            object with itself. Objects that show nothing do not count.
-        interference: False: nothing gives way and nothing is tested, surfaces may go through each other;
-            `BlenderEdit.set_interference` changes it in mid-edit.
-        responders: which controls give way: the "selected" ones that are being moved (default), the "unselected" ones
-            (what is moved then keeps to the goal exactly), or "all". In Object Mode the unselected are all visible
-            objects that may be placed: as rigid wholes, or by the deformation that is chosen for them. In Edit Mode
-            they are the unselected vertices or points.
-        object_response: how selected objects respond in Object Mode: "rigid" (placement) or "deform" (vertices of a
-            mesh's cage, points of a lattice).
-        deformations: by object name, by what it is moved and gives way: "auto" (as `object_response` says), "vertices"
-            (of its cage, or points of a lattice), "laplacian" or "arap" (handles of a mesh), "lattice" (the points of
-            the lattice that deforms it), or "rigid". In Edit Mode only "laplacian" and "arap" count.
+        pair_separations: minimum distances of pairs of objects by name, used instead of `separation`; the same name
+            twice for an object with itself. Objects without a surface have no effect.
+        interference: False switches collisions off: nothing is deflected or tested, and surfaces may intersect.
+            `BlenderEdit.set_interference` changes it during an edit.
+        responders: which controls yield: those that the edit moves ("selected", default), all others ("unselected": the
+            selection then follows the goal exactly), or "all". In Object Mode "unselected" covers all visible objects
+            that can be moved, rigidly or by their own deformation; in Edit Mode the unselected vertices or points.
+        object_response: how selected objects respond in Object Mode: "rigid" (placement) or "deform" (vertices of the
+            cage, points of a lattice).
+        deformations: how an object deforms on contact, by name: "auto" (see `object_response`), "vertices" (of its
+            cage, or points of a lattice), "laplacian" or "arap" (handles of a mesh), "lattice" (points of the lattice
+            that deforms it), or "rigid". Edit Mode uses only "laplacian" and "arap".
         handles: by object name, for "laplacian" and "arap".
         weights: by object name, for cages, handles and lattices.
-        loops: by name of the cage; what shows a cage takes part by the cage's role, and the cage itself does not.
-        roles: by object name, "auto" | "controls" | "rigid" | "obstacle" | "ignored". An unselected object of role
-            "controls" or "rigid" gives way, whatever `responders` says; of role "auto" where `responders` says so; an
-            "obstacle" never does.
-        ignored_pairs: pairs of object names that may go through each other; twice the same name for an object
-            with itself.
-        excluded: pairs of faces that intersect already and may go on to; all others are guarded.
-        guard: what is kept free of intersections: what the "viewport" shows (in Edit Mode what Object Mode shows too),
-            what is rendered ("render"), or "both"; "auto": both where they differ and the surface stays small enough.
+        loops: by name of the cage. The object that shows a cage participates instead of it, with the cage's role.
+        roles: by object name: "auto", "controls", "rigid", "obstacle" or "ignored" (no collision). Unselected objects
+            with the role "controls" or "rigid" always yield, those with "auto" depend on `responders`.
+        ignored_pairs: pairs of object names that may intersect; the same name twice for an object with itself.
+        excluded: pairs of faces that intersect already and may continue to.
+        guard: the evaluations that stay free of intersections: "viewport" (in Edit Mode also what Object Mode shows),
+            "render" or "both"; "auto" is "both" where they differ and the surface is small enough.
     """
 
     pair_separations: tuple[tuple[str, str, float], ...] = ()
@@ -141,34 +172,34 @@ class EditSettings(SharedOptions):
             _require(f'deformation of object "{name}"', deformation, DEFORMATIONS)
 
     def role(self, name: str) -> str:
-        """Role of the object of this name."""
+        """Role of the named object."""
         return self.roles.get(name, "auto")
 
     def deformation(self, name: str) -> str:
-        """By what the object of this name is moved."""
+        """Deformation of the named object."""
         return self.deformations.get(name, "auto")
 
     def shown_by(self, name: str) -> str:
-        """Name of the object that shows the surface of the object of this name."""
+        """Name of the object that shows the surface of the named object."""
         return self.loops[name].object if name in self.loops else name
 
     def cage_of(self, name: str) -> str:
-        """Name of the cage that the object of this name shows; its own where it shows itself."""
+        """Name of the cage that the named object shows; its own name if it shows itself."""
         return next((cage for cage, loop in self.loops.items() if loop.object == name), name)
 
-    def takes_part(self, name: str) -> bool:
-        """Does the surface of the object of this name count?"""
+    def participates(self, name: str) -> bool:
+        """Can the surface of the named object collide?"""
         return name not in self.loops and self.role(self.cage_of(name)) != "ignored"
 
     def named_objects(self) -> Iterator[str]:
-        """Every name of an object that the choices mention."""
+        """All object names in the settings."""
         yield from (*self.roles, *self.deformations, *self.handles, *self.weights, *self.loops)
         yield from (loop.object for loop in self.loops.values())
         yield from (name for pair in self.ignored_pairs for name in pair)
         yield from (name for first, second, _ in self.pair_separations for name in (first, second))
 
-    def weight(self, selected: bool) -> float:
-        """Response weight of controls that the goal moves (`selected`) or that it does not."""
+    def response_weight(self, selected: bool) -> float:
+        """Response weight of controls that the goal moves (`selected`), or of all others."""
         return 1.0 if self.responders in ("all", "selected" if selected else "unselected") else 0.0
 
 

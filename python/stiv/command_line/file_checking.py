@@ -79,7 +79,7 @@ def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
 def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look]:
     checking, evaluations, whole = (
         require_blender(f"stiv.blender.{name}", path)
-        for name in ("verify.frame_check", "scene.checked_evaluations", "verify.all_scenes")
+        for name in ("verify.frame_check", "scene.guarded_evaluations", "verify.all_scenes")
     )
     if choices.hidden:
         whole.unhide_all(context)
@@ -88,7 +88,7 @@ def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look
     objects = [name for name in choices.objects if name in context.scene.objects]
     if choices.objects and not objects:
         return
-    note = evaluations.note_on(context, chosen) if choices.guard == "auto" else ""
+    note = evaluations.untested_note(context, chosen) if choices.guard == "auto" else ""
     for number, look in enumerate(checking.check_frames(context, frames, objects, 0, chosen)):
         yield replace(look, notes=(note, *look.notes)) if note and number == 0 else look
 
@@ -102,7 +102,7 @@ def _frames(path: Path, choices: Choices, checking: Any, context: Any) -> list[f
     if count >= MAX_FRAMES:
         raise InputError(f"{count} frames; at most {MAX_FRAMES} are checked")
     frames = [first + number * step / choices.subframes for number in range(count + 1)]
-    keyed: list[float] = require_blender("stiv.blender.verify.keyed_frames", path).with_subframe_keys(frames)
+    keyed: list[float] = require_blender("stiv.blender.verify.keyed_frames", path).add_subframe_keys(frames)
     return keyed
 
 

@@ -81,14 +81,14 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
         require_blender(f"stiv.blender.{name}", scene)
         for name in (
             "scripts.blend_files", "animation.tracks", "animation.resolving", "animation.writing",
-            "verify.frame_check", "verify.keyed_frames", "animation.guard_choice", "scene.checked_evaluations",
+            "verify.frame_check", "verify.keyed_frames", "animation.guard_choice", "scene.guarded_evaluations",
         )
     )  # fmt: skip
     context = files.open_blend(scene)
     chosen = arguments.frames
     first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
     frames = list(range(first, last + 1, step))
-    checking.go_to(context.scene, first)
+    checking.set_frame(context.scene, first)
     guard = guarding.choose_animation_guard(context, arguments.guard or stored_settings(context, scene).guard)
     try:
         tracks = guarding.written_tracks(poses.read_tracks(context, frames, guard.evaluations))
@@ -99,7 +99,7 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
     except InputError as error:
         raise InputError(f"{scene}: {error}") from error
     writing.write_animation(context, tracks, resolved)
-    alike = _alike(tracks, resolved.parts)
+    alike = _alike(tracks, resolved.moving_sets)
     try:
         with written_atomically(arguments.output) as temporary:
             files.save_blend(temporary)
@@ -116,7 +116,7 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
 
 def _tested(frames: Sequence[int], keyed: Any) -> list[float]:
     """What `stiv check` looks at without options: all frames, those between two that were solved too, and all keys."""
-    found: list[float] = keyed.with_subframe_keys(range(frames[0], frames[-1] + 1))
+    found: list[float] = keyed.add_subframe_keys(range(frames[0], frames[-1] + 1))
     return found
 
 

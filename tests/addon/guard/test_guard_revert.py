@@ -129,7 +129,7 @@ def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
     bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0
     bpy.ops.ed.undo_push(message="pose")
     look()
-    assert "the pose or the shape keys of object" in watcher.problem().reason
+    assert "the pose or shape keys of object" in watcher.problem().reason
     box().location.y = 1.0
     bpy.ops.ed.undo_push(message="move")
     look()

@@ -36,7 +36,7 @@ class RecordingEdit:
 
     begun: Any = None
     summary = SimpleNamespace(warnings=())
-    dropped = ""
+    dropped_exclusions = ""
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()
     failing: Exception | None = None
@@ -52,7 +52,7 @@ class RecordingEdit:
 
     start_digest = "start"
 
-    def take_up(self, controls: Any) -> bool:
+    def resume_from(self, controls: Any) -> bool:
         self.matrix = controls
         return True
 
@@ -82,7 +82,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     plain |= {"Motion": Motion, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
-    plain |= {"text_not_guarded": lambda context, evaluations, carried: ""}
+    plain |= {"unguarded_text": lambda context, evaluations, carried: ""}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)

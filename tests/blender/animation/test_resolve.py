@@ -10,7 +10,7 @@ import pytest
 from building import add, add_cube, add_grid, add_modifier, mesh
 
 from stiv.blender.scripts.blend_files import open_blend, save_blend
-from stiv.blender.verify.frame_check import check_frames, go_to
+from stiv.blender.verify.frame_check import check_frames, set_frame
 from stiv.command_line import program
 
 
@@ -37,7 +37,7 @@ def findings(last: int):
 
 
 def positions(name: str, frame: float) -> np.ndarray:
-    go_to(bpy.context.scene, frame)
+    set_frame(bpy.context.scene, frame)
     shown = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
     return np.array([shown.matrix_world @ vertex.co for vertex in shown.data.vertices])
 
@@ -138,7 +138,7 @@ def test_what_cannot_be_resolved_is_refused_by_name(tmp_path: Path, capsys, case
     said = {
         "hold": 'object "Nobody": does not move',
         "array": 'object "Cube": has 8 vertices at frame 1 and 16 at frame 2',
-        "text": 'object "Words": a font that changes its shape',
+        "text": 'object "Words": a text that deforms',
     }
     assert said[case] in capsys.readouterr().err
     assert not (tmp_path / "out.blend").exists()

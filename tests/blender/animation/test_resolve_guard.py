@@ -190,9 +190,9 @@ def start_rendered() -> None:
 
 REFUSED = [
     (hooked, 2, 'object "Cube": moves differently when rendered; '),
-    (only_rendered_shape, 2, 'object "Cube": changes its shape and is only rendered; '),
+    (only_rendered_shape, 2, 'object "Cube": deforms and is only rendered; '),
     (animated_levels, 2, 'object "Cube": is rendered differently at frame '),
-    (start_rendered, 4, "it does so only when rendered; "),
+    (start_rendered, 4, "only the render intersects; "),
 ]
 
 
@@ -231,7 +231,7 @@ def test_the_scenes_own_guard_applies_and_a_large_render_is_said(
     monkeypatch.setattr(guard_choice, "checked_evaluations", lambda context: ("viewport",))
     assert run(tmp_path)[0] == 0
     assert json.loads((tmp_path / "report.json").read_text())["guard"] == "viewport"
-    assert "the render is not guarded: too many triangles; --guard both guards it" in capsys.readouterr().out
+    assert "the render is not guarded: too many triangles; use --guard both" in capsys.readouterr().out
 
 
 def test_entries_of_a_batch_have_their_guards(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from building import add, add_cube, add_grid, add_modifier, mesh, select
 
 from stiv.blender.scene.animation_curves import channel_curves
 from stiv.blender.scripts.blend_files import open_blend, save_blend
-from stiv.blender.verify.keyed_frames import with_subframe_keys
+from stiv.blender.verify.keyed_frames import add_subframe_keys
 from stiv.command_line import program
 
 LAST = 15
@@ -101,13 +101,13 @@ def test_keys_between_frames_are_tested_and_muted_ones_are_not() -> None:
     cube = add_cube("Cube")
     for frame in (1, 2.25, 3, 4.5, 9.5):
         cube.keyframe_insert("location", frame=frame)
-    assert with_subframe_keys([1, 3, 5]) == [1, 2.25, 3, 4.5, 5]
-    assert with_subframe_keys([]) == []
+    assert add_subframe_keys([1, 3, 5]) == [1, 2.25, 3, 4.5, 5]
+    assert add_subframe_keys([]) == []
     action = cube.animation_data.action
     strip = cube.animation_data.nla_tracks.new().strips.new("Strip", 21, action)
     cube.animation_data.action = None
     strip.scale = 2.0
-    assert with_subframe_keys([20, 30]) == [20, 23.5, 30]  # 2.25 is 1.25 after the strip's start, at half speed
+    assert add_subframe_keys([20, 30]) == [20, 23.5, 30]  # 2.25 is 1.25 after the strip's start, at half speed
     for curve in channel_curves(action):
         curve.mute = True
-    assert with_subframe_keys([20, 30]) == [20, 30]
+    assert add_subframe_keys([20, 30]) == [20, 30]

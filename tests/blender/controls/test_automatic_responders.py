@@ -129,5 +129,5 @@ def test_in_edit_mode_other_objects_stay() -> None:
 def test_nothing_selected_is_refused_as_before() -> None:
     add_cube("Other")
     select()
-    with pytest.raises(stiv.InputError, match="nothing is selected"):
+    with pytest.raises(stiv.InputError, match="nothing movable is selected"):
         begin("all")

@@ -7,16 +7,16 @@ import pytest
 pytest.importorskip("bpy")
 
 from stiv.blender.controls import deformation_cache
-from stiv.blender.controls.deformation_cache import MOST, forget_all, remembered
+from stiv.blender.controls.deformation_cache import MOST, cached_deformation, clear_cache
 
 POINTS = np.arange(6.0).reshape(2, 3)
 
 
 @pytest.fixture(autouse=True)
 def nothing_kept() -> Iterator[None]:
-    forget_all()
+    clear_cache()
     yield
-    forget_all()
+    clear_cache()
 
 
 def made(*inputs: object) -> object:
@@ -28,8 +28,8 @@ made.calls = 0
 
 
 def test_equal_inputs_give_the_same_again() -> None:
-    first = remembered(made, POINTS, 2, "name", None)
-    assert remembered(made, POINTS.copy(), 2, "name", None) is first
+    first = cached_deformation(made, POINTS, 2, "name", None)
+    assert cached_deformation(made, POINTS.copy(), 2, "name", None) is first
 
 
 @pytest.mark.parametrize(
@@ -45,20 +45,20 @@ def test_equal_inputs_give_the_same_again() -> None:
     ],
 )
 def test_any_difference_makes_it_anew(inputs: tuple) -> None:
-    first = remembered(made, POINTS, 2)
-    assert remembered(made, *inputs) is not first
+    first = cached_deformation(made, POINTS, 2)
+    assert cached_deformation(made, *inputs) is not first
     before = made.calls
-    remembered(made, *inputs)
+    cached_deformation(made, *inputs)
     assert made.calls == before
 
 
 def test_another_maker_is_another_thing() -> None:
-    assert remembered(made, 1) is not remembered(lambda *inputs: object(), 1)
+    assert cached_deformation(made, 1) is not cached_deformation(lambda *inputs: object(), 1)
 
 
 def test_old_ones_are_forgotten() -> None:
-    first = remembered(made, 0)
+    first = cached_deformation(made, 0)
     for number in range(1, MOST + 1):
-        remembered(made, number)
+        cached_deformation(made, number)
     assert len(deformation_cache._kept) == MOST
-    assert remembered(made, 0) is not first
+    assert cached_deformation(made, 0) is not first

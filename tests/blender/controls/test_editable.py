@@ -28,18 +28,18 @@ def accepted(settings: EditSettings = RIGID, kind: str = "move") -> BlenderEdit:
 def test_nothing_selected() -> None:
     add_cube("Cube")
     select()
-    refused("nothing is selected that may move")
+    refused("nothing movable is selected")
 
 
 def test_nothing_selected_in_edit_mode() -> None:
     edit_mode(add_cube("Cube"))
     bpy.ops.mesh.select_all(action="DESELECT")
-    refused("nothing is selected")
+    refused("nothing movable is selected")
 
 
 def test_lights_have_no_surface() -> None:
     select(add("Light", bpy.data.lights.new("Light", "POINT")))
-    refused("nothing is selected that may move")
+    refused("nothing movable is selected")
 
 
 def test_modes_without_controls() -> None:
@@ -75,7 +75,7 @@ def test_animated_placement() -> None:
     cube = add_cube("Cube")
     cube.keyframe_insert("location", frame=1)
     select(cube)
-    refused('object "Cube": its placement is animated or driven; clear or bake that, or make it an obstacle')
+    refused('object "Cube": its transform is animated; clear the animation, or make it an obstacle')
     accepted(DEFORM)
 
 
@@ -83,7 +83,7 @@ def test_driven_placement() -> None:
     cube = add_cube("Cube")
     cube.driver_add("rotation_euler", 2)
     select(cube)
-    refused('object "Cube": its placement is animated or driven')
+    refused('object "Cube": its transform is animated')
 
 
 def test_animation_of_other_properties_is_no_obstacle() -> None:
@@ -98,7 +98,7 @@ def test_constraint() -> None:
     constraint = cube.constraints.new("LIMIT_LOCATION")
     constraint.name = "Hold"
     select(cube)
-    refused('object "Cube", constraint "Hold": decides the placement; apply or disable it')
+    refused('object "Cube", constraint "Hold": determines the transform; disable it')
     constraint.mute = True
     accepted()
 
@@ -113,7 +113,7 @@ def test_constraint_of_a_child() -> None:
 @pytest.mark.parametrize("settings", [RIGID, DEFORM], ids=["rigid", "deform"])
 def test_zero_scale(settings: EditSettings) -> None:
     select(add_cube("Cube", scale=(1, 0, 1)))
-    refused('object "Cube": its scale is zero; give it a size, or make it an obstacle', settings)
+    refused('object "Cube": its scale is zero; change it, or make the object an obstacle', settings)
 
 
 def test_shared_mesh() -> None:
@@ -129,7 +129,7 @@ def test_shape_keys() -> None:
     cube.shape_key_add(name="Basis")
     cube.shape_key_add(name="Big")
     select(cube)
-    refused('object "Cube", shape key "Big": hides changes of the mesh; apply or remove', DEFORM)
+    refused('object "Cube", shape key "Big": hides edits of the mesh; apply or remove', DEFORM)
     accepted()
 
 
@@ -159,12 +159,12 @@ def test_metaballs() -> None:
     ball = bpy.data.metaballs.new("Ball")
     ball.elements.new()
     select(add("Ball", ball))
-    refused('object "Ball": metaballs cannot be moved; convert it to a mesh, or make it an obstacle')
+    refused('object "Ball": metaballs cannot move; convert it to a mesh, or make it an obstacle')
 
 
 def test_lattice_that_deforms_nothing() -> None:
     select(add_lattice("Lattice", (2, 2, 2)))
-    refused('object "Lattice": this lattice deforms no visible mesh', DEFORM)
+    refused('object "Lattice": the lattice deforms no visible mesh; show one', DEFORM)
 
 
 def test_lattice_with_shape_keys_or_modifiers() -> None:
@@ -182,20 +182,20 @@ def test_lattice_moved_away_from_its_mesh() -> None:
     cube, lattice = add_cube("Cube"), add_lattice("Lattice", (2, 2, 2))
     add_modifier(cube, "LATTICE", "Bend", object=lattice)
     select(cube)
-    refused('object "Cube", modifier "Bend": looks at object "Lattice", which does not move along')
+    refused('object "Cube", modifier "Bend": depends on object "Lattice", which does not move')
     select(lattice)
-    refused('object "Cube", modifier "Bend": would change with object "Lattice"')
+    refused('object "Cube", modifier "Bend": depends on object "Lattice"')
     select(cube, lattice)
     accepted()
-    refused('object "Cube": moves itself and with its lattice "Lattice"; deselect one', DEFORM)
+    refused('object "Cube": moves, and so does its lattice "Lattice"; deselect one', DEFORM)
 
 
 def test_what_other_objects_look_at() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     add_modifier(other, "BOOLEAN", "Cut", object=cube)
     select(cube)
-    refused('object "Other", modifier "Cut": would change with object "Cube"')
-    refused('object "Other", modifier "Cut": would change with object "Cube"', DEFORM)
+    refused('object "Other", modifier "Cut": depends on object "Cube"')
+    refused('object "Other", modifier "Cut": depends on object "Cube"', DEFORM)
     other.modifiers[0].show_viewport = other.modifiers[0].show_render = False
     accepted()
 
@@ -207,7 +207,7 @@ def test_what_geometry_nodes_look_at() -> None:
     node.inputs["Object"].default_value = cube
     add_modifier(other, "NODES", "Look").node_group = tree
     select(cube)
-    refused('object "Other", modifier "Look": would change with object "Cube"')
+    refused('object "Other", modifier "Look": depends on object "Cube"')
 
 
 def test_what_is_given_to_geometry_nodes() -> None:
@@ -218,7 +218,7 @@ def test_what_is_given_to_geometry_nodes() -> None:
     modifier.node_group = tree
     give(modifier, socket.identifier, cube)
     select(cube)
-    refused('object "Other", modifier "Look": would change with object "Cube"')
+    refused('object "Other", modifier "Look": depends on object "Cube"')
 
 
 def give(modifier: Any, socket: str, value: Any) -> None:
@@ -236,14 +236,14 @@ def test_what_instances_show() -> None:
     add("Instancer", None, (9, 0, 0), instance_type="COLLECTION", instance_collection=collection)
     select(cube)
     for settings in (RIGID, DEFORM):
-        refused('object "Cube": is also shown by the instances of object "Instancer"', settings)
+        refused('object "Cube": object "Instancer" instances it', settings)
 
 
 def test_children_on_vertices() -> None:
     grid = add_grid("Grid", 2)
     add_cube("Rider", (0, 0, 3), 0.1, parent=grid, parent_type="VERTEX")
     select(grid)
-    refused('object "Rider": hangs on vertices of object "Grid"', DEFORM)
+    refused('object "Rider": is parented to vertices of object "Grid"', DEFORM)
     accepted()
 
 
@@ -251,8 +251,8 @@ def test_cage_that_hangs_on_a_mover() -> None:
     parent, child = add_cube("Parent"), add_cube("Child", (5, 0, 0))
     child.parent = parent
     select(parent)
-    refused('object "Child": is deformed and hangs on an object that moves', EditSettings(roles={"Child": "controls"}))
-    refused('object "Child": hangs on object "Parent", which moves too', EditSettings(roles={"Child": "rigid"}))
+    refused('object "Child": is deformed, and its parent moves', EditSettings(roles={"Child": "controls"}))
+    refused('object "Child": its parent "Parent" moves too', EditSettings(roles={"Child": "rigid"}))
 
 
 def test_rotation_below_an_uneven_parent() -> None:
@@ -260,7 +260,7 @@ def test_rotation_below_an_uneven_parent() -> None:
     child = add_cube("Child", (5, 0, 0), parent=parent, rotation_euler=(0.5, 0.2, 0.1))
     select(child)
     refused('object "Child": its parent is scaled unevenly', kind="rotate")
-    refused('object "Child": is sheared by its parent', kind="scale")
+    refused('object "Child": its parent shears it', kind="scale")
     accepted()
 
 
@@ -279,4 +279,4 @@ def test_obstacles_may_be_anything() -> None:
 
 def test_triangles_without_area_are_counted() -> None:
     select(add("Sliver", mesh("Sliver", [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])))
-    assert "1 triangles without area take part" in accepted().summary.warnings
+    assert "1 participating triangles have no area" in accepted().summary.warnings

@@ -18,7 +18,7 @@ from stiv.blender import (
     add_refined,
     check_scene,
     compare,
-    follow,
+    correct_after_tool,
     read_state,
     read_surface,
     refresh,
@@ -127,7 +127,7 @@ def test_a_stale_object_is_refused_until_refreshed() -> None:
     assert not refresh(cage, refined, chosen)
     cage.data.vertices[4].co.z += 0.2
     select(cage)
-    with pytest.raises(stiv.InputError, match=r'object "Cage\.loop": does not show its cage "Cage" as it is'):
+    with pytest.raises(stiv.InputError, match=r'object "Cage\.loop": is older than its cage "Cage"'):
         begin(settings)
     assert refresh(cage, refined, chosen)
     assert matches(evaluated(refined), by_masks(cage, 2))
@@ -208,7 +208,7 @@ def test_what_another_tool_made_of_a_cage_is_corrected_by_its_surface() -> None:
     cage.data.update()
     refresh(cage, refined, settings.loops["Cage"])
     bpy.context.view_layer.update()
-    outcome = follow(bpy.context, settings, accepted, compare(accepted, read_state(bpy.context)))
+    outcome = correct_after_tool(bpy.context, settings, accepted, compare(accepted, read_state(bpy.context)))
     assert outcome.corrected and outcome.names == ("Cage",)
     assert -1.2 < evaluated(refined)[:, 2].min() < -1.1
     assert matches(evaluated(refined), by_masks(cage, 2))

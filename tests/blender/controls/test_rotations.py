@@ -7,13 +7,13 @@ import pytest
 from mathutils import Matrix, Vector
 
 from stiv.blender.controls.rotations import (
-    about,
+    affine_about,
     is_rotation,
+    nearest_equivalent,
     nearest_rotation,
-    nearest_turn,
+    remove_rounding,
     rotation_matrix,
     rotation_vector,
-    without_rounding,
 )
 
 
@@ -30,13 +30,13 @@ def test_rotation_matrix_and_vector_against_mathutils(angle: float, axis: tuple[
 def test_a_drag_may_turn_more_than_once() -> None:
     last, axis = np.zeros(3), np.array([0.6, 0.0, 0.8])
     for degrees in range(10, 1000, 10):
-        last = nearest_turn(rotation_vector(rotation_matrix(np.radians(degrees) * axis)), last)
+        last = nearest_equivalent(rotation_vector(rotation_matrix(np.radians(degrees) * axis)), last)
         assert last == pytest.approx(np.radians(degrees) * axis, abs=1e-9)
 
 
 def test_coming_back_from_a_full_turn() -> None:
-    assert nearest_turn(np.zeros(3), np.array([0, 0, 6.0])) == pytest.approx([0, 0, 2 * np.pi])
-    assert nearest_turn(np.zeros(3), np.array([0, 0, 0.5])) == pytest.approx([0, 0, 0])
+    assert nearest_equivalent(np.zeros(3), np.array([0, 0, 6.0])) == pytest.approx([0, 0, 2 * np.pi])
+    assert nearest_equivalent(np.zeros(3), np.array([0, 0, 0.5])) == pytest.approx([0, 0, 0])
 
 
 def test_polar_factor_leaves_out_stretch_and_mirror() -> None:
@@ -46,11 +46,11 @@ def test_polar_factor_leaves_out_stretch_and_mirror() -> None:
 
 
 def test_about_takes_the_centre_to_its_target() -> None:
-    matrix = about(np.array([1.0, 2, 3]), rotation_matrix(np.array([0, 0, 1.0])), np.array([4.0, 5, 6]))
+    matrix = affine_about(np.array([1.0, 2, 3]), rotation_matrix(np.array([0, 0, 1.0])), np.array([4.0, 5, 6]))
     assert matrix @ [1, 2, 3, 1] == pytest.approx([4, 5, 6, 1])
 
 
 def test_what_single_precision_cannot_hold_beside_the_rest_is_left_out() -> None:
-    assert without_rounding(np.array([3.0, -1e-9, 1e-5])).tolist() == [3.0, 0.0, 1e-5]
-    assert without_rounding(np.array([3e-20, 1e-20, 0.0])).tolist() == [3e-20, 1e-20, 0.0]
-    assert without_rounding(np.array([1e-9, 0.0, -2e-6]), unit=1.0).tolist() == [0.0, 0.0, -2e-6]
+    assert remove_rounding(np.array([3.0, -1e-9, 1e-5])).tolist() == [3.0, 0.0, 1e-5]
+    assert remove_rounding(np.array([3e-20, 1e-20, 0.0])).tolist() == [3e-20, 1e-20, 0.0]
+    assert remove_rounding(np.array([1e-9, 0.0, -2e-6]), unit=1.0).tolist() == [0.0, 0.0, -2e-6]

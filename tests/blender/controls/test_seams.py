@@ -18,8 +18,8 @@ from stiv.blender import (
     check_scene,
     compare,
     contract_scene,
+    correct_after_tool,
     expand_scene,
-    follow,
     read_state,
     repair_scene,
 )
@@ -183,7 +183,7 @@ def test_the_guard_closes_a_seam_that_a_tool_tears_into_a_wall() -> None:
     ob.data.update()
     bpy.context.view_layer.update()
     changes = compare(accepted, read_state(bpy.context))
-    outcome = follow(bpy.context, EditSettings(), accepted, changes)
+    outcome = correct_after_tool(bpy.context, EditSettings(), accepted, changes)
     assert outcome.corrected
     assert "3 vertices follow" in outcome.message
     assert 1.2 < ob.data.vertices[moved].co.z < 1.5

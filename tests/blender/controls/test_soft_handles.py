@@ -248,9 +248,9 @@ def test_soft_objects_that_are_not_selected_give_way() -> None:
 @pytest.mark.parametrize(
     ("handles", "message"),
     [
-        ({"groups": ()}, "its settings name no vertex group as a handle"),
-        ({"groups": ("Topp",)}, 'no vertex group "Topp", which its settings name as a handle'),
-        ({"anchor": "Fuß"}, 'no vertex group "Fuß", which its settings name as the anchor'),
+        ({"groups": ()}, "it has no handle"),
+        ({"groups": ("Topp",)}, 'there is no vertex group "Topp" for a handle'),
+        ({"anchor": "Fuß"}, 'there is no vertex group "Fuß" for the anchor'),
         ({"anchor": "Top"}, 'no vertex of "Top" can be a handle'),
     ],
 )

@@ -24,7 +24,7 @@ from stiv.blender import (
     check_scene,
     compare,
     contract_scene,
-    follow,
+    correct_after_tool,
     read_state,
 )
 
@@ -208,7 +208,7 @@ def test_the_live_guard_corrects_along_the_free_axes_alone() -> None:
         cube.data.update()
         asked = points(cube)
         settings = EditSettings(weights={"Cube": WeightGroup("Pins", True, Z)})
-        assert follow(bpy.context, settings, accepted, compare(accepted, read_state(bpy.context))).corrected
+        assert correct_after_tool(bpy.context, settings, accepted, compare(accepted, read_state(bpy.context))).corrected
         assert check_scene(bpy.context).pairs == ()
         aside.append(np.abs(points(cube) - asked)[6])
     assert aside[0][2] > 0.01 < aside[1][0]

@@ -93,7 +93,7 @@ def test_off_from_the_start_may_leave_a_start_that_intersects() -> None:
     assert edit.write().passed
     message = edit.set_interference(True)
     assert not edit.interference
-    assert "stays off" in message and '"Cube"' in message
+    assert "stay off" in message and '"Cube"' in message
     edit.drag(shift(-1.0))
     edit.write()
     assert edit.set_interference(True) == ""

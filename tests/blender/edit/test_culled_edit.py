@@ -12,16 +12,18 @@ pytest.importorskip("bpy")
 
 import bpy
 
-from stiv.blender import BlenderEdit, EditSettings, SceneChangedError, begin_nearby, check_scene, reach
-from stiv.blender.controls.participants import find_movers
-from stiv.blender.verify.nearest_pair import nearest_pair
+from stiv.blender import BlenderEdit, EditSettings, SceneChangedError, begin_culled_edit, check_scene
+from stiv.blender.controls.participants import find_participants
+from stiv.blender.edit.culled_edit import names_of
+from stiv.blender.scene import culling
+from stiv.blender.verify.scene_check import nearest_pair
 
 DEFORM = EditSettings(object_response="deform")
 
 
 @pytest.fixture(autouse=True)
 def every_scene_is_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reach, "LEAST_FACES", 0)
+    monkeypatch.setattr(culling, "MIN_FACES", 0)
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
@@ -55,15 +57,15 @@ def along_x(distance: float) -> np.ndarray:
 
 
 def left_out(settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008 (frozen)
-    found = reach.find_reach(bpy.context, find_movers(bpy.context, settings), settings)
+    found = culling.find_culling_box(bpy.context, names_of(find_participants(bpy.context, settings)), settings)
     return set() if found is None else set(found.left_out)
 
 
 def test_what_is_far_is_left_out(row: Any) -> None:
     assert left_out() == {"Wall"}
-    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     assert {mesh.owner.name for mesh in edit.assembly.meshes} == {"Box", "Neighbour"}
-    assert edit.drag(along_x(0.5)).status == "reached" and not edit.has_all
+    assert edit.drag(along_x(0.5)).status == "reached" and not edit.has_all_obstacles
 
 
 def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
@@ -73,7 +75,7 @@ def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
     assert "Wall" not in left_out(EditSettings(separation=5.0))
     for separation in (1.0, 4.0, 9.0):
         settings = EditSettings(separation=separation, roles=roles)
-        edit = begin_nearby(bpy.context, settings, "move")
+        edit = begin_culled_edit(bpy.context, settings, "move")
         for step in range(1, 21):
             edit.drag(along_x(0.5 * step))
             assert edit.write().passed
@@ -86,7 +88,7 @@ def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
 @pytest.mark.parametrize("steps", [1, 7, 60])
 def test_a_drag_toward_it_ends_as_if_it_had_been_there(row: Any, steps: int, settings: EditSettings) -> None:
     found = []
-    for begin in (lambda: begin_nearby(bpy.context, settings, "move"), whole(settings)):
+    for begin in (lambda: begin_culled_edit(bpy.context, settings, "move"), whole(settings)):
         edit = begin()
         for step in range(1, steps + 1):
             edit.drag(along_x(14.0 * step / steps))
@@ -108,7 +110,7 @@ def test_only_what_comes_near_is_taken_in(row: Any) -> None:
     box("Ground", 0, y=60, size=20)
     select(row)
     assert left_out() == {"Wall", "Ground"}
-    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     for step in range(1, 50):
         edit.drag(along_x(0.2 * step))
         edit.write()
@@ -129,7 +131,7 @@ def names(edit: Any) -> list[str]:
 def test_everything_is_put_back_however_far_it_went(row: Any) -> None:
     before = [np.array(ob.matrix_world) for ob in bpy.data.objects]
     for distance in (0.5, 3.0, 14.0):
-        edit = begin_nearby(bpy.context, EditSettings(), "move")
+        edit = begin_culled_edit(bpy.context, EditSettings(), "move")
         edit.drag(along_x(distance))
         edit.write()
         edit.restore()
@@ -138,7 +140,7 @@ def test_everything_is_put_back_however_far_it_went(row: Any) -> None:
 
 
 def test_beginnings_are_the_same_with_and_without_what_is_left_out(row: Any) -> None:
-    near, all_of_it = begin_nearby(bpy.context, EditSettings(), "move"), whole(EditSettings())()
+    near, all_of_it = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert near.start_digest == all_of_it.start_digest
     row.location.x = 0.25
     bpy.context.view_layer.update()
@@ -146,7 +148,7 @@ def test_beginnings_are_the_same_with_and_without_what_is_left_out(row: Any) -> 
 
 
 def test_interference_off_and_on_again_beyond_the_reach(row: Any) -> None:
-    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     edit.write()
     edit.set_interference(False)
@@ -177,14 +179,14 @@ def test_what_is_tied_to_anything_is_taken_in(row: Any, tie: str) -> None:
 
 
 def test_small_scenes_are_taken_in_whole(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reach, "LEAST_FACES", 1000)
-    assert isinstance(begin_nearby(bpy.context, EditSettings(), "move"), BlenderEdit)
+    monkeypatch.setattr(culling, "MIN_FACES", 1000)
+    assert isinstance(begin_culled_edit(bpy.context, EditSettings(), "move"), BlenderEdit)
 
 
 @pytest.fixture
 def ground(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A ball above one end of a long wavy ground, of which a part is taken in at first."""
-    monkeypatch.setattr(reach, "LARGE", 100)
+    monkeypatch.setattr(culling, "MIN_CROPPED_FACES", 100)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=80, y_subdivisions=20, size=2)
     below = bpy.context.object
     below.name, below.scale = "Ground", (20, 5, 1)
@@ -201,8 +203,8 @@ def moved(edit: Any, name: str) -> np.ndarray:
 
 
 def test_a_large_obstacle_is_taken_in_where_it_is_near(ground: Any) -> None:
-    edit, entire = begin_nearby(bpy.context, EditSettings(), "move"), whole(EditSettings())()
-    assert not edit.has_all and edit.start_digest == entire.start_digest
+    edit, entire = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
+    assert not edit.has_all_obstacles and edit.start_digest == entire.start_digest
     part, all_of_it = (each.assembly.meshes[names(each).index("Ground")] for each in (edit, entire))
     assert 0 < len(part.triangles) < 0.5 * len(all_of_it.triangles)
     matrix = np.eye(4)
@@ -215,7 +217,7 @@ def test_a_large_obstacle_is_taken_in_where_it_is_near(ground: Any) -> None:
 
 @pytest.mark.parametrize("steps", [1, 8, 50])
 def test_a_drag_along_a_large_obstacle_meets_every_part_of_it(ground: Any, steps: int) -> None:
-    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     matrix = np.eye(4)
     for step in range(1, steps + 1):
         matrix[0, 3], matrix[2, 3] = 30.0 * step / steps, -1.2
@@ -227,7 +229,7 @@ def test_a_drag_along_a_large_obstacle_meets_every_part_of_it(ground: Any, steps
 
 
 def test_an_obstacle_that_changes_its_size_during_a_drag_ends_it(ground: Any) -> None:
-    edit = begin_nearby(bpy.context, EditSettings(), "move")
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     bpy.data.objects["Ground"].modifiers.new("More", "SUBSURF").levels = 1
     bpy.context.view_layer.update()

@@ -8,7 +8,7 @@ from building import add_cube, add_grid, select, shift
 
 from stiv import Events
 from stiv.blender import BlenderEdit, EditSettings, check_scene, contacts_of, triangles_of
-from stiv.blender.edit.drawable import MOST_CONTACTS, contacts_at
+from stiv.blender.edit.drawable import MAX_CONTACTS, contacts_at
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -32,7 +32,7 @@ def test_without_contacts_there_is_nothing() -> None:
 
 
 def test_of_many_contacts_some_are_chosen() -> None:
-    count = 3 * MOST_CONTACTS
+    count = 3 * MAX_CONTACTS
     events = Events(
         np.zeros(count, np.uint8), np.tile(np.arange(4, dtype=np.int32), (count, 1)), np.zeros(count),
         np.tile([1, -0.5, -0.25, -0.25], (count, 1)), np.tile([0.0, 0, 1], (count, 1)),
@@ -40,7 +40,7 @@ def test_of_many_contacts_some_are_chosen() -> None:
     )  # fmt: skip
     surface = np.array([[0.0, 0, 2], [0, 0, 0], [4, 0, 0], [0, 4, 0]])
     found = contacts_at(events, surface, np.array([True, False, False, False]))
-    assert 0 < len(found.points) <= MOST_CONTACTS
+    assert 0 < len(found.points) <= MAX_CONTACTS
     assert found.points == pytest.approx(np.tile([0.5, 0.5, 1.0], (len(found.points), 1)))
     assert found.blocked == pytest.approx(np.tile([0.0, 0, -1], (len(found.points), 1)))
 

@@ -8,31 +8,31 @@ import numpy as np
 import pytest
 from building import moved, shift, stretch, turn
 
-from stiv.blender.edit.transform_path import increments, transform_at
+from stiv.blender.edit.increments import count_increments, interpolate_transform
 
 
 def test_translation_is_a_line() -> None:
-    assert transform_at(shift(1, 2, 3), 0.25) == pytest.approx(shift(0.25, 0.5, 0.75))
+    assert interpolate_transform(shift(1, 2, 3), 0.25) == pytest.approx(shift(0.25, 0.5, 0.75))
 
 
 def test_rotation_is_an_arc_about_its_pivot() -> None:
     pivot = (5.0, -2.0, 1.0)
     for fraction in (0.1, 0.5, 0.9):
-        assert transform_at(turn(1.2, "Y", pivot), fraction) == pytest.approx(turn(1.2 * fraction, "Y", pivot))
+        assert interpolate_transform(turn(1.2, "Y", pivot), fraction) == pytest.approx(turn(1.2 * fraction, "Y", pivot))
 
 
 def test_screw_keeps_its_axis() -> None:
-    half = transform_at(shift(0, 0, 2) @ turn(1.0, "Z", (3, 4, 0)), 0.5)
+    half = interpolate_transform(shift(0, 0, 2) @ turn(1.0, "Z", (3, 4, 0)), 0.5)
     assert half == pytest.approx(shift(0, 0, 1) @ turn(0.5, "Z", (3, 4, 0)))
 
 
 def test_scaling_keeps_its_pivot() -> None:
-    assert transform_at(stretch((3, 1, 2), (1, 2, 3)), 0.5) == pytest.approx(stretch((2, 1, 1.5), (1, 2, 3)))
+    assert interpolate_transform(stretch((3, 1, 2), (1, 2, 3)), 0.5) == pytest.approx(stretch((2, 1, 1.5), (1, 2, 3)))
 
 
 def test_the_end_is_the_matrix_itself() -> None:
     matrix = turn(2.0, "X", (1, 1, 1))
-    assert transform_at(matrix, 1.0) is matrix
+    assert interpolate_transform(matrix, 1.0) is matrix
 
 
 @pytest.mark.parametrize("angle", [2.5, 2 * np.pi])
@@ -42,7 +42,7 @@ def test_no_increment_is_longer_than_asked(angle: float) -> None:
     def arc(fraction: float) -> np.ndarray:
         return turn(angle * fraction, "X", (4, 0, 0))
 
-    count = increments(arc, points, 0.1, 1000)
+    count = count_increments(arc, points, 0.1, 1000)
     path = [moved(arc(k / count), points) for k in range(count + 1)]
     assert max(np.linalg.norm(b - a, axis=1).max() for a, b in pairwise(path)) < 0.105
     assert count >= angle / 0.1
@@ -50,7 +50,7 @@ def test_no_increment_is_longer_than_asked(angle: float) -> None:
 
 def test_increments_of_nothing_and_of_very_much() -> None:
     points = np.eye(3)
-    assert increments(lambda fraction: shift(), points, 0.1, 1000) == 1
-    assert increments(lambda fraction: shift(fraction * 1e9), points, 0.1, 50) == 50
-    assert increments(lambda fraction: stretch(1 - fraction), points, 0.1, 1000) == 10
-    assert increments(lambda fraction: shift(fraction), np.empty((0, 3)), 0.1, 1000) == 1
+    assert count_increments(lambda fraction: shift(), points, 0.1, 1000) == 1
+    assert count_increments(lambda fraction: shift(fraction * 1e9), points, 0.1, 50) == 50
+    assert count_increments(lambda fraction: stretch(1 - fraction), points, 0.1, 1000) == 10
+    assert count_increments(lambda fraction: shift(fraction), np.empty((0, 3)), 0.1, 1000) == 1

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiv.blender.edit.trail import Place, Trail, latest
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 
 
 def controls(number: int) -> np.ndarray:
@@ -23,35 +23,35 @@ def trail_of(*paths: list[int]) -> Trail:
 
 @given(st.lists(st.booleans(), max_size=40))
 def test_the_place_found_holds_and_the_one_after_it_fails(holding: list[bool]) -> None:
-    places = [Place(controls(k), k, 0) for k in range(len(holding))]
-    found = latest(places, lambda place: holding[place.leg])
+    states = [AcceptedState(controls(k), k, 0) for k in range(len(holding))]
+    found = find_latest(states, lambda place: holding[place.call])
     if found is None:
         assert not holding or not holding[0]
         return
-    assert holding[found.leg]
-    assert found.leg + 1 == len(holding) or not holding[found.leg + 1]
+    assert holding[found.call]
+    assert found.call + 1 == len(holding) or not holding[found.call + 1]
 
 
 @given(st.integers(1, 500), st.data())
 def test_few_places_are_looked_at(count: int, data: st.DataObject) -> None:
     end = data.draw(st.integers(1, count))
-    places, seen = [Place(controls(k), k, 0) for k in range(count)], []
-    found = latest(places, lambda place: seen.append(place.leg) or place.leg < end)
-    assert found is not None and found.leg == end - 1
+    states, seen = [AcceptedState(controls(k), k, 0) for k in range(count)], []
+    found = find_latest(states, lambda place: seen.append(place.call) or place.call < end)
+    assert found is not None and found.call == end - 1
     assert len(seen) <= 2 * np.log2(count) + 3
 
 
 def test_cutting_a_trail_keeps_what_led_to_the_place() -> None:
     trail = trail_of([1, 2], [3, 4, 5], [], [6])
-    place = next(each for each in trail.places() if each.controls[0, 0] == 4)
+    place = next(each for each in trail.states() if each.controls[0, 0] == 4)
     assert trail.goal_at(place)[0, 0] == 101
-    left = trail.cut_at(place)
-    assert [leg.goal[0, 0] for leg in left] == [101, 102, 103]
-    assert [int(each.controls[0, 0]) for each in trail.places()] == [0, 1, 2, 3, 4]
+    left = trail.truncate_at(place)
+    assert [call.goal[0, 0] for call in left] == [101, 102, 103]
+    assert [int(each.controls[0, 0]) for each in trail.states()] == [0, 1, 2, 3, 4]
 
 
 def test_cutting_at_the_state_shown_leaves_all_to_do() -> None:
     trail = trail_of([1], [2])
-    assert len(trail.cut_at(trail.places()[0])) == 2
-    assert trail.legs == []
-    assert trail.goal_at(trail.places()[0])[0, 0] == 0
+    assert len(trail.truncate_at(trail.states()[0])) == 2
+    assert trail.calls == []
+    assert trail.goal_at(trail.states()[0])[0, 0] == 0

@@ -8,7 +8,7 @@ import bpy
 import pytest
 from building import add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, select, snapshot
 
-from stiv.blender import EditSettings, check_scene, compare, follow, read_state
+from stiv.blender import EditSettings, check_scene, compare, correct_after_tool, read_state
 
 WALL = 3.0  # where its face is, along x
 
@@ -22,8 +22,8 @@ def corrected(change: Any, **settings: Any) -> Any:
     accepted = read_state(bpy.context)
     change()
     changes = compare(accepted, read_state(bpy.context))
-    assert changes and not changes.obstacle, changes.obstacle
-    outcome = follow(bpy.context, EditSettings(**settings), accepted, changes)
+    assert changes and not changes.unsupported, changes.unsupported
+    outcome = correct_after_tool(bpy.context, EditSettings(**settings), accepted, changes)
     assert check_scene(bpy.context).pairs == ()
     return outcome
 
@@ -131,7 +131,7 @@ def test_a_refusal_leaves_the_tools_result() -> None:
     box.location.x = 9.0
     changes = compare(accepted, read_state(bpy.context))
     with pytest.raises(ValueError, match="constraint"):
-        follow(bpy.context, EditSettings(), accepted, changes)
+        correct_after_tool(bpy.context, EditSettings(), accepted, changes)
     assert box.location.x == 9.0
 
 
@@ -160,7 +160,7 @@ def test_what_no_motion_can_tell_is_named(what: str) -> None:
     else:
         box.location.x = 1.0
         box.data.vertices[0].co.z = 1.0
-    obstacle = compare(accepted, read_state(bpy.context)).obstacle
+    obstacle = compare(accepted, read_state(bpy.context)).unsupported
     words = {"added": "added", "removed": "removed", "structure": "structure", "both": "at once"}
     assert words[what] in obstacle and ('"New"' if what == "added" else '"Box"') in obstacle
 

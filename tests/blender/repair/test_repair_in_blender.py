@@ -20,7 +20,7 @@ from stiv.blender import (
     expand_scene,
     repair_scene,
 )
-from stiv.blender.repair.rest_shape import NAME, read_original
+from stiv.blender.repair.rest_shape import NAME, read_rest_shape
 from stiv.blender.verify.verification import Verification, Verifier
 
 
@@ -125,7 +125,7 @@ def test_only_selected_vertices_move_in_edit_mode() -> None:
     after = np.array([v.co for v in plate.data.vertices])
     assert np.array_equal(after[~selected], points[~selected])
     assert wall.data.vertices[2].co.z == np.float32(0.07)
-    assert read_original(plate).tolist() == points.astype(np.float32).tolist()
+    assert read_rest_shape(plate).tolist() == points.astype(np.float32).tolist()
 
 
 @pytest.mark.parametrize("what", ["coincident", "too far", "held"])
@@ -195,10 +195,10 @@ def test_expansion_all_the_way_forgets_the_shape_kept() -> None:
     contract_scene(bpy.context, ContractionSettings(steps=5))
     assert relative_rms(before, evaluated(ball)) > 0.05
     assert expand_scene(bpy.context, ExpansionSettings(amount=0.5)).status == "reached"
-    assert read_original(ball) is not None
+    assert read_rest_shape(ball) is not None
     assert expand_scene(bpy.context).status == "reached"
     assert np.array_equal(evaluated(ball), before)
-    assert read_original(ball) is None
+    assert read_rest_shape(ball) is None
 
 
 def test_what_has_no_shape_kept_with_it_gives_way_to_an_expansion_that_it_is_selected_for() -> None:
@@ -219,7 +219,7 @@ def test_what_has_no_shape_kept_with_it_gives_way_to_an_expansion_that_it_is_sel
     assert not np.array_equal(evaluated(other), before)
     assert np.linalg.norm(evaluated(ball), axis=1).min() > alone
     ball.data.attributes.remove(ball.data.attributes[NAME])
-    with pytest.raises(stiv.InputError, match="no shape to go back to is kept"):
+    with pytest.raises(stiv.InputError, match="it has no rest shape"):
         expand_scene(bpy.context)
 
 
@@ -263,7 +263,7 @@ def test_errors_name_the_object_and_change_nothing() -> None:
         repair_scene(bpy.context)
     select(ball)
     before = snapshot()
-    with pytest.raises(stiv.InputError, match='object "Ball": no shape to go back to'):
+    with pytest.raises(stiv.InputError, match='object "Ball": it has no rest shape'):
         expand_scene(bpy.context)
     with pytest.raises(stiv.InputError, match='there is no mesh object "Nobody"'):
         expand_scene(bpy.context, ExpansionSettings(target="Nobody"))
@@ -292,7 +292,7 @@ def test_what_blender_does_not_show_free_is_taken_back(monkeypatch: pytest.Monke
     report = repair_scene(bpy.context)
     assert max(seen) < 1e-6
     assert (report.status, report.changed) == ("refused", False)
-    assert "not free: said so" in report.message and len(report.pairs) == report.pairs_before
+    assert "intersects in Blender's evaluation: said so" in report.message and len(report.pairs) == report.pairs_before
     assert snapshot() == before
     contract_scene(bpy.context, ContractionSettings(steps=12, until_free=True))
     contracted = snapshot()

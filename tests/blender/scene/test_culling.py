@@ -48,8 +48,8 @@ def test_all_that_meets_the_box_is_there_and_as_in_the_whole(seed: int, box: Any
     all_kinds(seed)
     low, high = map(np.array, box)
     part, whole = read(box), read()
-    assert part.near is not None and part.size == whole.size
-    world, numbers = whole.world(), part.near.vertices
+    assert part.cropped is not None and part.size == whole.size
+    world, numbers = whole.world(), part.cropped.vertices
     assert_array_equal(part.world(), world[numbers])
 
     def meets(vertices: Any) -> bool:
@@ -87,6 +87,6 @@ def test_elements_are_named_by_their_numbers_in_blenders_mesh() -> None:
     ground = bpy.context.object
     part, whole = read(((19.2, 19.2, -1), (19.8, 19.8, 1))), read()
     number = part.vertex_number(0)
-    assert number == part.near.vertices[0] > 0 and ground.data.vertices[number].co.x > 18
+    assert number == part.cropped.vertices[0] > 0 and ground.data.vertices[number].co.x > 18
     assert whole.vertex_number(3) == 3
     assert check_scene(bpy.context).pairs == ()

@@ -7,7 +7,8 @@ import pytest
 from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, mesh
 
 import stiv
-from stiv.blender.scene.evaluated_scene import Opened, read_placed, read_scene
+from stiv.blender.scene.evaluated_scene import read_positions_of, read_scene
+from stiv.blender.scene.open_evaluations import OpenEvaluations
 
 
 def owners() -> list[str]:
@@ -119,7 +120,7 @@ def test_positions_alone_come_in_the_same_order() -> None:
     add_cube("B", (3, 0, 0))
     add_grid("A", 2)
     scene = read_scene(bpy.context)
-    placed = read_placed(frozenset(mesh.owner.session_uid for mesh in scene.meshes), Opened(bpy.context))
+    placed = read_positions_of(frozenset(mesh.owner.session_uid for mesh in scene.meshes), OpenEvaluations(bpy.context))
     assert [each.owner for each in placed] == [mesh.owner for mesh in scene.meshes]
     for one, other in zip(placed, scene.meshes, strict=True):
         assert np.array_equal(one.world(), other.world())

@@ -113,11 +113,11 @@ def test_nothing_is_copied_where_nothing_differs(monkeypatch: Any) -> None:
     cube = add_cube("Cube")
     add_modifier(cube, "SUBSURF", levels=2, render_levels=2)
     add_grid("Grid", 2)
-    monkeypatch.setattr("stiv.blender.scene.evaluated_scene.open_twins", None)
+    monkeypatch.setattr("stiv.blender.scene.open_evaluations.open_copies", None)
     for mode in (select, edit_mode):
         mode(cube)
         meshes = read_scene(bpy.context, evaluations=("shown", "viewport", "render")).meshes
-        assert {(mesh.owner.name, len(mesh.exists_in)) for mesh in meshes} == {("Cube", 3), ("Grid", 3)}
+        assert {(mesh.owner.name, len(mesh.shown_in)) for mesh in meshes} == {("Cube", 3), ("Grid", 3)}
 
 
 def test_copies_are_removed_after_an_error() -> None:

@@ -10,13 +10,14 @@ from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, Exclusions, check_scene
-from stiv.blender.verify.scene_check import exclusions_now
+from stiv.blender.scene.exclusions import drop_stale
+from stiv.blender.verify.scene_check import find_exclusions
 
 DEFORM = EditSettings(object_response="deform")
 
 
 def excluded_now() -> Exclusions:
-    excluded, others = exclusions_now(bpy.context)
+    excluded, others = find_exclusions(bpy.context)
     assert others == ()
     return excluded
 
@@ -91,16 +92,16 @@ def test_exclusions_of_a_mesh_that_changed_are_dropped_with_a_message() -> None:
     stuck.location.x += 0.01  # the same faces: nothing is stale
     bpy.context.view_layer.update()
     moved = evaluated(stuck)
-    current, message = kept.current(read_meshes())
+    current, message = drop_stale(kept, read_meshes())
     assert (current, message) == (kept, "")
     grid.data.vertices[0].co.x -= 0.1
     grid.data.update()
-    assert kept.current(read_meshes())[1] == ""
+    assert drop_stale(kept, read_meshes())[1] == ""
     add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
     bpy.context.view_layer.update()
-    current, message = kept.current(read_meshes())
+    current, message = drop_stale(kept, read_meshes())
     assert current.pairs == frozenset() and list(current.shapes) == ["Stuck"]
-    assert message == f'excluded pairs are dropped ({len(kept.pairs)}): the faces of "Grid" have changed'
+    assert message == f'dropped {len(kept.pairs)} excluded pairs: the faces of "Grid" have changed'
     with pytest.raises(stiv.StartIntersectsError):
         BlenderEdit.begin(bpy.context, EditSettings(excluded=kept), "move")
     assert np.array_equal(evaluated(stuck), moved)
@@ -115,12 +116,12 @@ def read_meshes():
 def test_what_is_loose_cannot_be_excluded() -> None:
     add_grid("Grid", 3, 1.5)
     add("Wire", mesh("Wire", [(0.2, 0.1, -1), (0.2, 0.1, 1)], [], [(0, 1)]))
-    excluded, others = exclusions_now(bpy.context)
+    excluded, others = find_exclusions(bpy.context)
     assert excluded.pairs == frozenset()
     assert [pair.first.kind for pair in others] == ["edge"]
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"pairs": [[1]], "shapes": {}}', '{"pairs": [], "shapes": []}'])
 def test_what_cannot_be_read_says_what_to_do(text: str) -> None:
-    with pytest.raises(stiv.InputError, match="clear them"):
+    with pytest.raises(stiv.InputError, match="use Clear Exclusions"):
         Exclusions.from_json(text)

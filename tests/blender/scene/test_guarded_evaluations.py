@@ -163,7 +163,7 @@ def test_cancelled_and_failed_edits_leave_nothing_behind(monkeypatch: pytest.Mon
     def fail(*_unused: Any) -> None:
         raise RuntimeError("broken")
 
-    monkeypatch.setattr("stiv.blender.verify.verification._joined", fail)
+    monkeypatch.setattr("stiv.blender.verify.verification._merged", fail)
     assert "broken" in move()
     assert snapshot() == before and counts() == kept
 
@@ -261,7 +261,7 @@ def test_a_start_that_intersects_only_when_rendered_names_the_way_out() -> None:
     select(cube)
     before = snapshot()
     bpy.context.scene.stiv.separation = 0.001
-    assert "only when rendered; set Guard to Viewport" in move()
+    assert "only the render intersects; set Guard to Viewport" in move()
     assert snapshot() == before
     bpy.context.scene.stiv.guard = "viewport"
     assert move() == ""

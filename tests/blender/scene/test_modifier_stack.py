@@ -190,7 +190,7 @@ def test_other_modifiers_are_refused_by_name(kind: str) -> None:
     if kind == "NODES":
         ob.modifiers[0].node_group = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
     select(ob)
-    refused('object "Böx", modifier "My mödifier": .*apply it, disable it.*respond rigidly.*obstacle')
+    refused('object "Böx", modifier "My mödifier": .*is not supported; apply or disable it.*obstacle')
     BlenderEdit.begin(bpy.context, EditSettings(), "move")
 
 
@@ -207,7 +207,7 @@ def test_second_subdivision_is_refused() -> None:
     add_modifier(ob, "SUBSURF", "One")
     add_modifier(ob, "SUBSURF", "Two")
     select(ob)
-    refused('modifier "Two": is the second subdivision')
+    refused('modifier "Two": is a second subdivision')
 
 
 def test_triangulation_before_subdivision_is_refused() -> None:
@@ -215,7 +215,7 @@ def test_triangulation_before_subdivision_is_refused() -> None:
     add_modifier(ob, "TRIANGULATE", "Tri")
     add_modifier(ob, "SUBSURF")
     select(ob)
-    refused('modifier "Tri": comes before a subdivision')
+    refused('modifier "Tri": precedes a subdivision')
 
 
 def test_deformed_lattice_after_the_one_that_moves_is_refused() -> None:
@@ -224,7 +224,7 @@ def test_deformed_lattice_after_the_one_that_moves_is_refused() -> None:
     add_modifier(ob, "LATTICE", object=first)
     add_modifier(ob, "LATTICE", "Later", object=second)
     select(first)
-    refused('object "Cube", modifier "Later": is a deformed lattice after the one that moves')
+    refused('object "Cube", modifier "Later": deforms the mesh after the moving lattice')
 
 
 def test_lattice_twice_in_a_stack_is_refused() -> None:
@@ -232,7 +232,7 @@ def test_lattice_twice_in_a_stack_is_refused() -> None:
     add_modifier(ob, "LATTICE", "One", object=lattice)
     add_modifier(ob, "LATTICE", "Two", object=lattice)
     select(lattice)
-    refused('object "Cube", modifier "Two": uses lattice "Lattice" a second time')
+    refused('object "Cube", modifier "Two": uses lattice "Lattice" again')
 
 
 def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,7 +244,7 @@ def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) ->
     wrong = lambda data, stage: stiv.linear(stiv.linear_weights(subdivision.subdivide(data, stage))[0], shift_by(26))  # noqa: E731
     monkeypatch.setattr(cage, "subdivide", wrong)
     select(ob)
-    refused('object "Cube", modifiers "Subdivision ü": what Blender shows is not what STIV computes')
+    refused('object "Cube", modifiers "Subdivision ü": STIV and Blender disagree')
 
 
 def shift_by(count: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from mathutils import Vector
 from stiv.blender import BlenderEdit, EditSettings, check_scene
 from stiv.blender.scene.evaluations import EVALUATIONS
 from stiv.blender.verify.frame_check import check_frames
-from stiv.blender.verify.left_out import text_not_guarded
+from stiv.blender.verify.untested import unguarded_text
 
 RADIUS = 0.2
 LINE = np.array([(2.0, 0.3, -4.0), (2.0, 0.3, -0.2), (2.4, 0.1, 4.0)])  # beside a cube of half width 1
@@ -90,7 +90,7 @@ def test_an_object_stops_at_a_strand(make: Any) -> None:
     assert cube.location.x > 0.5 and np.linalg.norm(cube.location - Vector((4, 0, 0))) > 1
     assert distance_to(line, cube) >= radius
     assert check_scene(bpy.context).pairs == ()
-    assert text_not_guarded(bpy.context, EVALUATIONS) == ""
+    assert unguarded_text(bpy.context, EVALUATIONS) == ""
 
 
 def test_vertices_stop_at_a_strand() -> None:
@@ -137,7 +137,7 @@ def test_strands_that_move_along_are_no_obstacles_and_named() -> None:
     assert cube.location.x == pytest.approx(4)
     assert edit.carried == {"Wire", "Lawn"}
     said = 'Not guarded, hair and curves that move along: 2 ("Lawn", "Wire")'
-    assert text_not_guarded(bpy.context, EVALUATIONS, edit.carried) == said
+    assert unguarded_text(bpy.context, EVALUATIONS, edit.carried) == said
 
 
 @pytest.mark.parametrize(("make", "name"), [(bare_curve, "Wire"), (hair_curves, "Hair"), (particle_hair, "Lawn")])
@@ -145,7 +145,7 @@ def test_check_reports_what_strands_cut(make: Any, name: str) -> None:
     make()
     cube = add_cube("Cube", (2, 0, 0))
     found = check_scene(bpy.context)
-    assert found.left_out == () and found.objects == 2
+    assert found.untested == () and found.objects == 2
     assert {(each.object, each.kind) for pair in found.pairs for each in (pair.first, pair.second)} == {
         ("Cube", "face"), (name, "strand"),
     }  # fmt: skip
@@ -161,17 +161,17 @@ def test_helper_curves_are_no_obstacles_and_named() -> None:
     add_modifier(add_cube("Bent", (0, 9, 0)), "CURVE", object=wire)
     pushed(cube)
     assert cube.location.x == pytest.approx(4)
-    assert text_not_guarded(bpy.context, EVALUATIONS) == 'Not guarded, helper curves: 1 ("Wire")'
+    assert unguarded_text(bpy.context, EVALUATIONS) == 'Not guarded, helper curves: 1 ("Wire")'
 
 
 def test_too_many_segments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     hair_curves()
     particle_hair()
-    monkeypatch.setattr("stiv.blender.scene.strand_reading.MOST_SEGMENTS", 1)
+    monkeypatch.setattr("stiv.blender.scene.strand_reading.MAX_SEGMENTS", 1)
     cube = add_cube("Cube")
     pushed(cube)
     assert cube.location.x == pytest.approx(4)
-    assert {(each.object, each.reason) for each in check_scene(bpy.context).left_out} == {
+    assert {(each.object, each.reason) for each in check_scene(bpy.context).untested} == {
         ("Hair", "hair curves of more than 1 segments"), ("Lawn", "particle hair of more than 1 segments"),
     }  # fmt: skip
 
@@ -190,7 +190,7 @@ def test_between_frames_strands_that_stay_are_tested_and_others_named() -> None:
     assert {(end.object, end.kind) for each in found for end in (each.first, each.second)} >= {("Wire", "strand")}
     assert {name for each in found for name in each.objects} == {"Cube", "Wire"}
     assert [note for look in looks for note in look.notes] == [
-        'between frames 1 and 2: hair or curves of object "Hair" move, and were not followed'
+        'between frames 1 and 2: hair or curves of object "Hair" move, and were left out'
     ]
 
 

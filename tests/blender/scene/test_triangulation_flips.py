@@ -12,7 +12,12 @@ import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import read_scene
-from stiv.blender.scene.triangulation_flips import as_shown, fresh_cuts, with_bent_quads, with_cuts
+from stiv.blender.scene.triangulation_flips import (
+    add_triangles,
+    find_flips,
+    guard_bent_quads,
+    with_current_triangulation,
+)
 
 WINGS = (1, 3)
 
@@ -42,16 +47,16 @@ def read() -> Assembly:
 def test_the_cut_that_blender_changes_is_seen_and_taken_in_once() -> None:
     quad = add_quad(0.1)
     assembly = read()
-    assert fresh_cuts(bpy.context, assembly) == ()
+    assert find_flips(bpy.context, assembly) == ()
     raise_wings(quad, 2)
-    (cut,) = fresh_cuts(bpy.context, assembly)
-    assert cut.fresh.faces.tolist() == [0, 0]
-    assert as_shown(assembly, [cut]).surface.triangles.tolist() == read().surface.triangles.tolist()
-    extended = with_cuts(assembly, [cut.fresh])
+    (cut,) = find_flips(bpy.context, assembly)
+    assert cut.new.faces.tolist() == [0, 0]
+    assert with_current_triangulation(assembly, [cut]).surface.triangles.tolist() == read().surface.triangles.tolist()
+    extended = add_triangles(assembly, [cut.new])
     assert len(extended.surface.triangles) == 4
     assert [extended.face(k).number for k in range(4)] == [0] * 4
     assert extended.surface.recut_faces == ((0, 1, 2, 3),)
-    assert fresh_cuts(bpy.context, extended) == ()
+    assert find_flips(bpy.context, extended) == ()
     assert len(stiv.find_intersections(extended.positions, extended.surface)) == 0
 
 
@@ -61,13 +66,13 @@ def test_quads_bent_far_keep_both_cuts_where_both_are_free(height: float, post: 
     if post:
         add_post()
     assembly = read()
-    extra = len(with_bent_quads(assembly).surface.triangles) - len(assembly.surface.triangles)
+    extra = len(guard_bent_quads(assembly).surface.triangles) - len(assembly.surface.triangles)
     assert 2 + extra == triangles
 
 
 def test_the_other_cut_of_a_bent_quad_is_the_one_that_blender_changes_to() -> None:
     quad = add_quad(0.8)
-    extended = with_bent_quads(read())
+    extended = guard_bent_quads(read())
     raise_wings(quad, 2)
     present = {tuple(sorted(row)) for row in read().surface.triangles.tolist()}
     assert {tuple(sorted(row)) for row in extended.surface.triangles[2:].tolist()} == present

@@ -9,7 +9,7 @@ import bpy
 import pytest
 from building import CUBE, CUBE_FACES, add, add_cube, add_grid, add_modifier, mesh
 
-from stiv.blender.scene import checked_evaluations, render_size, strand_reading
+from stiv.blender.scene import guarded_evaluations, strand_reading
 from stiv.blender.scripts.blend_files import save_blend
 from stiv.command_line import program
 from stiv.pytest_plugin import _check
@@ -110,8 +110,8 @@ def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path
     smooth_cube_in_a_box()
     bpy.data.objects["Wall"].location.x = 1.5
     bpy.data.objects["Cube"].modifiers[0].render_levels = 4
-    assert checked_evaluations.rendered_triangles(bpy.context) == 6 * 2 * 4**4
-    monkeypatch.setattr(render_size, "MOST_TRIANGLES", 3000)
+    assert guarded_evaluations.rendered_triangles(bpy.context) == 6 * 2 * 4**4
+    monkeypatch.setattr(guarded_evaluations, "MAX_TRIANGLES", 3000)
     code, file = checked(tmp_path)
     assert code == 0 and file["triangles"] < 1000 and len(file["notes"]) == 1
     assert "render levels, of about 3,072 triangles, were not tested; --render tests them" in file["notes"][0]
@@ -120,7 +120,7 @@ def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path
 
 
 def test_what_cannot_be_tested_is_named(tmp_path: Path, capsys, monkeypatch) -> None:
-    monkeypatch.setattr(strand_reading, "MOST_SEGMENTS", 0)
+    monkeypatch.setattr(strand_reading, "MAX_SEGMENTS", 0)
     add_modifier(add_cube("Cube"), "CURVE", object=add("Guide", bpy.data.curves.new("Guide", "CURVE"), (5, 0, 0)))
     for name, data in (
         ("Dust", bpy.data.pointclouds.new("Dust")),

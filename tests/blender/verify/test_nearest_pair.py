@@ -5,7 +5,7 @@ import pytest
 from building import add_cube, add_modifier, evaluated
 
 from stiv.blender import EditSettings
-from stiv.blender.verify.nearest_pair import nearest_pair
+from stiv.blender.verify.scene_check import nearest_pair
 
 
 def test_the_nearest_pair_is_found_in_world_space() -> None:

@@ -10,9 +10,8 @@ from building import add, add_cube, add_grid, add_modifier, mesh
 
 import stiv
 from stiv.blender import EditSettings, check_scene, read_surface
-from stiv.blender.scene.assembly import Element
+from stiv.blender.scene.elements import Element, FacePair
 from stiv.blender.scripts.blend_files import save_blend
-from stiv.blender.verify.verification import FacePair
 from stiv.command_line import program
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From tracks to controls: a placement for what moves rigidly, all vertices of what changes its shape."""
+"""Converts tracks to controls: a placement for rigid objects, all vertices for deforming ones."""
 
 from __future__ import annotations
 
@@ -14,19 +14,25 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.animation.tracks import Track
-from stiv.blender.controls.rotations import about, nearest_rotation, nearest_turn, rotation_matrix, rotation_vector
+from stiv.blender.controls.rotations import (
+    affine_about,
+    nearest_equivalent,
+    nearest_rotation,
+    rotation_matrix,
+    rotation_vector,
+)
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.assembly import mesh_seams
 from stiv.seams import Seams, common_seams
 
-SHEAR = 1e-4  # by which a placement may differ from location, rotation and scale, relative to its size
+SHEAR = 1e-4  # greatest deviation of a placement from location, rotation and scale, relative to its size
 
 
 @dataclass(frozen=True)
-class MovingPart:
-    """Objects that follow one placement (`frame` None), or one whose vertices are the controls.
+class MovingSet:
+    """Objects that share a placement (`frame` None), or an object whose vertices are the controls.
 
-    `tracks` are the places of its meshes among all tracks. `frame` (4, 4) is where the vertices are stored.
+    `tracks` are the indices of its meshes. `frame`, (4, 4), is the frame in which vertices are stored.
     """
 
     tracks: tuple[int, ...]
@@ -34,35 +40,35 @@ class MovingPart:
     controls: Floats  #: (m, 3) at the first frame
     weight: float
     frame: Floats | None
-    tied: Seams | None = None  #: vertices of a shape that are in one place at all frames, and stay so
+    control_seams: Seams | None = None  #: vertices of a deforming mesh that coincide at all frames, and continue to
 
     def goal(self, tracks: Sequence[Track], frame: int, last: Floats) -> Floats:
-        """What the animation asks of the controls at a frame, (m, 3); `last` is what it asked before."""
+        """Goal of the controls at a frame, (m, 3); `last` is the goal of the frame before."""
         track = tracks[self.tracks[0]]
         if self.frame is not None:
-            return track.world(frame) if self.tied is None else track.world(frame)[self.tied.first]
+            return track.world(frame) if self.control_seams is None else track.world(frame)[self.control_seams.first]
         motion = track.motion(frame)
-        turn = nearest_turn(rotation_vector(nearest_rotation(motion[:3, :3])), last[1])
+        turn = nearest_equivalent(rotation_vector(nearest_rotation(motion[:3, :3])), last[1])
         return np.array([transform_points(motion, self.controls[:1])[0], turn])
 
     def motion(self, controls: Floats) -> Floats:
-        """From the world at the first frame to where a placement's controls put it, (4, 4)."""
-        return about(self.controls[0], rotation_matrix(controls[1]), controls[0])
+        """World matrix, (4, 4), from the first frame to the placement of the controls."""
+        return affine_about(self.controls[0], rotation_matrix(controls[1]), controls[0])
 
 
-def make_moving_parts(tracks: Sequence[Track], hold: Collection[str]) -> list[MovingPart]:
-    """Parts for all that moves; what hangs together and moves alike is one. Raises InputError."""
+def make_moving_sets(tracks: Sequence[Track], hold: Collection[str]) -> list[MovingSet]:
+    """Make the controls of all moving objects; connected objects that move alike share them. Raises InputError."""
     parts = [_rigid(tracks, group, hold) for group in _rigid_groups(tracks)]
     shapes = [index for index, track in enumerate(tracks) if track.kind == "shape"]
     return parts + [_shape(tracks, index, hold) for index in shapes]
 
 
 def stored_placement(ob: bpy.types.Object, matrix: Floats) -> tuple[mathutils.Vector, ...]:
-    """Location, rotation (a quaternion) and scale of a world matrix. Raises InputError where they do not give it."""
+    """Location, rotation (a quaternion) and scale of a world matrix. Raises InputError if the matrix is sheared."""
     parts: tuple[mathutils.Vector, ...] = mathutils.Matrix(matrix.tolist()).decompose()
     rebuilt = as_matrix(mathutils.Matrix.LocRotScale(*parts))
     if np.abs(rebuilt - matrix).max() > SHEAR * np.abs(matrix).max():
-        raise InputError(f'object "{ob.name}": is sheared by its parent; apply its transform, or clear the parent')
+        raise InputError(f'object "{ob.name}": its parent shears it; apply its transform, or clear the parent')
     return parts
 
 
@@ -70,23 +76,23 @@ def _weight(tracks: Sequence[Track], group: Sequence[int], hold: Collection[str]
     return 0.0 if any(tracks[index].mesh.owner.name in hold for index in group) else 1.0
 
 
-def _rigid(tracks: Sequence[Track], group: tuple[int, ...], hold: Collection[str]) -> MovingPart:
+def _rigid(tracks: Sequence[Track], group: tuple[int, ...], hold: Collection[str]) -> MovingSet:
     rest = np.concatenate([tracks[index].world(0) for index in group])
     controls = stiv.rigid_rest_controls(rest)
-    return MovingPart(group, stiv.rigid(rest), controls, _weight(tracks, group, hold), None)
+    return MovingSet(group, stiv.rigid(rest), controls, _weight(tracks, group, hold), None)
 
 
-def _shape(tracks: Sequence[Track], index: int, hold: Collection[str]) -> MovingPart:
+def _shape(tracks: Sequence[Track], index: int, hold: Collection[str]) -> MovingSet:
     """Vertices are stored in the frame that Blender makes of the object's first placement."""
     track = tracks[index]
     frame = as_matrix(mathutils.Matrix.LocRotScale(*stored_placement(track.mesh.owner.find(), track.matrices[0])))
-    tied = _seams(track)
-    world = track.world(0) if tied is None else track.world(0)[tied.first]
-    return MovingPart((index,), stiv.identity(len(world)), world, _weight(tracks, (index,), hold), frame, tied)
+    control_seams = _seams(track)
+    world = track.world(0) if control_seams is None else track.world(0)[control_seams.first]
+    return MovingSet((index,), stiv.identity(len(world)), world, _weight(tracks, (index,), hold), frame, control_seams)
 
 
 def _seams(track: Track) -> Seams | None:
-    """The seams of a mesh that are closed at every frame."""
+    """Seams of a mesh that are closed at every frame."""
     seams = mesh_seams(track.locals[0], track.mesh.triangles)
     for before, local in pairwise(track.locals):
         if seams is not None and local is not before:
@@ -108,7 +114,7 @@ def _rigid_groups(tracks: Sequence[Track]) -> list[tuple[int, ...]]:
 
 
 def move_alike(one: Track, other: Track) -> bool:
-    """Have they a common ancestor (or is one the other's), and do they keep their places to each other?"""
+    """Do two tracks share a root object and keep their relative placement?"""
     if _root(one) != _root(other):
         return False
     size = max(float(np.abs(track.matrices[0]).max()) for track in (one, other))

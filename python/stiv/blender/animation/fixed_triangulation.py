@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts faces of a mesh into given triangles, so that Blender cannot cut them otherwise as they bend."""
+"""Splits faces into given triangles, so that Blender cannot flip them."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from stiv.blender.scene.mesh_reading import read_triangles
 
 
 def flipped_faces(mesh: bpy.types.Mesh, triangles: Indices) -> Indices:
-    """Faces that Blender now cuts into others than these triangles, (f, 3); ascending."""
+    """Faces whose present triangulation differs from the given triangles, (f, 3); ascending."""
     present, faces = read_triangles(mesh)
     different = (np.sort(present, axis=1) != np.sort(triangles, axis=1)).any(axis=1)
     return np.unique(faces[different])
 
 
 def split_faces(mesh: bpy.types.Mesh, faces: Iterable[int], triangles: Indices, face_of: Indices) -> None:
-    """Splits faces along the diagonals of their triangles; vertices keep their numbers, faces get new ones.
+    """Split faces along the diagonals of their triangles; vertices keep their numbers, faces get new ones.
 
-    triangles: (f, 3) of the whole mesh, `face_of` (f,) the face of each. UVs, materials and attributes stay.
+    triangles: (f, 3) of the whole mesh; face_of: face of each, (f,). UVs, materials and attributes stay.
     """
     chosen = list(faces)
     corners: dict[int, list[Indices]] = defaultdict(list)

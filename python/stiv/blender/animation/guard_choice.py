@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which evaluations a resolved animation keeps free of intersections, and which meshes of them its file will show."""
+"""Chooses the evaluations that a resolved animation keeps free of intersections, and the meshes in its file."""
 
 from __future__ import annotations
 
@@ -12,28 +12,27 @@ import bpy
 from stiv import InputError
 from stiv.blender.animation.controls import move_alike
 from stiv.blender.animation.tracks import Track
-from stiv.blender.scene.checked_evaluations import checked_evaluations
 from stiv.blender.scene.evaluations import RENDER
-from stiv.blender.scene.guarded_evaluations import Guard
+from stiv.blender.scene.guarded_evaluations import Guard, checked_evaluations
 
 WAY_OUT = "or use --guard viewport"
 
 
 def choose_animation_guard(context: bpy.types.Context, choice: str) -> Guard:
-    """The guard of a choice; "auto" is what `stiv check` tests: both, unless the render has too many triangles."""
+    """Choose the guard; "auto" is what `stiv check` tests: both, unless the render has too many triangles."""
     if choice != "auto":
         return Guard(choice)
     if RENDER in checked_evaluations(context):
         return Guard("both")
-    return Guard("viewport", "the render is not guarded: too many triangles; --guard both guards it")
+    return Guard("viewport", "the render is not guarded: too many triangles; use --guard both")
 
 
 def written_tracks(tracks: Sequence[Track]) -> list[Track]:
     """The tracks that the file will show.
 
-    Rigid objects keep their modifiers, and with them the meshes of every evaluation. An object that changes its shape
-    is written without modifiers, so its first mesh becomes that of every evaluation. Raises InputError for an object
-    that moves differently in two evaluations, and for one that changes its shape where only the render shows it.
+    Rigid objects keep their modifiers, and with them the meshes of all evaluations. Deforming objects are written
+    without modifiers, so their first mesh is that of all evaluations. Raises InputError for objects that move
+    differently in two evaluations, and for deforming objects that only the render shows.
     """
     groups: dict[int, list[Track]] = defaultdict(list)
     for track in tracks:
@@ -49,12 +48,12 @@ def written_tracks(tracks: Sequence[Track]) -> list[Track]:
 
 
 def _in_all_evaluations(group: Sequence[Track]) -> dict[int, Track | None]:
-    """The first mesh as that of all evaluations, and None for what it replaces; by the identity of the tracks."""
-    first = group[0].mesh.exists_in
-    everywhere = first.union(*(track.mesh.exists_in for track in group))
+    """The first mesh as that of all evaluations, and None for those that it replaces, by identity of the tracks."""
+    first = group[0].mesh.shown_in
+    everywhere = first.union(*(track.mesh.shown_in for track in group))
     return {
-        id(track): replace(track, mesh=replace(track.mesh, exists_in=everywhere))
-        if track.mesh.exists_in == first
+        id(track): replace(track, mesh=replace(track.mesh, shown_in=everywhere))
+        if track.mesh.shown_in == first
         else None
         for track in group
     }
@@ -63,10 +62,10 @@ def _in_all_evaluations(group: Sequence[Track]) -> dict[int, Track | None]:
 def _check_alike(group: Sequence[Track]) -> None:
     kinds: dict[frozenset[str], set[str]] = defaultdict(set)
     for track in group:
-        kinds[track.mesh.exists_in].add(track.kind)
-    others = (track for track in group if track.mesh.exists_in != group[0].mesh.exists_in)
+        kinds[track.mesh.shown_in].add(track.kind)
+    others = (track for track in group if track.mesh.shown_in != group[0].mesh.shown_in)
     if len(kinds) > 1 and (
-        any(each != kinds[group[0].mesh.exists_in] for each in kinds.values())
+        any(each != kinds[group[0].mesh.shown_in] for each in kinds.values())
         or any(track.kind == group[0].kind == "rigid" and not move_alike(group[0], track) for track in others)
     ):
         raise InputError(
@@ -77,6 +76,4 @@ def _check_alike(group: Sequence[Track]) -> None:
 def _check_shown(track: Track) -> None:
     ob = track.mesh.owner.find()
     if not ob.visible_get():
-        raise InputError(
-            f'object "{ob.name}": changes its shape and is only rendered; show it in the viewport, {WAY_OUT}'
-        )
+        raise InputError(f'object "{ob.name}": deforms and is only rendered; show it in the viewport, {WAY_OUT}')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an animation asks for: every visible mesh at every frame, and which of them move or change their shape."""
+"""Reads the motion of every visible mesh over all frames."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from stiv.blender.controls.rotations import is_rotation
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
 from stiv.blender.scene.evaluations import SHOWN
-from stiv.blender.verify.frame_check import go_to
+from stiv.blender.scene.references import type_name
+from stiv.blender.verify.frame_check import set_frame
 
 
 @dataclass(frozen=True)
 class Track:
-    """One mesh over all frames: `kind` is "still", "rigid" or "shape". Frames that are alike share their arrays."""
+    """One mesh over all frames: `kind` is "still", "rigid" or "shape" (deforming). Equal frames share their arrays."""
 
     mesh: VisibleMesh  #: at the first frame
     locals: tuple[Singles, ...]  #: (n, 3) at each frame, in the mesh's own frame
@@ -28,11 +29,11 @@ class Track:
     kind: str = field(default="still")
 
     def world(self, frame: int) -> Floats:
-        """World positions, (n, 3), at a frame by its place in the list."""
+        """World positions, (n, 3), at a frame, by index."""
         return transform_points(self.matrices[frame], self.locals[frame])
 
     def motion(self, frame: int) -> Floats:
-        """From the world at the first frame to that at this one, (4, 4), of what moves rigidly."""
+        """World matrix, (4, 4), from the first frame to this one, for rigid meshes."""
         moved: Floats = self.matrices[frame] @ np.linalg.inv(self.matrices[0])
         return moved
 
@@ -40,15 +41,15 @@ class Track:
 def read_tracks(
     context: bpy.types.Context, frames: Sequence[float], evaluations: Collection[str] = (SHOWN,)
 ) -> list[Track]:
-    """All meshes that these evaluations show at these frames; a mesh that several of them show comes once.
+    """Read all meshes of these evaluations at these frames; a mesh that several evaluations share is read once.
 
-    Raises InputError for one that comes, goes, or changes its vertices.
+    Raises InputError for meshes that appear, disappear, or change their number of vertices.
     """
     locals_: list[list[Singles]] = []
     matrices: list[list[Floats]] = []
     first: tuple[VisibleMesh, ...] = ()
     for frame in frames:
-        go_to(context.scene, frame)
+        set_frame(context.scene, frame)
         meshes = read_scene(context, evaluations=evaluations).meshes
         if not first:
             first = meshes
@@ -63,11 +64,11 @@ def read_tracks(
 
 
 def check_movable(tracks: Sequence[Track], hold: Collection[str]) -> None:
-    """Refuse what moves and could not be written, and names that do not move. Raises InputError."""
+    """Refuse moving objects that cannot be written, and names in `hold` that do not move. Raises InputError."""
     moving = {track.mesh.owner.name for track in tracks if track.kind != "still"}
     unknown = sorted(set(hold) - moving)
     if unknown:
-        raise InputError(f'object "{unknown[0]}": does not move in these frames, so there is nothing to hold it to')
+        raise InputError(f'object "{unknown[0]}": does not move in these frames; remove it from --hold')
     for track in tracks:
         if track.kind == "still":
             continue
@@ -77,18 +78,18 @@ def check_movable(tracks: Sequence[Track], hold: Collection[str]) -> None:
         if ob.library is not None or (ob.data is not None and ob.data.library is not None):
             raise InputError(f'object "{ob.name}": is linked from another file and moves; make it local')
         if track.kind == "shape" and ob.type != "MESH":
-            raise InputError(f'object "{ob.name}": a {ob.type.lower()} that changes its shape; convert it to a mesh')
+            raise InputError(f'object "{ob.name}": a {type_name(ob)} that deforms; convert it to a mesh')
 
 
-_Identity = tuple[int, str, frozenset[str]]  # what a mesh keeps while frames change; instances may share it
+_Identity = tuple[int, str, frozenset[str]]  # identifies a mesh over all frames; instances may share it
 
 
 def _identity(mesh: VisibleMesh) -> _Identity:
-    return mesh.owner.session_uid, mesh.source, mesh.exists_in
+    return mesh.owner.session_uid, mesh.source, mesh.shown_in
 
 
 def _in_order_of(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh]) -> list[VisibleMesh]:
-    """The same meshes in the order that they had at the first frame."""
+    """The meshes in the order of the first frame."""
     waiting: dict[_Identity, list[VisibleMesh]] = defaultdict(list)
     for mesh in reversed(meshes):
         waiting[_identity(mesh)].append(mesh)
@@ -105,7 +106,7 @@ def _check_same(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh], sta
         if len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
             raise InputError(
                 f'object "{mesh.owner.name}": has {len(mesh.local)} vertices at frame {start:g} and '
-                f"{len(other.local)} at frame {frame:g}, so that it cannot be followed; apply what changes them"
+                f"{len(other.local)} at frame {frame:g}; apply the modifier that changes them"
             )
     for key, mesh in now.items():
         if key not in names:
@@ -115,14 +116,14 @@ def _check_same(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh], sta
 
 
 def _missing(mesh: VisibleMesh, others: Sequence[VisibleMesh], here: float, there: float) -> str:
-    """What to say of a mesh that is at one frame and not among those of another."""
+    """Message about a mesh that exists at only one of two frames."""
     name = mesh.owner.name
     if any(_identity(mesh)[:2] == _identity(other)[:2] for other in others):
         return (
             f'object "{name}": is rendered differently at frame {there:g} than at frame {here:g}; '
             "keep its render settings the same, or use --guard viewport"
         )
-    return f'object "{name}": is visible at frame {here:g} and not at frame {there:g}'
+    return f'object "{name}": is visible at frame {here:g}, but not at frame {there:g}'
 
 
 def _kind(track: Track) -> str:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes a resolved animation into the open scene: keyframes of placements, and a shape key for each key of a shape.
+"""Writes a resolved animation: keyframes of placements, and a shape key for each key of a deforming mesh.
 
-What is written stands for itself: parents, constraints, modifiers and animation of the object that made the old motion
-are taken off. Interpolation is linear.
+The result is independent: parents, constraints, modifiers and old animation are removed. Interpolation is linear.
 """
 
 from __future__ import annotations
@@ -14,46 +13,46 @@ import bpy
 import mathutils
 import numpy as np
 
-from stiv.blender.animation.controls import MovingPart, stored_placement
+from stiv.blender.animation.controls import MovingSet, stored_placement
 from stiv.blender.animation.fixed_triangulation import flipped_faces, split_faces
 from stiv.blender.animation.resolving import Key, Resolved
 from stiv.blender.animation.tracks import Track
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
-from stiv.blender.scene.evaluated_scene import open_evaluations
 from stiv.blender.scene.mesh_reading import evaluated_mesh
-from stiv.blender.verify.frame_check import go_to
+from stiv.blender.scene.open_evaluations import open_evaluations
+from stiv.blender.verify.frame_check import set_frame
 
 
 def write_animation(context: bpy.types.Context, tracks: Sequence[Track], resolved: Resolved) -> None:
-    """Replace the animation of all that moves. The scene ends at the first frame."""
-    go_to(context.scene, resolved.keys[0].frame)
-    meshes = _evaluated_meshes(context, tracks, resolved.parts)
-    for part in resolved.parts:
-        for index in part.tracks:
+    """Replace the animation of all moving objects. The scene ends at the first frame."""
+    set_frame(context.scene, resolved.keys[0].frame)
+    meshes = _evaluated_meshes(context, tracks, resolved.moving_sets)
+    for moving_set in resolved.moving_sets:
+        for index in moving_set.tracks:
             _free(tracks[index].mesh.owner.find())
     first = 0
     with _linear_keys(context):
-        for part in resolved.parts:
-            rows = slice(first, first + len(part.controls))
+        for moving_set in resolved.moving_sets:
+            rows = slice(first, first + len(moving_set.controls))
             first = rows.stop
             keys = [Key(key.frame, key.controls[rows]) for key in resolved.keys]
-            if part.frame is None:
-                _write_placements(part, tracks, keys)
+            if moving_set.frame is None:
+                _write_placements(moving_set, tracks, keys)
             else:
-                _write_shape(part, tracks[part.tracks[0]], meshes[part.tracks[0]], keys)
+                _write_shape(moving_set, tracks[moving_set.tracks[0]], meshes[moving_set.tracks[0]], keys)
     _fix_triangulations(context, tracks, resolved)
-    go_to(context.scene, resolved.keys[0].frame)
+    set_frame(context.scene, resolved.keys[0].frame)
 
 
 def _fix_triangulations(context: bpy.types.Context, tracks: Sequence[Track], resolved: Resolved) -> None:
-    """Splits the faces that Blender would triangulate otherwise at a key than at the first frame.
+    """Split the faces that Blender would triangulate differently from the first frame at any key.
 
-    What was solved for are the triangles of the first frame; others may intersect.
+    Only the triangles of the first frame are known to be free of intersections.
     """
-    shapes = [tracks[part.tracks[0]].mesh for part in resolved.parts if part.frame is not None]
+    shapes = [tracks[moving_set.tracks[0]].mesh for moving_set in resolved.moving_sets if moving_set.frame is not None]
     flipped: list[set[int]] = [set() for _ in shapes]
     for key in resolved.keys if shapes else ():
-        go_to(context.scene, key.frame)
+        set_frame(context.scene, key.frame)
         graph = context.evaluated_depsgraph_get()
         for shape, faces in zip(shapes, flipped, strict=True):
             with evaluated_mesh(shape.owner.find().evaluated_get(graph)) as mesh:
@@ -64,24 +63,28 @@ def _fix_triangulations(context: bpy.types.Context, tracks: Sequence[Track], res
 
 
 def _evaluated_meshes(
-    context: bpy.types.Context, tracks: Sequence[Track], parts: Sequence[MovingPart]
+    context: bpy.types.Context, tracks: Sequence[Track], moving_sets: Sequence[MovingSet]
 ) -> dict[int, bpy.types.Mesh]:
-    """Meshes of their own for what changes its shape, as the evaluation it was read in has it at the first frame."""
-    shapes = {part.tracks[0]: tracks[part.tracks[0]].mesh for part in parts if part.frame is not None}
+    """Copies of the meshes of deforming objects, as evaluated at the first frame."""
+    shapes = {
+        moving_set.tracks[0]: tracks[moving_set.tracks[0]].mesh
+        for moving_set in moving_sets
+        if moving_set.frame is not None
+    }
     meshes: dict[int, bpy.types.Mesh] = {}
     if not shapes:
         return meshes
-    with open_evaluations(context, {mesh.read_in for mesh in shapes.values()}) as opened:
+    with open_evaluations(context, {mesh.read_from for mesh in shapes.values()}) as opened:
         for index, mesh in shapes.items():
-            graph = opened.depsgraph(mesh.read_in)
-            evaluated = opened.evaluated(mesh.read_in, mesh.owner)
+            graph = opened.depsgraph(mesh.read_from)
+            evaluated = opened.evaluated(mesh.read_from, mesh.owner)
             meshes[index] = bpy.data.meshes.new_from_object(evaluated, depsgraph=graph)
             meshes[index].name = f"{mesh.owner.name} resolved"
     return meshes
 
 
 def _free(ob: bpy.types.Object) -> None:
-    """Nothing but its own location, rotation and scale places the object from now on."""
+    """Remove everything that influences the object's placement, except its own transform."""
     ob.animation_data_clear()
     ob.constraints.clear()
     ob.parent = None
@@ -90,22 +93,24 @@ def _free(ob: bpy.types.Object) -> None:
     ob.rotation_mode = "QUATERNION"
 
 
-def _write_placements(part: MovingPart, tracks: Sequence[Track], keys: Sequence[Key]) -> None:
-    for owner, index in {tracks[index].mesh.owner: index for index in reversed(part.tracks)}.items():
+def _write_placements(moving_set: MovingSet, tracks: Sequence[Track], keys: Sequence[Key]) -> None:
+    for owner, index in {tracks[index].mesh.owner: index for index in reversed(moving_set.tracks)}.items():
         ob, last = owner.find(), None
         for key in keys:
-            location, rotation, scale = stored_placement(ob, part.motion(key.controls) @ tracks[index].matrices[0])
+            location, rotation, scale = stored_placement(
+                ob, moving_set.motion(key.controls) @ tracks[index].matrices[0]
+            )
             if last is not None and rotation.dot(last) < 0:
-                rotation = -rotation  # the same rotation, and the short way there
+                rotation = -rotation  # the same rotation, reached by the shorter way
             last = rotation
             _place(ob, location, rotation, scale)
             for path in ("location", "rotation_quaternion", "scale"):
                 ob.keyframe_insert(path, frame=key.frame)
 
 
-def _write_shape(part: MovingPart, track: Track, mesh: bpy.types.Mesh, keys: Sequence[Key]) -> None:
-    """Absolute shape keys, run through in time: at each key exactly that shape, between two a straight way."""
-    assert part.frame is not None
+def _write_shape(moving_set: MovingSet, track: Track, mesh: bpy.types.Mesh, keys: Sequence[Key]) -> None:
+    """Write absolute shape keys, evaluated over time: the exact shape at each key, linear motion between them."""
+    assert moving_set.frame is not None
     ob = track.mesh.owner.find()
     ob.modifiers.clear()
     ob.data = mesh
@@ -113,21 +118,21 @@ def _write_shape(part: MovingPart, track: Track, mesh: bpy.types.Mesh, keys: Seq
     for key in keys:
         block = ob.shape_key_add(name=f"frame {key.frame:g}", from_mix=False)
         block.interpolation = "KEY_LINEAR"
-        block.data.foreach_set("co", _local(part, key.controls).ravel())
+        block.data.foreach_set("co", _local(moving_set, key.controls).ravel())
     shapes = mesh.shape_keys
     shapes.use_relative = False
     for key, block in zip(keys, shapes.key_blocks, strict=True):
         shapes.eval_time = block.frame
         shapes.keyframe_insert("eval_time", frame=key.frame)
-    mesh.vertices.foreach_set("co", _local(part, keys[0].controls).ravel())
+    mesh.vertices.foreach_set("co", _local(moving_set, keys[0].controls).ravel())
     mesh.update()
 
 
-def _local(part: MovingPart, controls: Floats) -> Singles:
-    """Coordinates of all vertices of a shape in its object's frame as they are stored, (n, 3)."""
-    assert part.frame is not None
-    local = transform_points(np.linalg.inv(part.frame).astype(np.float64), controls).astype(np.float32)
-    return local if part.tied is None else local[part.tied.index]
+def _local(moving_set: MovingSet, controls: Floats) -> Singles:
+    """Stored local coordinates of all vertices of a deforming object, (n, 3)."""
+    assert moving_set.frame is not None
+    local = transform_points(np.linalg.inv(moving_set.frame).astype(np.float64), controls).astype(np.float32)
+    return local if moving_set.control_seams is None else local[moving_set.control_seams.index]
 
 
 def _place(ob: bpy.types.Object, location: mathutils.Vector, rotation: mathutils.Quaternion, scale: Floats) -> None:
@@ -136,7 +141,7 @@ def _place(ob: bpy.types.Object, location: mathutils.Vector, rotation: mathutils
 
 @contextmanager
 def _linear_keys(context: bpy.types.Context) -> Iterator[None]:
-    """New keyframes are interpolated linearly for as long as this lasts."""
+    """Insert new keyframes with linear interpolation inside the `with` statement."""
     edit = context.preferences.edit
     before = edit.keyframe_new_interpolation_type
     edit.keyframe_new_interpolation_type = "LINEAR"

@@ -1,52 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that give way without having been given a role: all that can be placed as they are, as rigid wholes."""
+"""Objects that yield without a role of their own: all that can be moved rigidly."""
 
 from collections.abc import Sequence
 
 import bpy
 
 from stiv import InputError
+from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
-from stiv.blender.controls.movers import Mover
-from stiv.blender.controls.transform_locks import is_locked
+from stiv.blender.controls.transform_locks import is_location_locked
 from stiv.blender.scene.dependencies import dependencies
-from stiv.blender.scene.evaluated_scene import SURFACE_TYPES
+from stiv.blender.scene.evaluations import SURFACE_TYPES
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
 
-def automatic_responders(
-    objects: Sequence[bpy.types.Object], movers: Sequence[Mover], settings: EditSettings
-) -> list[Mover]:
-    """Rigid movers, not selected, for the visible objects of role "auto" that nothing hinders.
+def find_automatic_responders(
+    objects: Sequence[bpy.types.Object], participants: Sequence[Participant], settings: EditSettings
+) -> list[Participant]:
+    """Unselected rigid participants for the visible objects of role "auto" that can be moved.
 
-    An object hangs together with its children. Left out, and so in the way, is a family of which a member is a mover
-    already, has another role or a constraint, is animated, linked, locked or without size, or looks at or is looked at
-    by an object outside, through modifiers, constraints or instances. Metaballs are left out too: where they are moved
-    to, Blender gives them another surface.
+    An object and its children form a family. A family is an obstacle instead if one of its members participates
+    already, has another role or a constraint, is animated, linked, locked or of zero size, or if modifiers, constraints
+    or instances connect it with other objects. Metaballs are obstacles too, because moving them changes their surface.
     """
-    taken = {mover.reference.name for mover in movers}
-    tied = _tied_outside()
-    found: list[Mover] = []
+    taken = {participant.reference.name for participant in participants}
+    links = _outside_links()
+    found: list[Participant] = []
     for ob in sorted(objects, key=lambda each: len(_ancestors(each))):
         family = [ob, *ob.children_recursive]
         names = {member.name for member in family}
         above = _ancestors(ob)
-        if ob.type not in SURFACE_TYPES - {"META"} or names & taken or above & taken or not _are_free(family, settings):
+        if (
+            ob.type not in SURFACE_TYPES - {"META"}
+            or names & taken
+            or above & taken
+            or not _is_movable_family(family, settings)
+        ):
             continue
-        if any((user in names) != (used in names) for user, used in tied):
+        if any((user in names) != (used in names) for user, used in links):
             continue
         taken |= names
-        found.append(Mover(ObjectReference.of(ob), "rigid", False))
+        found.append(Participant(ObjectReference.of(ob), "rigid", False))
     return found
 
 
-def _are_free(family: Sequence[bpy.types.Object], settings: EditSettings) -> bool:
+def _is_movable_family(family: Sequence[bpy.types.Object], settings: EditSettings) -> bool:
     if any(settings.role(member.name) != "auto" for member in family):
         return False
     try:
         check_placement(family[0])
-        if is_locked(family[0]):
+        if is_location_locked(family[0]):
             return False
         for child in family[1:]:
             check_unconstrained(child)
@@ -63,12 +67,12 @@ def _ancestors(ob: bpy.types.Object) -> set[str]:
     return names
 
 
-def _tied_outside() -> set[tuple[str, str]]:
-    """Pairs of names of which the first object's shape or place depends on the second, its parent apart."""
-    tied = {(each.user, each.used) for ob in bpy.data.objects for each in dependencies(ob)}
+def _outside_links() -> set[tuple[str, str]]:
+    """Pairs of names; the first object depends on the second through anything except its parent."""
+    links = {(each.user, each.used) for ob in bpy.data.objects for each in dependencies(ob)}
     for ob in bpy.data.objects:
         if ob.instance_type == "COLLECTION" and ob.instance_collection is not None:
-            tied |= {(ob.name, other.name) for other in ob.instance_collection.all_objects}
+            links |= {(ob.name, other.name) for other in ob.instance_collection.all_objects}
         elif ob.instance_type != "NONE":
-            tied |= {(ob.name, child.name) for child in ob.children}
-    return tied
+            links |= {(ob.name, child.name) for child in ob.children}
+    return links

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One thing with controls: how its surface follows from them, what the goal asks of them, and how they are written."""
+"""Data of an edit: its participants, and their controls with deformation, goal and writer."""
 
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -10,56 +10,65 @@ from numpy.typing import NDArray
 import stiv
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.references import ObjectReference
 from stiv.seams import Seams
 
 
+@dataclass(frozen=True)
+class Participant:
+    """An object with controls: role "cage", "soft", "lattice" or "rigid"; the goal moves it if it is `selected`."""
+
+    reference: ObjectReference
+    role: str
+    selected: bool
+
+
 class Writer(Protocol):
-    """Puts controls into Blender."""
+    """Writes controls into Blender."""
 
     def write(self, controls: Floats) -> None:
-        """Write controls, (m, 3). Raises SceneChangedError when the object is gone or was changed."""
+        """Write controls, (m, 3). Raises SceneChangedError if the object was removed or changed."""
 
     def restore(self) -> None:
-        """Put back what was there at the start, bit by bit."""
+        """Restore the start bit by bit."""
 
 
 class GoalRule(Protocol):
-    """What a transformation of the selection asks of controls."""
+    """Maps a transform of the selection to a goal of the controls."""
 
     @property
     def moves(self) -> bool:
-        """Does the transformation move any of them?"""
+        """Does the transform move any of the controls?"""
 
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the controls, (m, 3), for an absolute motion since the start.
 
-        `controls` are those of the start, `last` the goal before this one: rotations may go on beyond a half turn.
+        `controls` are those at the start, `last` is the previous goal, so that rotations can exceed half a turn.
         """
 
-    def reached(self, influence: Influence | None) -> NDArray[np.bool_]:
-        """Which controls, (m,), a motion of this influence moves."""
+    def affected(self, influence: Influence | None) -> NDArray[np.bool_]:
+        """Flags of the controls, (m,), that a motion with this influence moves."""
 
 
 @dataclass(frozen=True)
-class Part:
-    """One cage, mesh with handles, lattice or group of rigid objects.
+class ControlSet:
+    """The controls of one cage, mesh with handles, lattice or group of rigid objects.
 
     Attributes:
         names: the objects that are written.
         role: "cage", "soft", "lattice" or "rigid".
-        surfaces: positions, in the list of visible meshes, of what the controls move, in the deformation's order.
-        deformation: from the controls to the world positions of all these meshes, vertices of a seam once.
+        surfaces: indices of the visible meshes that the controls move, in the order of the deformation.
+        deformation: from the controls to the world positions of these meshes, without duplicates on seams.
         controls: (m, 3) at the start.
-        weights: (m,) response of each control, or (m, 3) of each along three axes.
-        given: of the same shape, the most that each may have, whoever responds; 0 pins it.
-        frame: (4, 4) in which the controls are stored in single precision, handles like the vertices that they hold;
-            None for placements.
-        rule: what the goal asks of the controls.
-        writer: how the controls come into Blender.
-        tied: vertices of the object that are one control, so that seams stay closed; None: each is its own.
-        seams: of each of `surfaces`, the vertices that stay in one place; empty: none do.
-        note: what the user should know of it; "" for nothing.
-        weight_axes: (m, 3, 3) directions that (m, 3) weights are along, as columns of a rotation; None: x, y, z.
+        weights: response weights, (m,), or (m, 3) along three axes.
+        max_weights: upper bounds of the weights, of the same shape, whatever yields; 0 pins a control.
+        frame: (4, 4) in which the controls are stored in single precision; None for placements.
+        rule: maps a motion to the goal of the controls.
+        writer: writes the controls into Blender.
+        control_seams: vertices of the object that share a control, so that seams stay closed; None if none do.
+        seams: for each of `surfaces`, the vertices that stay together; empty if none do.
+        note: message for the user; may be "".
+        weight_axes: axes of (m, 3) weights as columns of rotations, (m, 3, 3); None for the world axes.
     """
 
     names: tuple[str, ...]
@@ -68,15 +77,15 @@ class Part:
     deformation: stiv.Deformation
     controls: Floats
     weights: Floats
-    given: Floats
+    max_weights: Floats
     frame: Floats | None
     rule: GoalRule
     writer: Writer
-    tied: Seams | None = None
+    control_seams: Seams | None = None
     seams: tuple[Seams | None, ...] = ()
     note: str = ""
     weight_axes: Floats | None = None
 
-    def of_vertices(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Those of the controls, (m, ...), out of values of all vertices of the object, (n, ...)."""
-        return values if self.tied is None else values[self.tied.first]
+    def values_at_controls(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Values at the controls, (m, ...), from values at all vertices of the object, (n, ...)."""
+        return values if self.control_seams is None else values[self.control_seams.first]

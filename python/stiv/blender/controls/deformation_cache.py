@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deformations that are kept from one drag to the next, for as long as what they follow from stays the same."""
+"""Caches deformations between drags, as long as their inputs stay the same."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy as np
 
 import stiv
 
-MOST = 3  # deformations; the weights of one take about a kilobyte a vertex
+MOST = 3  # deformations; the weights of one take about a kilobyte for each vertex
 
 _kept: OrderedDict[bytes, stiv.Deformation] = OrderedDict()
 
 
-def remembered(make: Callable[..., stiv.Deformation], *inputs: Any) -> stiv.Deformation:
-    """What `make` gives for these arrays and plain values, or gave the last time for equal ones."""
+def cached_deformation(make: Callable[..., stiv.Deformation], *inputs: Any) -> stiv.Deformation:
+    """Call `make` with these arrays and plain values, or return the cached result of an equal call."""
     key = _digest(make.__qualname__, *inputs)
     if key not in _kept:
         _kept[key] = make(*inputs)
@@ -28,8 +28,8 @@ def remembered(make: Callable[..., stiv.Deformation], *inputs: Any) -> stiv.Defo
     return _kept[key]
 
 
-def forget_all() -> None:
-    """Keep nothing any more."""
+def clear_cache() -> None:
+    """Clear the cache."""
     _kept.clear()
 
 

@@ -1,74 +1,73 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""May an object be changed, and would the change be what the user sees? Each refusal names the ways out."""
+"""Refuses objects that cannot be edited, or whose changes would not be visible, with the ways out."""
+
+from typing import Any
 
 import bpy
 import numpy as np
 
 from stiv import InputError
-from stiv.blender.scene.animation_curves import controlled_paths
+from stiv.blender.scene.animation_curves import animated_paths
 from stiv.blender.scene.arrays import as_matrix
+from stiv.blender.scene.references import type_name
 
 TRANSFORM_PATHS = ("location", "rotation", "scale", "delta_")
+REASONS = {
+    "animated": "its transform is animated; clear the animation, or make it an obstacle",
+    "constraint": "determines the transform; disable it, or make the object an obstacle",
+    "linked": "it is linked; make a library override of it, or an obstacle",
+    "linked data": "its {kind} is linked from another file; make it local or an obstacle",
+    "metaball": "metaballs cannot move; convert it to a mesh, or make it an obstacle",
+    "overridden data": "its {kind} is a library override; make it local or an obstacle",
+    "shape key": "hides edits of the {kind}; apply or remove the shape keys",
+    "shared data": 'its {kind} is shared with object "{other}"; make it single user, or an obstacle',
+    "system override": "its override is not editable; make it editable in the Outliner",
+    "zero scale": "its scale is zero; change it, or make the object an obstacle",
+}
 
 
 def check_placement(ob: bpy.types.Object) -> None:
-    """Refuse an object whose location, rotation and scale do not decide where it stands. Raises InputError."""
-    _check_own_placement(ob)
-    _check_size(ob)
-    if any(path.startswith(TRANSFORM_PATHS) for path in controlled_paths(ob)):
-        raise InputError(
-            f'object "{ob.name}": its placement is animated or driven; clear or bake that, or make it an obstacle'
-        )
+    """Refuse an object whose transform cannot be edited. Raises InputError."""
+    if ob.library is not None:
+        raise _refusal(ob, "linked")
+    if ob.override_library is not None and ob.override_library.is_system_override:
+        raise _refusal(ob, "system override")
+    _check_scale(ob)
+    if any(path.startswith(TRANSFORM_PATHS) for path in animated_paths(ob)):
+        raise _refusal(ob, "animated")
     check_unconstrained(ob)
     if ob.type == "META":
-        raise InputError(f'object "{ob.name}": metaballs cannot be moved; convert it to a mesh, or make it an obstacle')
+        raise _refusal(ob, "metaball")
 
 
 def check_unconstrained(ob: bpy.types.Object) -> None:
-    """Refuse an object with constraints in force. Raises InputError."""
+    """Refuse an object with active constraints. Raises InputError."""
     for constraint in ob.constraints:
         if not constraint.mute and constraint.influence > 0:
-            raise InputError(
-                f'object "{ob.name}", constraint "{constraint.name}": decides the placement; apply or disable it, '
-                "or make the object an obstacle"
-            )
+            raise _refusal(ob, "constraint", f', constraint "{constraint.name}"')
 
 
 def check_data(ob: bpy.types.Object) -> None:
-    """Refuse an object whose vertices or points cannot be written, or would not show. Raises InputError."""
-    kind = ob.type.lower()
+    """Refuse an object whose vertices or points cannot be edited. Raises InputError."""
+    kind = type_name(ob)
     if ob.data.override_library is not None:
-        raise InputError(f'object "{ob.name}": its {kind} is a library override; make it local or an obstacle')
-    _check_not_linked(ob, ob.data, kind)
-    _check_size(ob)
+        raise _refusal(ob, "overridden data", kind=kind)
+    if ob.data.library is not None:
+        raise _refusal(ob, "linked data", kind=kind)
+    _check_scale(ob)
     others = [other.name for other in bpy.data.objects if other.data == ob.data and other != ob]
     if others:
-        raise InputError(
-            f'object "{ob.name}": its {kind} is shared with object "{others[0]}", which would change too; '
-            "make it single user, or make the object an obstacle"
-        )
+        raise _refusal(ob, "shared data", kind=kind, other=others[0])
     keys = ob.data.shape_keys
     if keys is not None and len(keys.key_blocks) > 1:
-        raise InputError(
-            f'object "{ob.name}", shape key "{keys.key_blocks[1].name}": hides changes of the {kind}; apply or remove '
-            "the shape keys, let the object respond rigidly, or make it an obstacle"
-        )
+        raise _refusal(ob, "shape key", f', shape key "{keys.key_blocks[1].name}"', kind=kind)
 
 
-def _check_not_linked(ob: bpy.types.Object, data: bpy.types.ID, kind: str) -> None:
-    if data.library is not None:
-        raise InputError(f'object "{ob.name}": its {kind} is linked from another file; make it local or an obstacle')
+def _refusal(ob: bpy.types.Object, reason: str, element: str = "", **names: Any) -> InputError:
+    return InputError(f'object "{ob.name}"{element}: {REASONS[reason].format(**names)}')
 
 
-def _check_own_placement(ob: bpy.types.Object) -> None:
-    """A library override has a placement of its own, unless Blender alone may change it."""
-    if ob.library is not None:
-        raise InputError(f'object "{ob.name}": it is linked; make a library override of it, or an obstacle')
-    if ob.override_library is not None and ob.override_library.is_system_override:
-        raise InputError(f'object "{ob.name}": its override is not editable; make it editable in the Outliner')
-
-
-def _check_size(ob: bpy.types.Object) -> None:
+def _check_scale(ob: bpy.types.Object) -> None:
     lengths = np.linalg.svd(as_matrix(ob.matrix_world)[:3, :3], compute_uv=False)
     if not np.isfinite(lengths).all() or lengths[-1] <= 1e-6 * lengths[0]:
-        raise InputError(f'object "{ob.name}": its scale is zero; give it a size, or make it an obstacle')
+        raise _refusal(ob, "zero scale")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seams of meshes that deform: vertices in one place stay together, and are one vertex of the surface."""
+"""Keeps seams of deforming meshes closed: coincident vertices share a control, and are one vertex of the surface."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,83 +9,82 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.controls.cage import read_cage
-from stiv.blender.controls.control_set import Part, Writer
+from stiv.blender.controls.control_set import ControlSet, Writer
 from stiv.blender.controls.control_weights import pinned_directions
 from stiv.blender.controls.points import PointGoal
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.evaluated_scene import VisibleMesh
-from stiv.blender.scene.mesh_reading import read_triangles
+from stiv.blender.scene.mesh_reading import read_cage, read_triangles
 from stiv.seams import Seams
 
-DRIFT = 1e-6  # of what controls move: by so much less copies move apart where they follow the same controls
+DRIFT = 1e-6  # of the controls' motion; greatest distance between copies that follow the same controls
 
 
 @dataclass(frozen=True)
-class TiedWriter:
-    """Writes a cage of which some vertices are one control."""
+class SeamWriter:
+    """Writes a cage in which some vertices share a control."""
 
     writer: Writer
-    tied: Seams
+    control_seams: Seams
 
     def write(self, controls: Floats) -> None:
-        """Write world positions of the controls, (m, 3), each to all its vertices."""
-        self.writer.write(controls[self.tied.index])
+        """Write world positions of the controls, (m, 3), to all their vertices."""
+        self.writer.write(controls[self.control_seams.index])
 
     def restore(self) -> None:
         """Write the original positions."""
         self.writer.restore()
 
 
-def join_part(part: Part, meshes: Sequence[VisibleMesh]) -> Part:
-    """A part with the seams of the meshes that it deforms kept closed; the part itself where there are none."""
-    if part.role == "rigid":
-        return part  # what keeps its shape is not tested against itself
-    shown = [meshes[index] for index in part.surfaces]
+def join_seams(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> ControlSet:
+    """The control set with the seams of its meshes kept closed; unchanged if there are none."""
+    if control_set.role == "rigid":
+        return control_set  # a rigid mesh is not tested against itself
+    shown = [meshes[index] for index in control_set.surfaces]
     found = [mesh_seams(mesh.local, mesh.triangles) for mesh in shown]
     if all(each is None for each in found):
-        return part
-    if part.role == "cage":
-        part = _tied(part, _stacked_vertices(found, shown))
-    seams = _kept(part, found, [len(mesh.local) for mesh in shown])
+        return control_set
+    if control_set.role == "cage":
+        control_set = _merge_controls(control_set, _seam_flags(found, shown))
+    seams = _closed_seams(control_set, found, [len(mesh.local) for mesh in shown])
     if all(each is None for each in seams):
-        return part
+        return control_set
     firsts, count = [], 0
     for each, mesh in zip(seams, shown, strict=True):
         first = np.arange(len(mesh.local), dtype=np.int32) if each is None else each.first
         firsts.append(first + count)
         count += len(mesh.local)
-    return replace(part, deformation=_limited(part, np.concatenate(firsts)), seams=seams)
+    return replace(control_set, deformation=_restrict(control_set, np.concatenate(firsts)), seams=seams)
 
 
-def copied(deformation: stiv.Deformation, tied: Seams) -> stiv.Deformation:
-    """The deformation of the vertices of a mesh from that of the mesh with its seams joined."""
-    return stiv.compose(_one_of_each(tied.index, len(tied.first)), deformation)
+def copy_to_seams(deformation: stiv.Deformation, control_seams: Seams) -> stiv.Deformation:
+    """Deformation of all vertices, from that of the mesh with merged seams."""
+    return stiv.compose(_selection_weights(control_seams.index, len(control_seams.first)), deformation)
 
 
-def joined_rows(rows: Indices, tied: Seams | None) -> Indices:
-    """Triangles or edges, (f, k), over the joined vertices; those of which two corners are one are left out."""
-    if tied is None:
+def join_rows(rows: Indices, control_seams: Seams | None) -> Indices:
+    """Triangles or edges, (f, k), with numbers of merged vertices; degenerate ones are left out."""
+    if control_seams is None:
         return rows
-    joined = tied.index[rows]
+    joined = control_seams.index[rows]
     proper: Indices = joined[(joined != np.roll(joined, 1, axis=1)).all(axis=1)]
     return proper
 
 
-def seam_note(name: str, selected: Flags, tied: Seams) -> str:
-    """Tells where some vertices of a seam are selected, (n,), and others follow them; "" where none do."""
-    follow = int(((np.bincount(tied.index, selected) > 0)[tied.index] & ~selected).sum())
+def seam_message(name: str, selected: Flags, control_seams: Seams) -> str:
+    """Message about vertices that follow selected copies on a seam, (n,); "" if there are none."""
+    follow = int(((np.bincount(control_seams.index, selected) > 0)[control_seams.index] & ~selected).sum())
     return f'object "{name}": {follow} vertices follow those selected on their seams' if follow else ""
 
 
-def _one_of_each(index: Indices, count: int) -> stiv.Weights:
-    """The weights, (n, count), by which each row is one of `count` points: that at `index`, (n,)."""
+def _selection_weights(index: Indices, count: int) -> stiv.Weights:
+    """Weights, (n, count), of rows that each equal one of `count` points, given by `index`, (n,)."""
     return stiv.Weights(np.arange(len(index) + 1, dtype=np.int32), index, np.ones(len(index)), (len(index), count))
 
 
-def _stacked_vertices(found: Sequence[Seams | None], shown: Sequence[VisibleMesh]) -> Flags:
-    """Which vertices of all shown meshes, one after the other, are on a seam."""
+def _seam_flags(found: Sequence[Seams | None], shown: Sequence[VisibleMesh]) -> Flags:
+    """Flags of the vertices of all meshes, stacked, that are on a seam."""
     flags = []
     for seams, mesh in zip(found, shown, strict=True):
         if seams is None:
@@ -95,91 +94,95 @@ def _stacked_vertices(found: Sequence[Seams | None], shown: Sequence[VisibleMesh
     return np.concatenate(flags)
 
 
-def _tied(part: Part, on_seam: Flags) -> Part:
-    """The part of a cage with one control for vertices in one place that a seam of the shown meshes follows."""
-    rule = part.rule
+def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
+    """The cage's control set with one control for the coincident vertices that a seam of its meshes follows."""
+    rule = control_set.rule
     assert isinstance(rule, PointGoal)
-    mesh = bpy.data.objects[part.names[0]].data
-    candidates = mesh_seams(read_cage(bpy.data.objects[part.names[0]]), read_triangles(mesh)[0])
+    mesh = bpy.data.objects[control_set.names[0]].data
+    candidates = mesh_seams(read_cage(bpy.data.objects[control_set.names[0]]), read_triangles(mesh)[0])
     if candidates is None:
-        return part
-    weights = _weights(part.deformation)
+        return control_set
+    weights = _weights(control_set.deformation)
     rows = np.repeat(on_seam, np.diff(weights.indptr))
-    follows = np.zeros(len(part.controls), np.bool_)
+    follows = np.zeros(len(control_set.controls), np.bool_)
     follows[weights.indices[rows]] = True
     follows = np.bincount(candidates.index, follows)[candidates.index] > 0
-    tied = candidates.limited_to(follows)
-    if tied is None:
-        return part
-    given = np.full((len(tied.first), *part.given.shape[1:]), np.inf)
-    np.minimum.at(given, tied.index, part.given)  # what is pinned anywhere is pinned
-    selected = np.bincount(tied.index, rule.selected) > 0
-    response = np.zeros_like(given)
-    np.maximum.at(response, tied.index, part.weights)
+    control_seams = candidates.limited_to(follows)
+    if control_seams is None:
+        return control_set
+    max_weights = np.full((len(control_seams.first), *control_set.max_weights.shape[1:]), np.inf)
+    np.minimum.at(max_weights, control_seams.index, control_set.max_weights)  # pinned if any copy is
+    selected = np.bincount(control_seams.index, rule.selected) > 0
+    response = np.zeros_like(max_weights)
+    np.maximum.at(response, control_seams.index, control_set.weights)
     return replace(
-        part,
-        deformation=stiv.linear(_tied_weights(weights, tied), _offset(part.deformation)),
-        controls=part.controls[tied.first],
-        weights=np.where(given > 0, response, 0.0),
-        given=given,
-        rule=_tied_rule(rule, selected, given, tied),
-        writer=TiedWriter(part.writer, tied),
-        tied=tied,
-        note=seam_note(part.names[0], rule.selected, tied),
-        weight_axes=None if part.weight_axes is None else part.weight_axes[tied.first],
+        control_set,
+        deformation=stiv.linear(_merge_columns(weights, control_seams), _offset(control_set.deformation)),
+        controls=control_set.controls[control_seams.first],
+        weights=np.where(max_weights > 0, response, 0.0),
+        max_weights=max_weights,
+        rule=_merge_rule(rule, selected, max_weights, control_seams),
+        writer=SeamWriter(control_set.writer, control_seams),
+        control_seams=control_seams,
+        note=seam_message(control_set.names[0], rule.selected, control_seams),
+        weight_axes=None if control_set.weight_axes is None else control_set.weight_axes[control_seams.first],
     )
 
 
-def _tied_rule(rule: PointGoal, selected: Flags, given: Floats, tied: Seams) -> PointGoal:
-    free = None if rule.free is None else np.asarray((given > 0).reshape(len(given), -1).any(axis=1))
-    edges = None if rule.edges is None else tied.index[rule.edges]
-    pinned = None if rule.pinned is None else pinned_directions(given, rule.pinned.directions)
+def _merge_rule(rule: PointGoal, selected: Flags, max_weights: Floats, control_seams: Seams) -> PointGoal:
+    free = None if rule.free is None else np.asarray((max_weights > 0).reshape(len(max_weights), -1).any(axis=1))
+    edges = None if rule.edges is None else control_seams.index[rule.edges]
+    pinned = None if rule.pinned is None else pinned_directions(max_weights, rule.pinned.directions)
     selected = selected if free is None else selected & free
-    return PointGoal(selected, rule.start[tied.first], edges, rule.origin, free, pinned)
+    return PointGoal(selected, rule.start[control_seams.first], edges, rule.origin, free, pinned)
 
 
-def _kept(part: Part, found: Sequence[Seams | None], counts: Sequence[int]) -> tuple[Seams | None, ...]:
-    """The seams that stay closed however the controls move: where copies follow the same controls.
+def _closed_seams(
+    control_set: ControlSet, found: Sequence[Seams | None], counts: Sequence[int]
+) -> tuple[Seams | None, ...]:
+    """The seams whose copies follow the same controls, and so stay closed for any motion.
 
-    Told by motions of the controls at random: copies of other weights do not move alike.
+    Tested with a random motion of the controls: copies with different weights move apart.
     """
-    size = float(np.ptp(part.controls, axis=0).max(initial=0.0)) or 1.0
-    random = np.random.default_rng(0).uniform(-1, 1, part.controls.shape) * 0.01 * size
-    moved = part.deformation.surface(part.controls + random) - part.deformation.surface(part.controls)
-    kept: list[Seams | None] = []
+    size = float(np.ptp(control_set.controls, axis=0).max(initial=0.0)) or 1.0
+    random = np.random.default_rng(0).uniform(-1, 1, control_set.controls.shape) * 0.01 * size
+    moved = control_set.deformation.surface(control_set.controls + random) - control_set.deformation.surface(
+        control_set.controls
+    )
+    closed: list[Seams | None] = []
     for seams, motion in zip(found, np.split(moved, np.cumsum(counts)[:-1]), strict=True):
         if seams is None:
-            kept.append(None)
+            closed.append(None)
             continue
         apart = np.abs(motion - motion[seams.leaders]).max(axis=1)
-        kept.append(seams.limited_to(apart <= DRIFT * np.abs(moved).max(initial=0.0)))
-    return tuple(kept)
+        closed.append(seams.limited_to(apart <= DRIFT * np.abs(moved).max(initial=0.0)))
+    return tuple(closed)
 
 
 def _weights(deformation: stiv.Deformation) -> stiv.Weights:
-    """The weights of a linear deformation; those of the identity too."""
+    """Weights of a linear deformation, including the identity."""
     try:
         return stiv.linear_weights(deformation)[0]
     except InputError:
-        return _one_of_each(np.arange(deformation.vertex_count, dtype=np.int32), deformation.control_count)
+        return _selection_weights(np.arange(deformation.vertex_count, dtype=np.int32), deformation.control_count)
 
 
-def _tied_weights(weights: stiv.Weights, tied: Seams) -> stiv.Weights:
-    columns: Indices = tied.index[weights.indices]
-    return stiv.Weights(weights.indptr, columns, weights.data, (weights.shape[0], len(tied.first)))
+def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
+    columns: Indices = control_seams.index[weights.indices]
+    return stiv.Weights(weights.indptr, columns, weights.data, (weights.shape[0], len(control_seams.first)))
 
 
-def _limited(part: Part, rows: Indices) -> stiv.Deformation:
-    """The part's deformation of some vertices of its meshes; the identity where each is a control of its own."""
-    chosen = _one_of_each(rows, part.deformation.vertex_count)
-    if part.role == "soft":
-        return stiv.compose(chosen, part.deformation)
+def _restrict(control_set: ControlSet, rows: Indices) -> stiv.Deformation:
+    """The deformation restricted to some vertices; the identity if each of them is a control."""
+    chosen = _selection_weights(rows, control_set.deformation.vertex_count)
+    if control_set.role == "soft":
+        return stiv.compose(chosen, control_set.deformation)
     try:
-        limited = stiv.compose(chosen, part.deformation)
+        limited = stiv.compose(chosen, control_set.deformation)
     except InputError:
         return stiv.linear(chosen)  # of the identity
     weights, offset = stiv.linear_weights(limited)
-    own = np.arange(len(part.controls))
+    own = np.arange(len(control_set.controls))
     plain = offset is None and np.array_equal(weights.indices, own) and (weights.data == 1).all()
     return stiv.identity(len(own)) if plain and len(rows) == len(own) else limited
 

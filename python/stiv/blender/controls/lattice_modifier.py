@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the points of one lattice do to the evaluated mesh of one object."""
+"""The deformation of one object's evaluated mesh by a lattice."""
 
 from typing import Any
 
@@ -7,24 +7,23 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.cage import read_cage
-from stiv.blender.controls.deformation_cache import remembered
-from stiv.blender.controls.lattice_points import is_undeformed, read_points, read_rest_points
+from stiv.blender.controls.deformation_cache import cached_deformation
 from stiv.blender.controls.subdivision import subdivide
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix, transform_points
 from stiv.blender.scene.evaluations import SHOWN
-from stiv.blender.scene.mesh_reading import evaluated_mesh, read_group_weights
-from stiv.blender.scene.modifier_stack import Bending, Stage, Subdivision, read_stack, refuse
+from stiv.blender.scene.lattice_reading import is_undeformed, read_lattice_points, read_rest_lattice_points
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_cage
+from stiv.blender.scene.modifier_stack import LatticeStage, Stage, SubdivisionStage, modifier_error, read_stack
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.vertex_groups import group_weights
+from stiv.blender.scene.vertex_groups import group_weights, read_group_weights
 
 
-def bent_mesh(
+def lattice_deformation(
     ob: bpy.types.Object, lattice: ObjectReference, context: bpy.types.Context, evaluation: str = SHOWN
 ) -> stiv.Deformation:
-    """From world positions of the lattice's points to those of the object's mesh in an evaluation.
+    """Deformation from world positions of the lattice's points to the object's mesh in an evaluation.
 
-    Stages before the lattice are followed at their present values. Raises InputError naming object and modifier.
+    Modifiers before the lattice are evaluated at their present values. Raises InputError naming object and modifier.
     """
     if ob.mode == "EDIT":
         ob.update_from_editmode()
@@ -32,52 +31,52 @@ def bent_mesh(
     place = [getattr(stage, "lattice", None) for stage in stages].index(lattice)
     rest = transform_points(as_matrix(ob.matrix_world), read_cage(ob))
     for stage in stages[:place]:
-        rest = _followed(ob, stage, rest, context).surface(_present_controls(stage, rest))
+        rest = _evaluate_stage(ob, stage, rest, context).surface(_present_controls(stage, rest))
     bending = stages[place]
-    assert isinstance(bending, Bending)
+    assert isinstance(bending, LatticeStage)
     result = _lattice(ob, bending, rest, context)
     for stage in stages[place + 1 :]:
-        if isinstance(stage, Subdivision):
+        if isinstance(stage, SubdivisionStage):
             result = stiv.compose(subdivide(ob.data, stage), result)
         else:
             _check_undeformed(ob, stage)
     return result
 
 
-def _check_undeformed(ob: bpy.types.Object, stage: Bending) -> None:
+def _check_undeformed(ob: bpy.types.Object, stage: LatticeStage) -> None:
     if not is_undeformed(stage.lattice.find().data):
-        raise refuse(ob, stage.modifier, "is a deformed lattice after the one that moves")
+        raise modifier_error(ob, stage.modifier, "deforms the mesh after the moving lattice")
 
 
-def _followed(ob: bpy.types.Object, stage: Stage, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
-    if isinstance(stage, Subdivision):
+def _evaluate_stage(ob: bpy.types.Object, stage: Stage, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
+    if isinstance(stage, SubdivisionStage):
         return subdivide(ob.data, stage)
     return _lattice(ob, stage, rest, context)
 
 
 def _present_controls(stage: Stage, rest: Floats) -> Floats:
-    if isinstance(stage, Subdivision):
+    if isinstance(stage, SubdivisionStage):
         return rest
     lattice = stage.lattice.find()
-    return transform_points(as_matrix(lattice.matrix_world), read_points(lattice.data))
+    return transform_points(as_matrix(lattice.matrix_world), read_lattice_points(lattice.data))
 
 
-def _lattice(ob: bpy.types.Object, stage: Bending, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
+def _lattice(ob: bpy.types.Object, stage: LatticeStage, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:
     lattice = stage.lattice.find()
     data = lattice.data
-    return remembered(
-        _bent,
+    return cached_deformation(
+        _make_lattice,
         rest,
         (data.points_u, data.points_v, data.points_w),
         as_matrix(lattice.matrix_world),
         [_interpolation(data, axis) for axis in "uvw"],
         stage.strength * _group_weights(ob, stage, len(rest), context),
-        read_rest_points(data),
+        read_rest_lattice_points(data),
         _point_weights(lattice),
     )
 
 
-def _bent(
+def _make_lattice(
     vertices: Floats,
     resolution: tuple[int, int, int],
     frame: Floats,
@@ -107,8 +106,8 @@ def _point_weights(lattice: bpy.types.Object) -> Any:
     return group_weights(lattice, name, "that of the points") if name in lattice.vertex_groups else None
 
 
-def _group_weights(ob: bpy.types.Object, stage: Bending, count: int, context: bpy.types.Context) -> Floats:
-    """Weights of the modifier's vertex group for each vertex that the lattice sees, (n,)."""
+def _group_weights(ob: bpy.types.Object, stage: LatticeStage, count: int, context: bpy.types.Context) -> Floats:
+    """Weights of the modifier's vertex group for each of its input vertices, (n,)."""
     if stage.vertex_group is None:
         return np.ones(count)
     if count == len(ob.data.vertices):

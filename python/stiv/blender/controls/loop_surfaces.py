@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cages of triangles subdivided by Loop's scheme; Blender has no such modifier, so an object beside a cage shows it."""
+"""Loop subdivision of triangle cages. Blender has no such modifier, so a child of the cage shows the refined mesh."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,20 +10,21 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.blender.controls.points import as_single
+from stiv.blender.controls.editable import check_data
+from stiv.blender.controls.points import to_single
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.scene.errors import SceneChangedError
+from stiv.blender.scene.evaluations import SHOWS_PARENT
 from stiv.blender.scene.mesh_reading import read_creases, read_edges, read_faces
-from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings, LoopSurface
 
-STALE = 1e-5  # of the size: by how much more than single precision leaves a refined mesh differs from its cage
+STALE = 1e-5  # of its size; greatest difference between the refined mesh and its cage, beyond single precision
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """From world positions of the cage's vertices to those of the refined mesh, its triangles, (T, 3), and the face of
-    the cage that each lies in, (T,).
+    """Deformation from the cage to the refined mesh in world space, its triangles, (T, 3), and the cage face of each,
+    (T,).
     """
 
     deformation: stiv.Deformation
@@ -32,7 +33,7 @@ class Refinement:
 
 
 def refine(cage: bpy.types.Object, chosen: LoopSurface) -> Refinement:
-    """The refinement of a cage; in Edit Mode as of the last `update_from_editmode`.
+    """Refine a cage; in Edit Mode as of the last `update_from_editmode`.
 
     Raises InputError for a face that is not a triangle.
     """
@@ -41,8 +42,8 @@ def refine(cage: bpy.types.Object, chosen: LoopSurface) -> Refinement:
     others = np.flatnonzero(np.diff(starts) != 3)
     if len(others):
         raise InputError(
-            f'object "{cage.name}", face {others[0]}: has {np.diff(starts)[others[0]]} corners, and Loop subdivision '
-            "takes triangles alone; triangulate the cage"
+            f'object "{cage.name}", face {others[0]}: has {np.diff(starts)[others[0]]} corners; Loop subdivision '
+            "needs triangles, so triangulate the cage"
         )
     edge_crease, vertex_crease = read_creases(mesh)
     creases = [None if values is None else values.tobytes() for values in (edge_crease, vertex_crease)]
@@ -57,7 +58,7 @@ def _refinement(
     count: int, corners: bytes, edges: bytes, edge_crease: bytes | None, vertex_crease: bytes | None, levels: int,
     boundary: str,
 ) -> Refinement:  # fmt: skip
-    """Kept for the next edit or refreshing of the same cage."""
+    """Cached for the next edit or refresh of the same cage."""
     vertices = _indices(corners)
     cage = stiv.Cage(
         count, vertices, np.arange(0, len(vertices) + 1, 3), _indices(edges).reshape(-1, 2),
@@ -76,8 +77,8 @@ def _singles(values: bytes | None) -> NDArray[np.float32] | None:
 
 
 def refined_points(refinement: Refinement, cage: Floats, frame: Floats) -> Singles:
-    """Local positions of the refined mesh, in an object of this frame, for world positions of the cage, (m, 3)."""
-    return as_single(frame, refinement.deformation.surface(cage))
+    """Local positions of the refined mesh in an object's frame, from world positions of the cage, (m, 3)."""
+    return to_single(frame, refinement.deformation.surface(cage))
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ class RefinedWriter:
     original: Singles
 
     def write(self, cage: Floats) -> None:
-        """Write the refined mesh of a cage at these world positions, (m, 3)."""
+        """Write the refined mesh of a cage at world positions, (m, 3)."""
         _write(self.reference.find_in_mode("OBJECT"), refined_points(self.refinement, cage, self.frame))
 
     def restore(self) -> None:
@@ -99,9 +100,9 @@ class RefinedWriter:
 
 
 def refined_writer(cage: bpy.types.Object, local: Singles, settings: EditSettings) -> RefinedWriter | None:
-    """The writer of the mesh that shows a cage, at its local positions, (m, 3); None where it shows itself.
+    """Writer of the mesh that shows a cage, at its local positions, (m, 3); None if the cage shows itself.
 
-    Raises InputError for a refined object that is gone, or does not show the cage as it is.
+    Raises InputError if the refined object was removed or is not up to date.
     """
     chosen = settings.loops.get(cage.name)
     if chosen is None:
@@ -109,14 +110,14 @@ def refined_writer(cage: bpy.types.Object, local: Singles, settings: EditSetting
     refined, refinement = bpy.data.objects[chosen.object], refine(cage, chosen)
     frame, shown = as_matrix(refined.matrix_world), read_collection(refined.data.vertices, "co", 3, np.float32)
     if _is_stale(shown, refined_points(refinement, transform_points(as_matrix(cage.matrix_world), local), frame)):
-        raise InputError(f'object "{refined.name}": does not show its cage "{cage.name}" as it is; refresh it')
+        raise InputError(f'object "{refined.name}": is older than its cage "{cage.name}"; use Refresh')
     return RefinedWriter(ObjectReference.of(refined), refinement, frame, shown)
 
 
 def refresh(cage: bpy.types.Object, refined: bpy.types.Object, chosen: LoopSurface) -> bool:
-    """Let an object show the refinement of a cage as it is now; returns whether it did not.
+    """Update the object that shows a cage; returns whether it changed.
 
-    Raises InputError for a cage with a face that is not a triangle; nothing is changed then.
+    Raises InputError, with nothing changed, for a cage with a face that is not a triangle.
     """
     if cage.mode == "EDIT":
         cage.update_from_editmode()
@@ -144,16 +145,46 @@ def _is_stale(shown: Singles, wanted: Singles) -> bool:
 
 def _write(refined: bpy.types.Object, local: Singles) -> None:
     if len(refined.data.vertices) != len(local):
-        raise SceneChangedError(f'object "{refined.name}" has got another number of vertices')
+        raise SceneChangedError(f'object "{refined.name}" changed its number of vertices')
     refined.data.vertices.foreach_set("co", local.ravel())
     refined.data.update()
 
 
 def _rebuild(cage: bpy.types.Mesh, mesh: bpy.types.Mesh, refinement: Refinement, local: Singles) -> None:
-    """Make the mesh anew; its faces take shading and material from those of the cage."""
+    """Rebuild the mesh; its faces inherit shading and material from those of the cage."""
     mesh.clear_geometry()
     mesh.from_pydata(local.tolist(), [], refinement.triangles.tolist())
     for name, dtype in (("use_smooth", np.bool_), ("material_index", np.int32)):
         values = read_collection(cage.polygons, name, 1, dtype)[refinement.faces]
         mesh.polygons.foreach_set(name, values)
     mesh.update()
+
+
+def add_refined(context: bpy.types.Context, cage: bpy.types.Object, levels: int, boundary: str) -> bpy.types.Object:
+    """Add the object "<name>.loop": a child at the cage's place, in its collections, with its materials.
+
+    It cannot be selected, so that clicks select the cage. Raises InputError, with nothing changed, if the cage cannot
+    be edited or has a face that is not a triangle.
+    """
+    check_data(cage)
+    refine(cage, LoopSurface("", levels, boundary))  # may raise InputError before anything is created
+    name = f"{cage.name}.loop"
+    refined = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    refined.parent = cage
+    refined[SHOWS_PARENT] = True
+    for material in cage.data.materials:
+        refined.data.materials.append(material)
+    for collection in cage.users_collection:
+        collection.objects.link(refined)
+    refined.hide_select = True
+    context.view_layer.update()
+    refresh(cage, refined, LoopSurface(refined.name, levels, boundary))
+    return refined
+
+
+def remove_refined(refined: bpy.types.Object) -> None:
+    """Delete the object and its mesh."""
+    mesh = refined.data
+    bpy.data.objects.remove(refined)
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a drag asks of the selection: a transform, about which points, and how far its influence reaches."""
+"""Motions of the selection: a transform, its pivot, and the influence of proportional editing."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,9 +19,9 @@ class Influence:
     """Proportional editing: points near the selection follow it.
 
     Attributes:
-        size: distance from the nearest selected point up to which points follow, world units, above 0.
-        falloff: how the share decreases with distance, one of FALLOFFS, as Blender names them.
-        connected: measure the distance along the edges of the cage instead of straight.
+        size: radius around selected points, world units, above 0.
+        falloff: one of FALLOFFS, as Blender names them.
+        connected: measure distances along the edges of the cage.
     """
 
     size: float
@@ -29,19 +29,19 @@ class Influence:
     connected: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what has no meaning."""
+        """Refuse invalid values."""
         if not (np.isfinite(self.size) and self.size > 0):
             raise InputError(f"size of the influence: {self.size!r} must be a finite number above 0")
         if self.falloff not in FALLOFFS:
             raise InputError(f"falloff: {self.falloff!r} is none of {', '.join(FALLOFFS)}")
 
     def shares(self, distances: Floats) -> Floats:
-        """Share of the transform, 0 to 1, for distances from the selection, (m,)."""
+        """Fraction of the transform, 0 to 1, at distances from the selection, (m,)."""
         t = np.clip(1 - distances / self.size, 0, 1)
         curves = {
             "SMOOTH": t * t * (3 - 2 * t), "SPHERE": np.sqrt(t * (2 - t)), "ROOT": np.sqrt(t),
             "INVERSE_SQUARE": t * (2 - t), "SHARP": t * t, "LINEAR": t, "CONSTANT": np.sign(t),
-            "RANDOM": t * np.random.default_rng(0).random(len(t)),  # the same at each motion of a drag
+            "RANDOM": t * np.random.default_rng(0).random(len(t)),  # constant during a drag
         }  # fmt: skip
         shares: Floats = np.where(distances == 0, 1, curves[self.falloff])
         return shares
@@ -49,14 +49,14 @@ class Influence:
 
 @dataclass(frozen=True)
 class Motion:
-    """An absolute goal of the selection since the start of an edit.
+    """An absolute motion of the selection since the start of an edit.
 
     Attributes:
         matrix: (4, 4) world transform.
-        pivot: (3,) point that the linear part of the matrix is about; what is left moves it.
-        individual: each object, island of vertices or lattice turns and grows about its own origin instead.
-        influence: how far the transform reaches beyond the selection; None: nowhere.
-        rotation: (3,) rotation vector of the matrix, where the way round is not the shortest; None: it is.
+        pivot: (3,) fixed point of the linear part; the rest of the matrix is a translation.
+        individual: each object, island of vertices or lattice uses its own origin as pivot.
+        influence: proportional editing; None for none.
+        rotation: (3,) rotation vector of the matrix if it exceeds half a turn; otherwise None.
     """
 
     matrix: Floats
@@ -66,9 +66,11 @@ class Motion:
     rotation: Floats | None = None
 
     @staticmethod
-    def of(given: "Motion | ArrayLike") -> "Motion":
-        """A motion, or a (4, 4) matrix alone. Raises InputError for what is not finite."""
-        motion = given if isinstance(given, Motion) else Motion(np.asarray(given, np.float64), np.zeros(3))
+    def of(max_weights: "Motion | ArrayLike") -> "Motion":
+        """A motion, or a (4, 4) matrix alone. Raises InputError if it is not finite."""
+        motion = (
+            max_weights if isinstance(max_weights, Motion) else Motion(np.asarray(max_weights, np.float64), np.zeros(3))
+        )
         matrix = np.asarray(motion.matrix, np.float64)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not np.isfinite(motion.pivot).all():
             raise InputError("transform: must be a matrix of 4 x 4 finite numbers")
@@ -76,26 +78,26 @@ class Motion:
 
     @property
     def linear(self) -> Floats:
-        """(3, 3) without the translation."""
+        """Linear part, (3, 3)."""
         return self.matrix[:3, :3]
 
     @property
     def shift(self) -> Floats:
-        """(3,) by which the pivot moves."""
+        """Translation of the pivot, (3,)."""
         moved: Floats = transform_points(self.matrix, self.pivot[None])[0] - self.pivot
         return moved
 
     def whole(self, points: Floats) -> Floats:
-        """Points, (k, 3), that follow all of the transform."""
+        """Transform points, (k, 3)."""
         return transform_points(self.matrix, points)
 
     def about(self, points: Floats, origins: Floats) -> Floats:
-        """Points, (k, 3), each transformed about an origin of its own, (k, 3) or (3,)."""
+        """Transform points, (k, 3), each about its own origin, (k, 3) or (3,)."""
         moved: Floats = origins + (points - origins) @ self.linear.T + self.shift
         return moved
 
     def shared(self, points: Floats, shares: NDArray[Any]) -> Floats:
-        """Points, (k, 3), that follow a share of the transform each, (k,): turned by part of the angle."""
+        """Transform points, (k, 3), each by a fraction, (k,): rotations by that fraction of the angle."""
         arms = points - self.pivot
         if is_rotation(self.linear):
             vector = rotation_vector(self.linear) if self.rotation is None else self.rotation
@@ -107,7 +109,7 @@ class Motion:
 
 
 def _turned(arms: Floats, vector: Floats, shares: NDArray[Any]) -> Floats:
-    """Vectors turned by a share of a rotation each (Rodrigues)."""
+    """Rotate vectors, each by a fraction of a rotation (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
     if angle == 0:
         return arms

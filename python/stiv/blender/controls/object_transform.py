@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An object's location, rotation and scale: kept for putting back, and changed by a motion in world space."""
+"""Reads, writes and restores an object's location, rotation and scale."""
 
 from dataclasses import dataclass
 
@@ -15,13 +15,13 @@ ROTATION_PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotat
 
 @dataclass(frozen=True)
 class ObjectTransform:
-    """What was there at the start.
+    """An object's transform at the start.
 
     Attributes:
-        location, rotation, scale: the object's own properties, rotation in its own rotation mode.
+        location, rotation, scale: the object's own properties; rotation in its own rotation mode.
         world: world matrix, (4, 4).
-        above: from location, rotation and scale (with deltas) to the world: parent and parent inverse, (4, 4).
-        basis: location, rotation and scale, deltas included, as a matrix, (4, 4).
+        above: matrix of the parent and its inverse, (4, 4), from `basis` to the world.
+        basis: matrix of location, rotation and scale, including deltas, (4, 4).
     """
 
     location: tuple[float, ...]
@@ -29,36 +29,38 @@ class ObjectTransform:
     rotation: tuple[float, ...]
     scale: tuple[float, ...]
     world: Floats
-    above: Floats
+    parent_matrix: Floats
     basis: Floats
 
-    def holds_rotations(self) -> bool:
-        """Is every rotation in the world a rotation of the object's own?"""
-        above = self.above[:3, :3]
-        size = np.cbrt(abs(np.linalg.det(above)))
-        return is_rotation(above / size * np.sign(np.linalg.det(above)))
+    def can_hold_rotations(self) -> bool:
+        """Can the object's own rotation express every rotation in the world?"""
+        parent_matrix = self.parent_matrix[:3, :3]
+        size = np.cbrt(abs(np.linalg.det(parent_matrix)))
+        return is_rotation(parent_matrix / size * np.sign(np.linalg.det(parent_matrix)))
 
     def restore(self, ob: bpy.types.Object) -> None:
-        """Put location, rotation and scale back, bit by bit."""
+        """Restore location, rotation and scale, bit by bit."""
         ob.location = self.location
         setattr(ob, self.rotation_property, self.rotation)
         ob.scale = self.scale
 
 
 def read_transform(ob: bpy.types.Object) -> ObjectTransform:
-    """The object's transform as it is now; its size must not be zero."""
+    """Read the object's transform; its scale must not be zero."""
     world, basis = as_matrix(ob.matrix_world), as_matrix(ob.matrix_basis)
     name = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
-    above = world @ np.linalg.inv(basis)
-    return ObjectTransform(tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, above, basis)
+    parent_matrix = world @ np.linalg.inv(basis)
+    return ObjectTransform(
+        tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis
+    )
 
 
 def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats, factors: Floats) -> None:
-    """Let the object follow `motion`, (4, 4), since the start: rigid, or a scaling by `factors` along its axes.
+    """Move the object by `motion`, (4, 4), since the start: rigidly, or scaled by `factors` along its axes.
 
-    The world matrix becomes motion @ start.world. A rotation turns the object's own; factors multiply its own scale.
+    The world matrix becomes motion @ start.world. A rotation changes the object's own rotation, factors its own scale.
     """
-    inner = np.linalg.inv(start.above) @ motion @ start.above
+    inner = np.linalg.inv(start.parent_matrix) @ motion @ start.parent_matrix
     shift = (inner @ start.basis)[:3, 3] - start.basis[:3, 3]
     ob.location = np.asarray(start.location) + shift
     ob.scale = np.asarray(start.scale) * factors
@@ -69,7 +71,7 @@ def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats
 
 
 def _write_rotation(ob: bpy.types.Object, start: ObjectTransform, turn: Floats) -> None:
-    """The whole rotation is delta @ own; own becomes delta' @ turn @ delta @ own."""
+    """The complete rotation is delta @ own; own becomes delta' @ turn @ delta @ own."""
     setattr(ob, start.rotation_property, start.rotation)
     own = _own_rotation(ob)
     lengths = np.asarray(start.scale) * np.asarray(ob.delta_scale)
@@ -87,7 +89,7 @@ def _own_rotation(ob: bpy.types.Object) -> Floats:
 
 
 def _set_own_rotation(ob: bpy.types.Object, rotation: mathutils.Matrix) -> None:
-    """In the object's rotation mode, the representation nearest to the present one."""
+    """Set the rotation in the object's mode, using the representation nearest to the present one."""
     if ob.rotation_mode == "QUATERNION":
         quaternion = rotation.to_quaternion()
         ob.rotation_quaternion = -quaternion if quaternion.dot(ob.rotation_quaternion) < 0 else quaternion

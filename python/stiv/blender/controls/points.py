@@ -6,36 +6,55 @@ from functools import cached_property
 
 import numpy as np
 
-from stiv.blender.controls.location_locks import FreeDirections
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.controls.selection_distances import distances_along, island_centres, nearest_distances
 from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, transform_points
 
-ROUNDING = 1e-11  # relative error allowed for the way to the world and back, all steps of an edit together
+
+@dataclass(frozen=True)
+class FreeDirections:
+    """Orthonormal directions in world space, with flags of those that locks or pins leave free.
+
+    Attributes:
+        axes: (3, 3), a direction in each column.
+        free: (3,) flags.
+    """
+
+    axes: Floats
+    free: Flags
+
+    def along(self, displacement: Floats) -> Floats:
+        """Component of world displacements, (..., 3), along the free directions."""
+        basis = self.axes[:, self.free]
+        allowed: Floats = displacement @ basis @ basis.T
+        return allowed
+
+
+ROUNDING = 1e-11  # relative error of the conversions between local and world space during an edit
 
 
 @dataclass(frozen=True)
 class PinnedDirections:
-    """Points, (m,) flags, that move along the free directions only."""
+    """Points, (m,) flags, that move only in the free directions."""
 
     points: Flags
     directions: FreeDirections
 
     def limited(self, start: Floats, goal: Floats) -> Floats:
-        """The goal, (m, 3), without what the pins forbid of the way from the start."""
+        """Restrict a goal, (m, 3), to the displacements that the pins allow."""
         allowed = goal.copy()
-        way = goal[self.points] - start[self.points]
-        allowed[self.points] = start[self.points] + self.directions.along(way)
+        displacement = goal[self.points] - start[self.points]
+        allowed[self.points] = start[self.points] + self.directions.along(displacement)
         return allowed
 
 
 @dataclass(frozen=True)
 class PointGoal:
-    """The selected points, (m,), follow the transform, and those near them as far as its influence reaches.
+    """The selected points, (m,), follow the transform, and those near them as the influence decides.
 
-    `start` are their world positions, (m, 3); `edges`, (e, 2), connect them, None where nothing does; `origin` is that
-    of an object in Object Mode, None in Edit Mode, where each connected piece of the selection has its own; `free`,
-    (m,), says which may move at all, None: all; `pinned` which of them keep to some directions, None: none.
+    `start` are world positions, (m, 3); `edges`, (e, 2), connect the points, None if nothing does; `origin` is the
+    object's in Object Mode, None in Edit Mode, where each island has its own; `free`, (m,), flags the points that can
+    move, None for all; `pinned` restricts points to some directions, None for none.
     """
 
     selected: Flags
@@ -52,10 +71,10 @@ class PointGoal:
 
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the points, (m, 3)."""
-        goal = self._unlimited(controls, motion)
+        goal = self._unrestricted(controls, motion)
         return goal if self.pinned is None else self.pinned.limited(controls, goal)
 
-    def _unlimited(self, controls: Floats, motion: Motion) -> Floats:
+    def _unrestricted(self, controls: Floats, motion: Motion) -> Floats:
         goal = controls.copy()
         if motion.influence is not None:
             shares = self.shares(motion.influence)
@@ -66,12 +85,12 @@ class PointGoal:
             goal[self.selected] = motion.whole(controls[self.selected])
         return goal
 
-    def reached(self, influence: Influence | None) -> Flags:
-        """Which points the transform moves, (m,)."""
+    def affected(self, influence: Influence | None) -> Flags:
+        """Flags of the points that the transform moves, (m,)."""
         return self.selected if influence is None else self.shares(influence) > 0
 
     def shares(self, influence: Influence) -> Floats:
-        """Share of the transform of each point, (m,)."""
+        """Fraction of the transform for each point, (m,)."""
         if not self.moves:
             return np.zeros(len(self.selected))
         along = influence.connected and self.edges is not None
@@ -94,36 +113,35 @@ class PointGoal:
         return island_centres(self.start, self.selected, self.edges)
 
 
-def point_weights(selected: Flags, of_selected: float, of_others: float, given: Floats) -> Floats:
-    """Response weights of points, selected or not, of the shape of those that the user gave, (m,) or (m, 3)."""
+def point_weights(selected: Flags, of_selected: float, of_others: float, max_weights: Floats) -> Floats:
+    """Response weights of selected and other points, in the shape of `max_weights`, (m,) or (m, 3)."""
     chosen = np.where(selected, of_selected, of_others)
-    return np.asarray(chosen.reshape(-1, *(1 for _ in given.shape[1:])) * given, np.float64)
+    return np.asarray(chosen.reshape(-1, *(1 for _ in max_weights.shape[1:])) * max_weights, np.float64)
 
 
-def stored(frame: Floats, world: Floats, original: Singles, kept: Flags | None = None) -> Singles:
-    """Local coordinates, (m, 3), in single precision, of points in world space.
+def to_stored(frame: Floats, world: Floats, original: Singles, pinned: Flags | None = None) -> Singles:
+    """Convert world positions to stored local coordinates, (m, 3), in single precision.
 
-    Points that are where `original`, (m, 3), the local ones at the start, put them keep those bit by bit: the way to
-    the world and back may lose digits of coordinates that are far smaller than others. So do the single coordinates
-    `kept`, (m, 3), where they differ by rounding alone.
+    Points at their start, given by `original`, (m, 3), keep their coordinates bit by bit, because conversion loses
+    digits of small coordinates. So do the coordinates flagged in `pinned`, (m, 3), if they differ only by rounding.
     """
-    local = as_single(frame, world)
+    local = to_single(frame, world)
     resting = (world == transform_points(frame, original)).all(axis=1)
     local[resting] = original[resting]
-    if kept is not None:
-        restored = kept & _is_rounding(frame, world, original)
+    if pinned is not None:
+        restored = pinned & _is_rounding(frame, world, original)
         local[restored] = original[restored]
     return local
 
 
 def _is_rounding(frame: Floats, world: Floats, original: Singles) -> Flags:
-    """Which local coordinates, (m, 3), of points in world space differ from the original by rounding alone."""
+    """Flags of local coordinates, (m, 3), that differ from the original only by rounding."""
     inverse = np.linalg.inv(frame).astype(np.float64)
     sizes = (np.abs(world) + np.abs(frame[:3, 3])) @ np.abs(inverse[:3, :3]).T
     return np.asarray(np.abs(transform_points(inverse, world) - original) <= ROUNDING * sizes)
 
 
-def as_single(frame: Floats, world: Floats) -> Singles:
-    """Local coordinates, (m, 3), in single precision, of points in world space."""
+def to_single(frame: Floats, world: Floats) -> Singles:
+    """Local coordinates, (m, 3), in single precision, of world positions."""
     local: Singles = transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
     return local

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that move as one: a selected object, all that hangs on it, and what their modifiers tie together."""
+"""Groups of objects that move together rigidly: selected objects, their children, and objects tied to them by
+modifiers.
+"""
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
@@ -7,42 +9,46 @@ from dataclasses import dataclass
 import bpy
 
 from stiv import InputError
+from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
-from stiv.blender.controls.movers import Mover
 from stiv.blender.scene.dependencies import Dependency, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 
 @dataclass(frozen=True)
 class RigidGroup:
-    """`roots` are written, `members` (names, roots included) move along."""
+    """`roots` are written; `members` (names, including the roots) move along."""
 
-    roots: tuple[Mover, ...]
+    roots: tuple[Participant, ...]
     members: frozenset[str]
 
 
-def rigid_groups(movers: list[Mover], evaluations: Collection[str]) -> list[RigidGroup]:
-    """The groups of all rigid movers, in the order of their first roots, as tied together in these evaluations.
+def find_rigid_groups(participants: list[Participant], evaluations: Collection[str]) -> list[RigidGroup]:
+    """Groups of all rigid participants, in the order of their first roots, with their dependencies in these
+    evaluations.
 
-    Raises InputError for objects that cannot be placed, or whose shape depends on what does not move along.
+    Raises InputError for objects that cannot be moved, or whose shape depends on objects that do not move along.
     """
-    groups = [_family(mover) for mover in _topmost([mover for mover in movers if mover.role == "rigid"])]
+    groups = [
+        _family(participant)
+        for participant in _topmost([participant for participant in participants if participant.role == "rigid"])
+    ]
     for group in list(groups):
-        for dependency in _looking_out(group, evaluations):
-            groups = _joined(groups, dependency)
+        for dependency in _outside_dependencies(group, evaluations):
+            groups = _merge_groups(groups, dependency)
     for group in groups:
-        for dependency in _looking_out(group, evaluations):
+        for dependency in _outside_dependencies(group, evaluations):
             raise InputError(
-                f'object "{dependency.user}", {dependency.through}: looks at object "{dependency.used}", which does '
-                "not move along; select that as well, apply the modifier, or deform the object instead"
+                f'object "{dependency.user}", {dependency.through}: depends on object "{dependency.used}", which does '
+                "not move; select it too, or apply that"
             )
     return groups
 
 
-def with_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:
-    """The groups with a surface; the first selected one takes selected groups without surface along.
+def add_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:
+    """Attach selected groups without a surface to the first selected group with one.
 
-    shown: names of the objects with a surface. A group without surface meets nothing and cannot be solved for.
+    shown: names of the objects with a surface. Groups without one cannot collide, and cannot be solved for.
     """
     solid = [group for group in groups if not group.members.isdisjoint(shown)]
     first = next((group for group in solid if group.roots[0].selected), None)
@@ -56,8 +62,8 @@ def with_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[Ri
     return [whole if group is first else group for group in solid]
 
 
-def check_onlookers(moved: Iterable[str], names: Iterable[str], evaluations: Collection[str]) -> None:
-    """Refuse to change objects that others, by name, look at through modifiers and constraints in these evaluations.
+def check_dependents(moved: Iterable[str], names: Iterable[str], evaluations: Collection[str]) -> None:
+    """Refuse to change objects on which other objects depend through modifiers and constraints in these evaluations.
 
     Raises InputError.
     """
@@ -68,34 +74,34 @@ def check_onlookers(moved: Iterable[str], names: Iterable[str], evaluations: Col
         for dependency in dependencies(bpy.data.objects[name], evaluations):
             if dependency.used in changing:
                 raise InputError(
-                    f'object "{name}", {dependency.through}: would change with object "{dependency.used}"; select '
-                    "it as well, or apply or disable that"
+                    f'object "{name}", {dependency.through}: depends on object "{dependency.used}"; select it '
+                    "too, or disable that"
                 )
 
 
 def check_instances(moved: set[str], meshes: Iterable[VisibleMesh]) -> None:
-    """Refuse to change objects that other objects show as instances. Raises InputError."""
+    """Refuse to change objects that others show as instances. Raises InputError."""
     for mesh in meshes:
         if mesh.is_instance and mesh.source in moved:
             raise InputError(
-                f'object "{mesh.source}": is also shown by the instances of object "{mesh.owner.name}", which would '
-                "change too; make the instances real, hide them, or make the object an obstacle"
+                f'object "{mesh.source}": object "{mesh.owner.name}" instances it; make the '
+                "instances real, or hide them"
             )
 
 
-def _topmost(movers: list[Mover]) -> list[Mover]:
-    """Movers that do not hang on another one; those that do move along with it."""
-    names = {mover.reference.name: mover for mover in movers}
+def _topmost(participants: list[Participant]) -> list[Participant]:
+    """Participants without a participating ancestor; the others move along with it."""
+    names = {participant.reference.name: participant for participant in participants}
     top = []
-    for mover in movers:
-        above = [names[name] for name in _ancestors(mover.reference.find()) if name in names]
-        if any(other.selected != mover.selected for other in above):
+    for participant in participants:
+        above = [names[name] for name in _ancestors(participant.reference.find()) if name in names]
+        if any(other.selected != participant.selected for other in above):
             raise InputError(
-                f'object "{mover.reference.name}": hangs on object "{above[0].reference.name}", which moves too; '
-                "give one of them the role of an obstacle, or select both"
+                f'object "{participant.reference.name}": its parent "{above[0].reference.name}" moves too; select both '
+                "or make one an obstacle"
             )
         if not above:
-            top.append(mover)
+            top.append(participant)
     return top
 
 
@@ -107,25 +113,30 @@ def _ancestors(ob: bpy.types.Object) -> list[str]:
     return names
 
 
-def _family(mover: Mover) -> RigidGroup:
-    root = mover.reference.find()
+def _family(participant: Participant) -> RigidGroup:
+    root = participant.reference.find()
     check_placement(root)
     for child in root.children_recursive:
         check_unconstrained(child)
-    return RigidGroup((mover,), frozenset({root.name, *(child.name for child in root.children_recursive)}))
+    return RigidGroup((participant,), frozenset({root.name, *(child.name for child in root.children_recursive)}))
 
 
-def _looking_out(group: RigidGroup, evaluations: Collection[str]) -> list[Dependency]:
+def _outside_dependencies(group: RigidGroup, evaluations: Collection[str]) -> list[Dependency]:
     found = [each for name in sorted(group.members) for each in dependencies(bpy.data.objects[name], evaluations)]
     return [each for each in found if each.used not in group.members]
 
 
-def _joined(groups: list[RigidGroup], dependency: Dependency) -> list[RigidGroup]:
-    """Groups with the two that a dependency ties together made one."""
-    tied = [group for group in groups if dependency.user in group.members or dependency.used in group.members]
-    if len(tied) < 2 or len({root.selected for group in tied for root in group.roots}) > 1:
+def _merge_groups(groups: list[RigidGroup], dependency: Dependency) -> list[RigidGroup]:
+    """Merge the two groups that a dependency connects."""
+    control_seams = [group for group in groups if dependency.user in group.members or dependency.used in group.members]
+    if len(control_seams) < 2 or len({root.selected for group in control_seams for root in group.roots}) > 1:
         return groups
     whole = RigidGroup(
-        tuple(root for group in tied for root in group.roots), frozenset().union(*(group.members for group in tied))
+        tuple(root for group in control_seams for root in group.roots),
+        frozenset().union(*(group.members for group in control_seams)),
     )
-    return [whole if group is tied[0] else group for group in groups if group is tied[0] or group not in tied]
+    return [
+        whole if group is control_seams[0] else group
+        for group in groups
+        if group is control_seams[0] or group not in control_seams
+    ]

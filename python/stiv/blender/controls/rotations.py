@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mathematics of placements: rotation vectors, and what an affine map does to a body that keeps its shape."""
+"""Rotation vectors and rotation matrices."""
 
 import numpy as np
 
 from stiv.blender.scene.arrays import Floats
 
-SINGLE = 2.0**-23  # from 1 to the next number of single precision
+SINGLE = 2.0**-23  # spacing of single-precision numbers at 1
 
 
 def rotation_matrix(vector: Floats) -> Floats:
-    """The rotation by |vector| radians about vector, (3, 3). (Rodrigues)"""
+    """The rotation by |vector| radians about vector, (3, 3) (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
     if angle == 0:
         return np.eye(3)
@@ -20,7 +20,7 @@ def rotation_matrix(vector: Floats) -> Floats:
 
 
 def rotation_vector(matrix: Floats) -> Floats:
-    """The vector of a rotation, its angle in [0, pi]; by way of the unit quaternion, stable for all angles."""
+    """The vector of a rotation, with an angle in [0, pi]; computed from the unit quaternion, stable for all angles."""
     quaternion = _quaternion(matrix)
     length = float(np.linalg.norm(quaternion[1:]))
     if length == 0:
@@ -29,8 +29,8 @@ def rotation_vector(matrix: Floats) -> Floats:
     return vector
 
 
-def nearest_turn(vector: Floats, last: Floats) -> Floats:
-    """The vector of the same rotation, full turns added, that is nearest to `last`: a drag may turn more than once."""
+def nearest_equivalent(vector: Floats, last: Floats) -> Floats:
+    """The vector of the same rotation nearest to `last`, by full turns: a drag may exceed one turn."""
     angle = float(np.linalg.norm(vector))
     reference = last if angle == 0 else vector
     length = float(np.linalg.norm(reference))
@@ -42,7 +42,7 @@ def nearest_turn(vector: Floats, last: Floats) -> Floats:
 
 
 def nearest_rotation(matrix: Floats) -> Floats:
-    """The rotation nearest to a linear map, (3, 3): its polar factor, mirroring left out."""
+    """The rotation nearest to a linear map, (3, 3): its polar factor without reflection."""
     u, _, vt = np.linalg.svd(matrix)
     signs = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0])
     rotation: Floats = (u * signs) @ vt
@@ -50,29 +50,29 @@ def nearest_rotation(matrix: Floats) -> Floats:
 
 
 def is_rotation(matrix: Floats, tolerance: float = 1e-5) -> bool:
-    """Does a (3, 3) matrix keep lengths and handedness, to within single precision?"""
+    """Does a (3, 3) matrix preserve lengths and orientation, up to single precision?"""
     return bool(np.abs(matrix @ matrix.T - np.eye(3)).max() <= tolerance and np.linalg.det(matrix) > 0)
 
 
-def about(centre: Floats, linear: Floats, target: Floats) -> Floats:
-    """The affine map, (4, 4), with a linear part that takes `centre` to `target`."""
+def affine_about(centre: Floats, linear: Floats, target: Floats) -> Floats:
+    """The affine map, (4, 4), with a given linear part, that maps `centre` to `target`."""
     matrix = np.eye(4)
     matrix[:3, :3] = linear
     matrix[:3, 3] = target - linear @ centre
     return matrix
 
 
-def without_rounding(vector: Floats, unit: float = 0.0) -> Floats:
-    """The vector, (3,), with 0 for components that single precision cannot hold beside its length, or beside `unit`.
+def remove_rounding(vector: Floats, unit: float = 0.0) -> Floats:
+    """Set components of a vector, (3,), to 0 that vanish in single precision beside its length, or beside `unit`.
 
-    A solve leaves them where nothing asks for a motion. Blender's fields would show them, as -0.
+    Solves leave such components without a motion. Blender's fields would show them, as -0.
     """
     cleaned: Floats = np.where(np.abs(vector) > SINGLE * max(float(np.linalg.norm(vector)), unit), vector, 0.0)
     return cleaned
 
 
 def _quaternion(r: Floats) -> Floats:
-    """(w, x, y, z) with w >= 0. (Shepperd 1978: the largest component first.)"""
+    """(w, x, y, z) with w >= 0 (Shepperd 1978: the largest component first)."""
     squares = np.array([1 + np.trace(r), *(1 + 2 * r.diagonal() - np.trace(r))])
     k = int(np.argmax(squares))
     skew = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])

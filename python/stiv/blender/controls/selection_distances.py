@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far points are from the selected ones, and which of the selected hang together."""
+"""Distances of points from the selection, and islands of selected points."""
 
 import heapq
 
@@ -13,7 +13,7 @@ Mask = NDArray[np.bool_]
 
 
 def nearest_distances(points: Floats, selected: Mask) -> Floats:
-    """Straight distance of each point, (m, 3), from the nearest selected one, (m,); infinite where none is."""
+    """Distance of each point, (m, 3), from the nearest selected one, (m,); infinite if none is selected."""
     distances = np.where(selected, 0.0, np.inf)
     chosen = points[selected]
     if len(chosen) == 0:
@@ -23,13 +23,13 @@ def nearest_distances(points: Floats, selected: Mask) -> Floats:
         tree.insert(point, number)
     tree.balance()
     nearest = [tree.find(point)[1] for point in points[~selected].tolist()]
-    # From the tree, which is in single precision, only who is nearest.
+    # The tree is in single precision, so it only finds the nearest point.
     distances[~selected] = np.linalg.norm(points[~selected] - chosen[np.array(nearest, np.int64)], axis=1)
     return distances
 
 
 def distances_along(edges: Indices, points: Floats, selected: Mask) -> Floats:
-    """Length of the shortest way along edges, (e, 2), from a selected point, (m,); infinite where there is none.
+    """Length of the shortest path along edges, (e, 2), from a selected point, (m,); infinite without a path.
 
     (Dijkstra 1959.)
     """
@@ -48,9 +48,9 @@ def distances_along(edges: Indices, points: Floats, selected: Mask) -> Floats:
 
 
 def island_centres(points: Floats, selected: Mask, edges: Indices | None) -> Floats:
-    """For each selected point, (k,), the mean of the selected points that hang together with it, (k, 3).
+    """For each selected point, (k,), the mean of its island of connected selected points, (k, 3).
 
-    Without edges all of them hang together.
+    Without edges all selected points are one island.
     """
     chosen = np.flatnonzero(selected)
     labels = np.zeros(len(points), np.int64) if edges is None else _islands(len(points), edges, selected)
@@ -71,13 +71,13 @@ def _neighbours(edges: Indices, points: Floats) -> list[list[tuple[int, float]]]
 
 
 def _islands(count: int, edges: Indices, selected: Mask) -> NDArray[np.int64]:
-    """A number for each point, the same for selected ones that hang together: the smallest spreads along edges."""
+    """Number of each point's island: the smallest number spreads along edges."""
     labels = np.arange(count)
     inside = edges[selected[edges].all(axis=1)]
     while True:
         before = labels.copy()
         np.minimum.at(labels, inside[:, 0], before[inside[:, 1]])
         np.minimum.at(labels, inside[:, 1], before[inside[:, 0]])
-        labels = labels[labels]  # so that it spreads in leaps
+        labels = labels[labels]  # pointer jumping
         if np.array_equal(labels, before):
             return labels

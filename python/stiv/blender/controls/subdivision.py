@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's Subdivision Surface modifier as a deformation of the core."""
+"""Blender's Subdivision Surface modifier as a deformation."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,28 +8,30 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.deformation_cache import remembered
+from stiv.blender.controls.deformation_cache import cached_deformation
 from stiv.blender.scene.arrays import Indices, Singles
 from stiv.blender.scene.mesh_reading import read_creases, read_edges, read_faces
-from stiv.blender.scene.modifier_stack import Subdivision
+from stiv.blender.scene.modifier_stack import SubdivisionStage
 
 
-def subdivide(mesh: bpy.types.Mesh, stage: Subdivision) -> stiv.Deformation:
-    """From world positions of the cage's vertices to those of the subdivided mesh, in Blender's order."""
+def subdivide(mesh: bpy.types.Mesh, stage: SubdivisionStage) -> stiv.Deformation:
+    """Deformation from the cage to the subdivided mesh in world space, in Blender's order of vertices."""
     corners, starts = read_faces(mesh)
     edge_crease, vertex_crease = read_creases(mesh) if stage.use_creases else (None, None)
     cage = (len(mesh.vertices), corners, starts, read_edges(mesh), edge_crease, vertex_crease)
-    return remembered(_smooth, *cage, stage.levels, stage.limit_surface, stage.quality, stage.simple, stage.boundary)
+    return cached_deformation(
+        _smooth, *cage, stage.levels, stage.limit_surface, stage.quality, stage.simple, stage.boundary
+    )
 
 
-def unchanged(count: int) -> stiv.Deformation:
-    """Controls as the surface itself, as a linear deformation that can be stacked."""
+def identity_deformation(count: int) -> stiv.Deformation:
+    """The identity as a linear deformation, for stacking."""
     rows = np.arange(count + 1, dtype=np.int32)
     return stiv.linear(stiv.Weights(rows, rows[:-1], np.ones(count), (count, count)))
 
 
-def stacked(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
-    """Linear deformations with the same controls, their surfaces one after the other."""
+def stack_deformations(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
+    """Stack linear deformations of the same controls."""
     if len(deformations) == 1:
         return deformations[0]
     parts = [stiv.linear_weights(deformation) for deformation in deformations]

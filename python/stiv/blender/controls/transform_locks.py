@@ -1,47 +1,52 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Locks of an object's location, rotation and scale: what is locked keeps its value, or the edit is refused.
+"""Locks of location, rotation and scale: locked properties keep their values, or the edit is refused.
 
-Locked axes of the location leave the other directions to move in. A rigid part turns and grows freely or not at all,
-so that locks of some axes alone cannot be kept while it does.
+Location locks leave the other directions free. Rigid groups rotate and scale freely or not at all, so that locks of
+single axes are refused.
 """
 
 from collections.abc import Sequence
 
 import bpy
+import numpy as np
 
 from stiv import InputError
-from stiv.blender.controls.movers import Mover
+from stiv.blender.controls.control_set import Participant
+from stiv.blender.controls.object_transform import ObjectTransform
+from stiv.blender.controls.points import FreeDirections
 
 AXES = "XYZ"
 
 
-def without_held(movers: Sequence[Mover], kind: str) -> list[Mover]:
-    """The movers but those rigid ones that their locks hold in place, which stay in the way.
+def drop_locked(participants: Sequence[Participant], kind: str) -> list[Participant]:
+    """Drop rigid participants that their locks hold in place; they become obstacles.
 
-    kind: of the edit; what is not selected gives way by moving. Raises InputError for locks that cannot be kept, and
-    where nothing of what is selected is left to move.
+    kind: of the edit; unselected objects yield by moving. Raises InputError for locks that cannot be respected, and if
+    nothing selected can move.
     """
     left = []
-    for mover in movers:
-        ob = mover.reference.find()
-        if mover.role != "rigid" or not _is_held(ob, kind if mover.selected else "move"):
-            left.append(mover)
-    for mover in left:
-        if mover.role == "rigid":
-            _check(mover.reference.find(), kind if mover.selected else "move")
-    if any(mover.selected for mover in movers) and not any(mover.selected for mover in left):
-        name = next(mover.reference.name for mover in movers if mover.selected)
-        raise InputError(f'object "{name}": its transform is locked; unlock it, or deform the object instead')
+    for participant in participants:
+        ob = participant.reference.find()
+        if participant.role != "rigid" or not _is_held(ob, kind if participant.selected else "move"):
+            left.append(participant)
+    for participant in left:
+        if participant.role == "rigid":
+            _check(participant.reference.find(), kind if participant.selected else "move")
+    if any(participant.selected for participant in participants) and not any(
+        participant.selected for participant in left
+    ):
+        name = next(participant.reference.name for participant in participants if participant.selected)
+        raise InputError(f'object "{name}": its transform is locked; unlock it, or deform the object')
     return left
 
 
-def is_locked(ob: bpy.types.Object) -> bool:
-    """Is all of the object's location locked, so that it cannot give way as a whole?"""
+def is_location_locked(ob: bpy.types.Object) -> bool:
+    """Is the location locked along all axes, so that the object cannot yield rigidly?"""
     return all(ob.lock_location)
 
 
-def may_turn(ob: bpy.types.Object) -> bool:
-    """Is none of the object's rotation locked?"""
+def can_rotate(ob: bpy.types.Object) -> bool:
+    """Is the rotation free of locks?"""
     return not any(ob.lock_rotation) and not (ob.lock_rotations_4d and ob.lock_rotation_w)
 
 
@@ -61,6 +66,32 @@ def _check(ob: bpy.types.Object, kind: str) -> None:
         if any(axes):
             names = ", ".join(axis for axis, lock in zip(AXES, axes, strict=True) if lock)
             raise InputError(
-                f'object "{ob.name}": its {what} is locked along {names}, which cannot be kept while the rest gives '
-                "way; unlock it, lock all of it, or make the object an obstacle"
+                f'object "{ob.name}": its {what} is locked along {names}, which collisions may '
+                "change; unlock it, or lock all axes"
             )
+
+
+def find_free_directions(
+    objects: Sequence[bpy.types.Object], starts: Sequence[ObjectTransform]
+) -> FreeDirections | None:
+    """Directions in which objects can move together while each keeps its locked location channels.
+
+    Channels are along the axes of the parent. None: no channel is locked.
+    """
+    rows = [
+        np.linalg.inv(start.parent_matrix[:3, :3])[list(ob.lock_location)]
+        for ob, start in zip(objects, starts, strict=True)
+    ]
+    normals = np.concatenate(rows)
+    if len(normals) == 0:
+        return None
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    _, sizes, directions = np.linalg.svd(normals)
+    locked = int((sizes > 1e-6).sum())
+    return FreeDirections(directions.T.astype(np.float64), np.arange(3) >= locked)
+
+
+def restore_locked(ob: bpy.types.Object, start: ObjectTransform) -> None:
+    """Restore the locked location channels bit by bit, because conversion through world space rounds them."""
+    for axis in np.flatnonzero(ob.lock_location):
+        ob.location[axis] = start.location[axis]

@@ -13,58 +13,56 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import stiv
-from stiv.blender.controls.control_set import Part
+from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.motion import Influence, Motion
-from stiv.blender.controls.movers import Mover
-from stiv.blender.controls.participants import find_movers
-from stiv.blender.edit.increments import motions_toward
-from stiv.blender.edit.results import summed
-from stiv.blender.edit.sessions import split, stacked
-from stiv.blender.edit.snapshot import Beginning, moving_vertices, read_beginning
-from stiv.blender.edit.solver import Solving
-from stiv.blender.edit.state_writer import Showing, WriteReport
+from stiv.blender.controls.participants import find_participants
+from stiv.blender.edit.increments import Path, split_motion
+from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
+from stiv.blender.edit.sessions import split_controls, stack_controls
+from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
+from stiv.blender.edit.solver import EditSolver
+from stiv.blender.edit.state_writer import StateWriter, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
-from stiv.blender.edit.transform_path import Path
-from stiv.blender.edit.unguarded import as_stored, objects_that_meet, result_at
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.culling import Reach
+from stiv.blender.scene.culling import CullingBox
 from stiv.blender.settings import EditSettings, check_kind
 
 
 class BlenderEdit:
-    """An edit from its beginning to its last state written. Keeps no reference of Blender's between calls.
+    """An edit from the snapshot of the scene to the last state written. It holds no references to Blender's data
+    between calls.
 
     Attributes:
-        dropped: which exclusions of intersections no longer count, empty if all do.
-        guard: the evaluations that are kept free of intersections.
-        start_digest: equal for edits that begin with the same controls, surfaces that move and placements.
-        carried: names of the objects whose strands follow what moves, and are no obstacles.
+        dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
+        guard: the evaluations that stay free of intersections.
+        start_digest: equal for edits that start with the same controls, moving surfaces and placements.
+        carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
-    def __init__(self, beginning: Beginning) -> None:
+    def __init__(self, snapshot: EditSnapshot) -> None:
         """Use `begin`."""
-        settings = beginning.settings
-        self.dropped, self.start_digest = beginning.dropped, beginning.digest
-        self.guard, self.carried = beginning.guard, beginning.carried
-        self._hidden, self._parts = beginning.hidden, beginning.parts
-        self._selected_weight = settings.weight(True)
+        settings = snapshot.settings
+        self.dropped_exclusions, self.start_digest = snapshot.dropped_exclusions, snapshot.digest
+        self.guard, self.carried = snapshot.guard, snapshot.carried
+        self._hidden, self._control_sets = snapshot.hidden, snapshot.control_sets
+        self._selected_weight = settings.response_weight(True)
         self._influence: Influence | None = None
-        self._start = stacked([part.controls for part in self._parts])
+        self._start = stack_controls([control_set.controls for control_set in self._control_sets])
         self._goal = self._start
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
-        self._solving = Solving(beginning.assembly, self._parts, self._start, settings)
-        self._showing = Showing(self._parts, self._solving, settings)
+        self._solver = EditSolver(snapshot.assembly, self._control_sets, self._start, settings)
+        self._writer = StateWriter(self._control_sets, self._solver, settings)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
         """Read the scene for an edit of this kind ("move", "rotate", "scale"); changes nothing.
 
-        Raises InputError naming object, element and ways out, StartIntersectsError for a start that intersects.
+        Raises InputError naming object, element and ways out, StartIntersectsError if the start intersects.
         """
         check_kind(kind)
-        return cls.begin_with(context, settings, kind, find_movers(context, settings))
+        return cls.begin_with(context, settings, kind, find_participants(context, settings))
 
     @classmethod
     def begin_with(
@@ -72,68 +70,72 @@ class BlenderEdit:
         context: bpy.types.Context,
         settings: EditSettings,
         kind: str,
-        movers: Sequence[Mover],
-        adapt: Callable[[Part], Part] = lambda part: part,
-        reach: Reach | None = None,
+        participants: Sequence[Participant],
+        adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
+        culling: CullingBox | None = None,
     ) -> BlenderEdit:
-        """The same with movers that were found otherwise; `adapt` may change who responds in a part.
+        """Begin with given participants. `adapt` may change the weights and goal rule of each control set.
 
-        What does not touch a `reach` does not take part.
+        Obstacles outside the `culling` box are left out.
         """
-        return cls(read_beginning(context, settings, kind, movers, adapt, reach))
+        return cls(take_snapshot(context, settings, kind, participants, adapt, culling))
 
     @property
     def summary(self) -> Summary:
-        """Who takes part; looks at every triangle, which is why a drag does not ask for it."""
-        summary = summarise(self.assembly, self._parts, self._hidden, self.guard)
-        return replace(summary, warnings=(self.dropped, *summary.warnings)) if self.dropped else summary
+        """The participants and their warnings. Examines every triangle, so a drag does not call it."""
+        summary = summarise(self.assembly, self._control_sets, self._hidden, self.guard)
+        return (
+            replace(summary, warnings=(self.dropped_exclusions, *summary.warnings))
+            if self.dropped_exclusions
+            else summary
+        )
 
     @property
-    def parts(self) -> tuple[Part, ...]:
-        """What moves or gives way, in the order of the controls."""
-        return self._parts
+    def control_sets(self) -> tuple[ControlSet, ...]:
+        """The control sets that move or yield, in the order of the controls."""
+        return self._control_sets
 
     @property
     def controls(self) -> Floats:
-        """Accepted controls of all parts, (m, 3); those of the goal while interference is off."""
-        return self._solving.session.controls if self._unguarded is None else self._unguarded
+        """Accepted controls of all control sets, (m, 3); those of the goal while collisions are off."""
+        return self._solver.session.controls if self._unguarded is None else self._unguarded
 
     @property
     def surface(self) -> Floats:
-        """The surface of `controls`, (N, 3)."""
+        """Surface of `controls`, (N, 3)."""
         if self._unguarded is not None:
-            return self._solving.deformation.surface(self._unguarded)
-        return self._solving.session.surface
+            return self._solver.deformation.surface(self._unguarded)
+        return self._solver.session.surface
 
     def surface_of(self, controls: Floats) -> Floats:
-        """The surface, (N, 3), of controls, (m, 3), accepted or not."""
-        return self._solving.deformation.surface(controls)
+        """Surface, (N, 3), of any controls, (m, 3), accepted or not."""
+        return self._solver.deformation.surface(controls)
 
     def least_distance(self) -> stiv.LeastDistance | None:
-        """How near objects are to each other in the accepted state, far obstacles left out; None without a session."""
-        return self._solving.session.least_distance() if self._solving.has_begun else None
+        """Least distance between objects in the accepted state, without culled obstacles; None without a session."""
+        return self._solver.session.least_distance() if self._solver.has_session else None
 
     @property
     def assembly(self) -> Assembly:
-        """The surface's objects and faces, with the cuts of bent faces that are kept free."""
-        return self._solving.assembly
+        """Objects and faces of the surface, including the extra triangles of bent faces."""
+        return self._solver.assembly
 
     @property
     def goal(self) -> Floats:
-        """What the controls of all parts are dragged to, (m, 3)."""
+        """The goal of all controls, (m, 3)."""
         return self._goal
 
     def goal_of(self, motion: Motion | ArrayLike) -> Floats:
-        """The goal, (m, 3), that a motion would have. Raises InputError as `drag`."""
+        """Goal, (m, 3), for a motion. Raises InputError as `drag` does."""
         return self._goal_of(Motion.of(motion))
 
     def moving_points(self, controls: Floats) -> Floats:
-        """The part of the surface, (n, 3), that follows the controls, (m, 3)."""
+        """The points of the surface, (n, 3), that follow the controls, (m, 3)."""
         return self.surface_of(controls)[self._moving_vertices]
 
     @cached_property
     def _moving_vertices(self) -> Indices:
-        return moving_vertices(self.assembly, self._parts)
+        return find_moving_vertices(self.assembly, self._control_sets)
 
     @property
     def _moving_points_at_rest(self) -> Floats:
@@ -143,11 +145,17 @@ class BlenderEdit:
     def moving(self) -> frozenset[str]:
         """Names of the objects whose surface follows the transform."""
         meshes = self.assembly.meshes
-        return frozenset(meshes[index].owner.name for part in self._parts if part.rule.moves for index in part.surfaces)
+        return frozenset(
+            meshes[index].owner.name
+            for control_set in self._control_sets
+            if control_set.rule.moves
+            for index in control_set.surfaces
+        )
 
-    def take_up(self, controls: ArrayLike) -> bool:
-        """Go on from controls, (m, 3), that an edit from the same beginning accepted. False, with nothing changed, if
-        they are not free of intersections here.
+    def resume_from(self, controls: ArrayLike) -> bool:
+        """Resume from controls, (m, 3), that an edit with the same start accepted.
+
+        Returns False, with nothing changed, if they intersect in this edit.
         """
         accepted = np.asarray(controls, np.float64)
         if accepted.shape != self._start.shape:
@@ -156,133 +164,140 @@ class BlenderEdit:
             self._unguarded = accepted
             return True
         try:
-            self._solving.go_on_from(accepted, accepted)
+            self._solver.restart_from(accepted, accepted)
         except stiv.StartIntersectsError:
-            self._solving.go_on_from(self._start, self._start)
+            self._solver.restart_from(self._start, self._start)
             return False
         return True
 
     @property
     def interference(self) -> bool:
-        """Is what is written free of intersections? Changed by `set_interference`."""
+        """Are collisions on? Changed by `set_interference`."""
         return self._unguarded is None
 
     def set_interference(self, on: bool) -> str:
-        """Let surfaces go through each other from now on, or no more; returns why the state is not kept, or "".
+        """Switch collisions on or off; returns why the present state was rejected, or "".
 
-        Off: drags go to their goals, whose results have the status "unguarded", and `write` tests nothing. On again:
-        a state that is free, on Blender's own evaluation too, is gone on from, wherever surfaces went through each
-        other on the way there. From any other the edit goes back to the last state before interference was off, which
-        the next `write` shows; where there is none, it stays off. Raises SceneChangedError.
+        Off: drags reach their goals with the status "unguarded", and `write` tests nothing. On: the edit resumes from
+        the present state if that is free of intersections, in Blender's evaluation too. Otherwise it returns to the
+        last state before collisions were switched off, which the next `write` shows; without one, collisions stay off.
+        Raises SceneChangedError.
         """
         if on == self.interference:
             return ""
         if not on:
             self._unguarded = self.controls
             return ""
-        shown, self._unguarded = self.controls, None
-        known = self._solving.session.controls if self._solving.has_begun else None
+        present, self._unguarded = self.controls, None
+        last_accepted = self._solver.session.controls if self._solver.has_session else None
         try:
-            self._solving.go_on_from(shown, self._goal)
-            reason = self._showing.show(shown).message
+            self._solver.restart_from(present, self._goal)
+            reason = self._writer.write_and_verify(present).message
         except stiv.StartIntersectsError as error:
-            reason = f"{objects_that_meet(error.pairs, self.assembly.surface)} go through each other here"
+            reason = f"{intersecting_objects(error.pairs, self.assembly.surface)} intersect here"
         if not reason:
             return ""
-        if known is None:
-            self._solving.forget()
-            self._unguarded = shown
-            return f"interference stays off: {reason}"
-        self._solving.go_on_from(known, known)
+        if last_accepted is None:
+            self._solver.discard_session()
+            self._unguarded = present
+            return f"collisions stay off: {reason}"
+        self._solver.restart_from(last_accepted, last_accepted)
         return f"back to the last state without intersections: {reason}"
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
-        """Solve for an absolute goal: a motion or its matrix, (4, 4), of what is selected, since the beginning.
+        """Solve for an absolute goal: a motion, or its matrix (4, 4), of the selection since the start.
 
-        `cancel` and `progress` as of stiv.EditSession. Raises InputError for a matrix that is not finite.
+        `cancel` and `progress` are those of stiv.EditSession. Raises InputError if the matrix is not finite.
         """
-        wanted = Motion.of(motion)
-        self._respond(wanted.influence)
-        self._goal = self._goal_of(wanted)
+        chosen_motion = Motion.of(motion)
+        self._apply_influence(chosen_motion.influence)
+        self._goal = self._goal_of(chosen_motion)
         if self._unguarded is not None:
-            self._unguarded = as_stored(self._parts, self._split(self._goal))
-            return result_at(self._solving.deformation, self._unguarded)
-        return self._solving.solve(self._goal, **execution)
+            self._unguarded = round_to_storage(self._control_sets, self._split(self._goal))
+            return unguarded_result(self._solver.deformation, self._unguarded)
+        return self._solver.solve(self._goal, **execution)
 
     def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
-        """Solve for a goal of the controls of all parts, (m, 3)."""
+        """Solve for a goal of all controls, (m, 3)."""
         self._goal = goal
-        return self._solving.solve(goal, **execution)
+        return self._solver.solve(goal, **execution)
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
-        """Solve for the same goal given at once: approached in increments of a drag's size, then settled.
+        """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
 
-        path: the way to the matrix, for what it cannot tell (more than half a turn); None: the shortest.
+        path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
         results = []
-        for increment in motions_toward(Motion.of(motion), path, self._moving_points_at_rest):
+        for increment in split_motion(Motion.of(motion), path, self._moving_points_at_rest):
             results.append(self.drag(increment, **execution))
             if results[-1].status in ("cancelled", "budget"):
-                return summed(results)
-        return summed([*results, self.settle(**execution)])
+                return merge_results(results)
+        return merge_results([*results, self.settle(**execution)])
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
         if self._unguarded is not None:
-            return result_at(self._solving.deformation, self._unguarded)
-        return self._solving.solve(None, **execution)
+            return unguarded_result(self._solver.deformation, self._unguarded)
+        return self._solver.solve(None, **execution)
 
     def write(self) -> WriteReport:
-        """Write the accepted controls, read Blender's evaluation back and test it (see `Showing`).
+        """Write the accepted controls, read Blender's evaluation back and test it (see `StateWriter`).
 
-        With interference off nothing is tested. Raises SceneChangedError when an object is gone or was changed.
+        Nothing is tested while collisions are off. Raises SceneChangedError if an object was removed or changed.
         """
         if self._unguarded is not None:
-            self._showing.put(self._unguarded)
+            self._writer.write(self._unguarded)
             return WriteReport(True)
-        return self._showing.show_accepted(self._goal)
+        return self._writer.write_accepted(self._goal)
 
     def is_shown(self) -> bool:
-        """Does what Blender shows now, whoever wrote it, pass as the accepted state does? Writes nothing."""
-        return self._showing.verify(self.surface).passed
+        """Does Blender's present evaluation pass the test against the accepted state? Writes nothing."""
+        return self._writer.verify(self.surface).passed
 
     def restore(self) -> None:
-        """Put everything back, bit by bit, as it was at the beginning. Raises SceneChangedError.
+        """Restore the start bit by bit. Raises SceneChangedError.
 
-        An edit that began with interference off has it off again.
+        Collisions are off again if the edit began with them off.
         """
-        for part in self._parts:
-            part.writer.restore()
+        for control_set in self._control_sets:
+            control_set.writer.restore()
         bpy.context.view_layer.update()
         self._goal = self._start
         if self._unguarded is not None or not self._began_free:
             self._unguarded = self._start
         if self._began_free:
-            self._solving.go_on_from(self._start, self._goal)
+            self._solver.restart_from(self._start, self._goal)
         else:
-            self._solving.forget()
+            self._solver.discard_session()
 
     def _split(self, controls: Floats) -> list[Floats]:
-        return split(controls, self._parts)
+        return split_controls(controls, self._control_sets)
 
-    def _respond(self, influence: Influence | None) -> None:
-        """Let the points within an influence respond as those that are selected do."""
+    def _apply_influence(self, influence: Influence | None) -> None:
+        """Give points within the influence the response weight of selected points."""
         if influence != self._influence:
             self._influence = influence
-            self._solving.weigh(
+            self._solver.set_weights(
                 [
-                    _chosen(part.rule.reached(influence), self._selected_weight * part.given, part.weights)
-                    for part in self._parts
+                    _merge_weights(
+                        control_set.rule.affected(influence),
+                        self._selected_weight * control_set.max_weights,
+                        control_set.weights,
+                    )
+                    for control_set in self._control_sets
                 ]
             )
 
     def _goal_of(self, motion: Motion) -> Floats:
         last = self._split(self._goal)
-        return stacked(
-            [part.rule.goal(part.controls, old, motion) for part, old in zip(self._parts, last, strict=True)]
+        return stack_controls(
+            [
+                control_set.rule.goal(control_set.controls, old, motion)
+                for control_set, old in zip(self._control_sets, last, strict=True)
+            ]
         )
 
 
-def _chosen(reached: NDArray[np.bool_], weights: Floats, others: Floats) -> Floats:
-    """`weights` of the controls that are reached, (m,), and `others` of the rest; (m,) or (m, 3)."""
-    return np.asarray(np.where(reached.reshape(-1, *(1 for _ in weights.shape[1:])), weights, others), np.float64)
+def _merge_weights(affected: NDArray[np.bool_], weights: Floats, others: Floats) -> Floats:
+    """`weights` for affected controls, (m,), and `others` for the rest; (m,) or (m, 3)."""
+    return np.asarray(np.where(affected.reshape(-1, *(1 for _ in weights.shape[1:])), weights, others), np.float64)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An edit for drags in large scenes: obstacles, and parts of large ones, are taken in when what moves comes near."""
+"""Edits in large scenes: distant obstacles, and distant faces of large ones, are left out until the edit approaches
+them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import bpy
@@ -11,119 +13,127 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
+from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.motion import Motion
-from stiv.blender.controls.participants import find_movers
+from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.culling import Reach, find_reach
+from stiv.blender.scene.culling import CullingBox, find_culling_box
 from stiv.blender.settings import EditSettings, check_kind
 
-MOST_WIDENINGS = 4  # then all obstacles are taken in, so that it ends
+MAX_WIDENINGS = 4  # then all obstacles are loaded, which bounds the number of restarts
 
 
-def begin_nearby(context: bpy.types.Context, settings: EditSettings, kind: str) -> NearbyEdit | BlenderEdit:
-    """An edit as of `BlenderEdit.begin`; in a large scene without the obstacles, and parts of them, that are far yet.
+def begin_culled_edit(context: bpy.types.Context, settings: EditSettings, kind: str) -> CulledEdit | BlenderEdit:
+    """Begin an edit as `BlenderEdit.begin` does; in large scenes without distant obstacles.
 
-    Raises what that one raises.
+    Raises the same errors.
     """
     check_kind(kind)
-    movers = find_movers(context, settings)
-    reach = find_reach(context, movers, settings)
-    if reach is None:
-        return BlenderEdit.begin_with(context, settings, kind, movers)
-    return NearbyEdit(context, settings, kind, reach)
+    participants = find_participants(context, settings)
+    culling = find_culling_box(context, names_of(participants), settings)
+    if culling is None:
+        return BlenderEdit.begin_with(context, settings, kind, participants)
+    return CulledEdit(context, settings, kind, culling)
 
 
-class NearbyEdit:
-    """A BlenderEdit among the obstacles within a reach; everything that is not told here is that of the edit within.
+class CulledEdit:
+    """A BlenderEdit with the obstacles of a culling box; undocumented members are those of the inner edit.
 
-    What it accepts stays within the reach, so that it meets nothing of what is left out. As soon as a goal or a
-    solution leaves the reach, an edit with a wider one goes on from the state shown last.
+    Accepted states stay inside the box, so they cannot intersect what is left out. Once a goal or a solution leaves the
+    box, an edit with a larger box resumes from the state written last.
     """
 
-    def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, reach: Reach) -> None:
-        """Use `begin_nearby`."""
+    def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, culling: CullingBox) -> None:
+        """Use `begin_culled_edit`."""
         self._settings, self._kind = settings, kind
-        self._reach: Reach | None = reach
-        movers = find_movers(context, settings)
-        self._edit = BlenderEdit.begin_with(context, settings, kind, movers, reach=reach)
-        self._shown = self._edit.controls
+        self._culling: CullingBox | None = culling
+        participants = find_participants(context, settings)
+        self._edit = BlenderEdit.begin_with(context, settings, kind, participants, culling=culling)
+        self._written = self._edit.controls
         self._widened = 0
 
     def __getattr__(self, name: str) -> Any:
-        """Whatever else an edit has."""
+        """All other members of the inner edit."""
         return getattr(self._edit, name)
 
     @property
-    def has_all(self) -> bool:
-        """Are all obstacles taken in?"""
-        return self._reach is None
+    def has_all_obstacles(self) -> bool:
+        """Are all obstacles loaded?"""
+        return self._culling is None
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
-        """As of BlenderEdit."""
+        """See BlenderEdit."""
         goal = self._edit.goal_of(motion)
-        if self._edit.interference and not self._within([goal]):
+        if self._edit.interference and not self._is_within_box([goal]):
             self._widen([goal])
         result = self._edit.drag(motion, **execution)
-        while not self._stays(result):
+        while not self._stays_within_box(result):
             self._widen([goal, *result.path, result.controls])
             result = self._edit.drag(motion, **execution)
         return result
 
     def settle(self, **execution: Any) -> stiv.EditResult:
-        """As of BlenderEdit."""
+        """See BlenderEdit."""
         goal = self._edit.goal
         result = self._edit.settle(**execution)
-        while not self._stays(result):
+        while not self._stays_within_box(result):
             self._widen([goal, *result.path, result.controls])
             result = self._edit.drag_to(goal, **execution)
         return result
 
     def set_interference(self, on: bool) -> str:
-        """As of BlenderEdit. While it is off surfaces may go anywhere."""
-        self._go_on_within(None)
+        """See BlenderEdit. Loads all obstacles first, because surfaces may go anywhere while collisions are off."""
+        self._restart_within(None)
         return self._edit.set_interference(on)
 
     def write(self) -> WriteReport:
-        """As of BlenderEdit."""
+        """See BlenderEdit."""
         report = self._edit.write()
-        self._shown = self._edit.controls
-        if report.result is not None:  # solved again, by a way that was not looked at
-            self._go_on_within(None)
+        self._written = self._edit.controls
+        if report.result is not None:  # solved again, along a path that was not checked against the box
+            self._restart_within(None)
         return report
 
     def restore(self) -> None:
-        """As of BlenderEdit."""
+        """See BlenderEdit."""
         self._edit.restore()
-        self._shown = self._edit.controls
+        self._written = self._edit.controls
 
-    def _stays(self, result: stiv.EditResult) -> bool:
-        return not self._edit.interference or self._within([*result.path, result.controls])
+    def _stays_within_box(self, result: stiv.EditResult) -> bool:
+        return not self._edit.interference or self._is_within_box([*result.path, result.controls])
 
-    def _within(self, places: Iterable[Floats]) -> bool:
-        return self._reach is None or all(self._reach.contains(self._edit.moving_points(place)) for place in places)
+    def _is_within_box(self, states: Iterable[Floats]) -> bool:
+        return self._culling is None or all(self._culling.contains(self._edit.moving_points(state)) for state in states)
 
-    def _widen(self, places: Iterable[Floats]) -> None:
-        """Go on within a reach around the last one and these places; after a few times, among all obstacles."""
-        if self._reach is None:
+    def _widen(self, states: Iterable[Floats]) -> None:
+        """Restart with a box around the present one and these states; after several times, with all obstacles."""
+        if self._culling is None:
             return
-        corners = np.stack([self._reach.low, self._reach.high])
-        beyond = np.concatenate([corners, *(self._edit.moving_points(place) for place in places)])
+        corners = np.stack([self._culling.low, self._culling.high])
+        beyond = np.concatenate([corners, *(self._edit.moving_points(state) for state in states)])
         self._widened += 1
-        movers = find_movers(bpy.context, self._settings)
-        few = self._widened <= MOST_WIDENINGS
-        self._go_on_within(find_reach(bpy.context, movers, self._settings, beyond) if few else None)
+        participants = find_participants(bpy.context, self._settings)
+        few = self._widened <= MAX_WIDENINGS
+        self._restart_within(
+            find_culling_box(bpy.context, names_of(participants), self._settings, beyond) if few else None
+        )
 
-    def _go_on_within(self, reach: Reach | None) -> None:
-        """Begin again among the obstacles of a reach, None for all, and go on from the state shown last."""
-        if self._reach is None:
+    def _restart_within(self, culling: CullingBox | None) -> None:
+        """Restart with the obstacles of a box (None: all of them) and resume from the state written last."""
+        if self._culling is None:
             return
-        shown = self._shown
+        shown = self._written
         self._edit.restore()
-        movers = find_movers(bpy.context, self._settings)
-        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, movers, reach=reach)
-        self._reach = reach
-        if self._edit.take_up(shown):
+        participants = find_participants(bpy.context, self._settings)
+        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, participants, culling=culling)
+        self._culling = culling
+        if self._edit.resume_from(shown):
             self._edit.write()
-        self._shown = self._edit.controls
+        self._written = self._edit.controls
+
+
+def names_of(participants: Sequence[Participant]) -> set[str]:
+    """Names of the participants."""
+    return {participant.reference.name for participant in participants}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an overlay draws, as plain arrays of world positions: contacts of an edit, faces that intersect."""
+"""Data for the overlay as arrays of world positions: contacts of an edit, and intersecting faces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,44 +10,44 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.edit.blender_edit import BlenderEdit
-from stiv.blender.edit.culled_edit import NearbyEdit
+from stiv.blender.edit.culled_edit import CulledEdit
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.evaluated_scene import read_scene
 from stiv.blender.scene.evaluations import SHOWN
-from stiv.blender.verify.verification import FacePair
 
-MOST_CONTACTS = 2000  # that are drawn; of more, as many evenly chosen ones
+MAX_CONTACTS = 2000  # an even selection is drawn if there are more
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Where an edit was held up.
+    """Contacts of an edit.
 
     Attributes:
-        points: (k, 3) the middle between what meets.
-        blocked: (k, 3) unit direction in which the side that moves cannot go on; where both move, that of the first.
+        points: (k, 3) midpoints between the contact points of both sides.
+        blocked: (k, 3) unit directions in which the moving side is blocked; that of the first side if both move.
     """
 
     points: Floats
     blocked: Floats
 
 
-def contacts_of(edit: BlenderEdit | NearbyEdit, result: stiv.EditResult) -> Contacts:
+def contacts_of(edit: BlenderEdit | CulledEdit, result: stiv.EditResult) -> Contacts:
     """Contacts that the last call of an edit found, at its accepted surface."""
     moving = np.zeros(len(edit.surface), np.bool_)
-    for index in (index for part in edit.parts for index in part.surfaces):
+    for index in (index for control_set in edit.control_sets for index in control_set.surfaces):
         moving[edit.assembly.vertices(index)] = True
     return contacts_at(result.events, edit.surface, moving)
 
 
 def contacts_at(events: stiv.Events, surface: Floats, moving: NDArray[np.bool_]) -> Contacts:
-    """Contacts of events at positions of the surface, (N, 3), of which these vertices, (N,), may move.
+    """Contacts of events at surface positions, (N, 3); `moving`, (N,), flags the vertices that may move.
 
-    The weights of an event give the point on its first side where they are positive, on its second where negative; its
-    normal points to where the first side is pushed.
+    Positive weights of an event give the point on its first side, negative ones that on its second side. The normal
+    points in the direction in which the first side is pushed.
     """
     count = len(events.kind)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_CONTACTS)).astype(int))
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MAX_CONTACTS)).astype(int))
     vertices, weights = events.vertices[chosen], events.weights[chosen]
     corners = surface[vertices]
     first = np.einsum("kc,kcx->kx", np.maximum(weights, 0), corners)
@@ -58,7 +58,7 @@ def contacts_at(events: stiv.Events, surface: Floats, moving: NDArray[np.bool_])
 
 
 def triangles_of(context: bpy.types.Context, pairs: Sequence[FacePair]) -> Floats:
-    """The triangles, (t, 3, 3), of all faces in pairs, as Blender shows them now."""
+    """Triangles, (t, 3, 3), of all faces in the pairs, as Blender shows them now."""
     faces: dict[str, set[int]] = {}
     for element in (each for pair in pairs for each in (pair.first, pair.second)):
         if element.kind == "face" and element.evaluation == SHOWN:

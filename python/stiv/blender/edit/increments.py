@@ -1,31 +1,73 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The increments of a drag's size in which a typed value is approached."""
+"""Splits a typed value into increments of the size of a drag's."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from stiv.blender.controls.motion import Motion
-from stiv.blender.edit.transform_path import Path, increments, transform_at
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.controls.rotations import nearest_rotation, rotation_matrix, rotation_vector
+from stiv.blender.scene.arrays import Floats, transform_points
 
-LONGEST = 0.02  # increment, in diagonals of what moves
-MOST = 200  # increments of one value
+Path = Callable[[float], Floats]  # from a fraction in [0, 1] to a transform, (4, 4); 0 is the identity
+LARGEST_TURN = 0.1  # radians for each increment
+SAMPLES = 16  # of a path, to measure its length
 
 
-def motions_toward(target: Motion, path: Path | None, points: Floats) -> Iterator[Motion]:
-    """Motions of an edit, the target last, of which none takes a point, (n, 3), much farther than a drag would.
+def interpolate_transform(matrix: Floats, fraction: float) -> Floats:
+    """Interpolate a transform, (4, 4), between the identity and the matrix: points move on arcs about the fixed point.
 
-    path: the way to the target's matrix, for what that cannot tell (more than half a turn); None: the shortest.
+    The polar decomposition splits the linear part into rotation and stretch. The fixed point is the least-squares
+    solution of (1 - A) x = b nearest to the origin; the residual of b is a translation. The rotation takes the shorter
+    way.
     """
-    way: Path = path or (lambda fraction: transform_at(target.matrix, fraction))
+    if fraction >= 1:
+        return matrix
+    linear, shift = matrix[:3, :3], matrix[:3, 3]
+    rotation = nearest_rotation(linear)
+    stretch = rotation.T @ linear
+    part = np.eye(4)
+    stretched = np.eye(3) + fraction * (stretch - np.eye(3))
+    part[:3, :3] = rotation_matrix(fraction * rotation_vector(rotation)) @ stretched
+    fixed = np.linalg.pinv(np.eye(3) - linear, rcond=1e-9) @ shift
+    left = shift - (fixed - linear @ fixed)
+    part[:3, 3] = fixed - part[:3, :3] @ fixed + fraction * left
+    return part
+
+
+def count_increments(path: Path, points: Floats, longest: float, most: int) -> int:
+    """Number of increments, at most `most`, such that no point, (n, 3), moves much farther than `longest` in one."""
+    if len(points) == 0 or longest <= 0:
+        return 1
+    matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
+    states = [transform_points(matrix, points) for matrix in matrices]
+    length = sum(float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(states))
+    turn = sum(_angle(after[:3, :3] @ np.linalg.pinv(before[:3, :3])) for before, after in pairwise(matrices))
+    return int(np.clip(np.ceil(max(length / longest, turn / LARGEST_TURN)), 1, most))
+
+
+def _angle(linear: Floats) -> float:
+    return float(np.linalg.norm(rotation_vector(nearest_rotation(linear))))
+
+
+LONGEST = 0.02  # increment, in diagonals of the moving points
+MOST = 200  # increments for each value
+
+
+def split_motion(target: Motion, path: Path | None, points: Floats) -> Iterator[Motion]:
+    """Motions of increasing size, the target last, such that no point, (n, 3), moves much farther than in a drag.
+
+    path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
+    """
+    to_matrix: Path = path or (lambda fraction: interpolate_transform(target.matrix, fraction))
     diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
-    count = increments(way, points, LONGEST * diagonal, MOST)
+    count = count_increments(to_matrix, points, LONGEST * diagonal, MOST)
     for step in range(1, count):
         fraction = step / count
         rotation = None if target.rotation is None else fraction * target.rotation
-        motion = replace(target, matrix=way(fraction), rotation=rotation)
-        if np.linalg.det(motion.linear):  # else flat for a moment, on the way to a mirror image
+        motion = replace(target, matrix=to_matrix(fraction), rotation=rotation)
+        if np.linalg.det(motion.linear):  # singular only on the way to a mirror image
             yield motion
     yield target

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The session that solves for the parts of an assembly."""
+"""Makes the session that solves for all control sets of an assembly."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,28 +8,29 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
-from stiv.blender.controls.control_set import Part
+from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.evaluations import RENDER
+from stiv.blender.scene.exclusions import find_excluded_triangles
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 
 
-def mobilities(count: int, parts: Sequence[Part]) -> list[str]:
-    """Of each of `count` visible meshes, as the parts let them move."""
+def mobilities(count: int, control_sets: Sequence[ControlSet]) -> list[str]:
+    """Mobility of each of `count` visible meshes: "fixed", "rigid" or "deformable"."""
     mobility = ["fixed"] * count
-    for part in parts:
-        for index in part.surfaces:
-            mobility[index] = "rigid" if part.role == "rigid" else "deformable"
+    for control_set in control_sets:
+        for index in control_set.surfaces:
+            mobility[index] = "rigid" if control_set.role == "rigid" else "deformable"
     return mobility
 
 
-def seams_of(count: int, parts: Sequence[Part]) -> list[Seams | None]:
-    """The seams of each of `count` visible meshes, as the parts keep them closed."""
+def seams_of(count: int, control_sets: Sequence[ControlSet]) -> list[Seams | None]:
+    """Seams that the control sets keep closed, for each of `count` visible meshes."""
     seams: list[Seams | None] = [None] * count
-    for part in parts:
-        for index, each in zip(part.surfaces, part.seams, strict=False):
+    for control_set in control_sets:
+        for index, each in zip(control_set.surfaces, control_set.seams, strict=False):
             seams[index] = each
     return seams
 
@@ -37,42 +38,41 @@ def seams_of(count: int, parts: Sequence[Part]) -> list[Seams | None]:
 def make_session(
     assembly: Assembly,
     deformation: stiv.Deformation,
-    parts: Sequence[Part],
+    control_sets: Sequence[ControlSet],
     controls: ArrayLike,
     weights: Sequence[Floats],
     settings: EditSettings,
 ) -> stiv.EditSession:
-    """A session over all parts side by side, from their controls one after the other, (m, 3).
+    """Make a session of all control sets, from their stacked controls, (m, 3).
 
-    deformation: of `deformation_of`. weights: response of each part's controls, (m,) or (m, 3)
-        each.
-    Raises InputError, StartIntersectsError.
+    deformation: of `deformation_of`. weights: response weights of each control set, (m,) or (m, 3). Raises InputError,
+    StartIntersectsError.
     """
     frames, first = [], 0
-    for part in parts:
-        if part.frame is not None:
-            frames.append(stiv.StorageFrame(first, len(part.controls), part.frame))
-        first += len(part.controls)
+    for control_set in control_sets:
+        if control_set.frame is not None:
+            frames.append(stiv.StorageFrame(first, len(control_set.controls), control_set.frame))
+        first += len(control_set.controls)
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         **settings.shared(),
-        pair_separations=pair_separations_of(assembly, settings),
+        pair_separations=body_separations(assembly, settings),
         weights=weights_of_all(weights),
-        weight_axes=axes_of_all(parts),
-        exclude=settings.excluded.triangles(assembly, q, settings.threads),
+        weight_axes=axes_of_all(control_sets),
+        exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
         single_precision=bool(frames),
         storage=frames,
     )
     try:
         return stiv.EditSession(assembly.surface, deformation, controls, options)
     except stiv.StartIntersectsError as error:
-        if meets_only_rendered(assembly, error):
-            error.add_note("it does so only when rendered; set Guard to Viewport to leave the render out")
+        if intersects_only_in_render(assembly, error):
+            error.add_note("only the render intersects; set Guard to Viewport to leave it out")
         raise
 
 
-def meets_only_rendered(assembly: Assembly, error: stiv.StartIntersectsError) -> bool:
-    """Does a start intersect in the render alone?"""
+def intersects_only_in_render(assembly: Assembly, error: stiv.StartIntersectsError) -> bool:
+    """Does the start intersect only in the render?"""
     return len(error.pairs) > 0 and all(_is_only_rendered(assembly, pair) for pair in error.pairs.tolist())
 
 
@@ -81,39 +81,45 @@ def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
 
 
 def weights_of_all(weights: Sequence[Floats]) -> Floats:
-    """Weights of each part, (m,) or (m, 3), one after the other; (m, 3) if those of any part are."""
+    """Stacked weights of all control sets, (m,); (m, 3) if any set has weights for each axis."""
     if all(each.ndim == 1 for each in weights):
         return np.concatenate(list(weights))
     return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
 
 
-def axes_of_all(parts: Sequence[Part]) -> Floats | None:
-    """The axes, (m, 3, 3), of the weights of all parts; None: x, y, z for all."""
-    if all(part.weight_axes is None for part in parts):
+def axes_of_all(control_sets: Sequence[ControlSet]) -> Floats | None:
+    """Stacked weight axes of all control sets, (m, 3, 3); None if all use the world axes."""
+    if all(control_set.weight_axes is None for control_set in control_sets):
         return None
     world = np.eye(3)
     return np.concatenate(
-        [np.broadcast_to(world, (len(p.controls), 3, 3)) if p.weight_axes is None else p.weight_axes for p in parts]
+        [
+            np.broadcast_to(world, (len(p.controls), 3, 3)) if p.weight_axes is None else p.weight_axes
+            for p in control_sets
+        ]
     )
 
 
-def deformation_of(assembly: Assembly, parts: Sequence[Part]) -> stiv.Deformation:
-    """All parts side by side; what none of them moves stays where the assembly has it."""
-    return stiv.concatenate([(part.deformation, _vertices(assembly, part)) for part in parts], assembly.positions)
+def deformation_of(assembly: Assembly, control_sets: Sequence[ControlSet]) -> stiv.Deformation:
+    """Deformation of all control sets; other vertices stay where the assembly has them."""
+    return stiv.concatenate(
+        [(control_set.deformation, _vertices(assembly, control_set)) for control_set in control_sets],
+        assembly.positions,
+    )
 
 
-def stacked(controls: Sequence[Floats]) -> Floats:
-    """Controls of several parts one after the other."""
+def stack_controls(controls: Sequence[Floats]) -> Floats:
+    """Stack the controls of several control sets."""
     return np.concatenate([np.empty((0, 3)), *controls])
 
 
-def split(controls: Floats, parts: Sequence[Part]) -> list[Floats]:
-    """The controls of each part, (m, 3), out of those of all, one after the other."""
-    return np.split(controls, np.cumsum([len(part.controls) for part in parts])[:-1])
+def split_controls(controls: Floats, control_sets: Sequence[ControlSet]) -> list[Floats]:
+    """Split stacked controls into those of each control set, (m, 3)."""
+    return np.split(controls, np.cumsum([len(control_set.controls) for control_set in control_sets])[:-1])
 
 
-def pair_separations_of(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
-    """The separations of pairs of objects as those of their bodies."""
+def body_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
+    """Minimum distances of pairs of objects as those of pairs of bodies."""
     bodies: dict[str, list[int]] = {}
     for number, body in enumerate(assembly.surface.bodies):
         bodies.setdefault(body.name, []).append(number)
@@ -125,5 +131,5 @@ def pair_separations_of(assembly: Assembly, settings: EditSettings) -> dict[tupl
     }
 
 
-def _vertices(assembly: Assembly, part: Part) -> Any:
-    return np.concatenate([assembly.range_of(index) for index in part.surfaces])
+def _vertices(assembly: Assembly, control_set: ControlSet) -> Any:
+    return np.concatenate([assembly.range_of(index) for index in control_set.surfaces])

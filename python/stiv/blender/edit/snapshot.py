@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an edit begins with: who takes part, as the scene is when it is read."""
+"""The state of the scene at the start of an edit: surfaces, control sets and settings."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -9,105 +9,106 @@ import bpy
 import numpy as np
 
 from stiv import InputError
-from stiv.blender.controls.control_reading import make_parts
-from stiv.blender.controls.control_set import Part
-from stiv.blender.controls.movers import Mover
-from stiv.blender.edit.sessions import mobilities, seams_of, stacked
+from stiv.blender.controls.control_reading import make_control_sets
+from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.edit.sessions import mobilities, seams_of, stack_controls
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
-from stiv.blender.scene.culling import Reach, tied
+from stiv.blender.scene.culling import CullingBox, find_dependents
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.exclusions import drop_stale
 from stiv.blender.scene.guarded_evaluations import Guard, read_guarded_scene
 from stiv.blender.scene.strand_reading import surface_of
 from stiv.blender.settings import EditSettings
 
 
 @dataclass(frozen=True)
-class Beginning:
-    """A scene that was read for an edit. Keeps no reference of Blender's that an undo step could spoil.
+class EditSnapshot:
+    """A scene read for an edit. It holds no references to Blender's data, which undo would invalidate.
 
     Attributes:
         assembly: all surfaces.
-        parts: what moves or gives way, in the order of the controls.
-        settings: with the exclusions that still count.
-        guard: the evaluations that are kept free of intersections.
-        hidden: how many objects do not take part because they are hidden.
-        dropped: which exclusions of intersections no longer count, empty if all do.
-        digest: equal for edits that begin with the same controls, surfaces that move and placements.
-        carried: names of the objects whose strands follow what moves, and are no obstacles.
+        control_sets: what moves or yields, in the order of the controls.
+        settings: without stale exclusions.
+        guard: the evaluations that stay free of intersections.
+        hidden: number of hidden objects, which do not participate.
+        dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
+        digest: equal for edits that start with the same controls, moving surfaces and placements.
+        carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
     assembly: Assembly
-    parts: tuple[Part, ...]
+    control_sets: tuple[ControlSet, ...]
     settings: EditSettings
     guard: Guard
     hidden: int
-    dropped: str
+    dropped_exclusions: str
     digest: str
     carried: frozenset[str]
 
 
-def read_beginning(
+def take_snapshot(
     context: bpy.types.Context,
     settings: EditSettings,
     kind: str,
-    movers: Sequence[Mover],
-    adapt: Callable[[Part], Part],
-    reach: Reach | None,
-) -> Beginning:
-    """Read the scene for an edit of this kind with these movers; changes nothing. Raises InputError.
+    participants: Sequence[Participant],
+    adapt: Callable[[ControlSet], ControlSet],
+    culling: CullingBox | None,
+) -> EditSnapshot:
+    """Read the scene for an edit of this kind; changes nothing. Raises InputError.
 
-    adapt: may change who responds in a part. reach: what does not touch it does not take part; None: all does.
+    adapt: may change each control set. culling: obstacles outside the box are left out; None reads all.
     """
-    left_out = frozenset() if reach is None else reach.left_out
+    left_out = frozenset() if culling is None else culling.left_out
     scene, guard = read_guarded_scene(
         context,
         settings,
-        lambda name: settings.takes_part(name) and name not in left_out,
-        lambda name: None if reach is None else reach.box_of(name),
+        lambda name: settings.participates(name) and name not in left_out,
+        lambda name: None if culling is None else culling.box_of(name),
         strands=True,
     )
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
-    found, groups = make_parts(context, movers, solid, settings, kind)
-    parts = tuple(adapt(part) for part in found)
-    if not any(part.rule.moves for part in parts):
-        raise InputError("nothing is selected that may move; select vertices, points or objects with a surface")
-    moving = {mover.reference.name for mover in movers}.union(
-        *(group.members for group in groups), (solid[index].owner.name for part in parts for index in part.surfaces)
+    found, groups = make_control_sets(context, participants, solid, settings, kind)
+    control_sets = tuple(adapt(control_set) for control_set in found)
+    if not any(control_set.rule.moves for control_set in control_sets):
+        raise InputError("nothing movable is selected; select vertices, points or objects with a surface")
+    moving = {participant.reference.name for participant in participants}.union(
+        *(group.members for group in groups),
+        (solid[index].owner.name for control_set in control_sets for index in control_set.surfaces),
     )
-    still, carried = _still_strands(context, scene.meshes, moving)
+    still, carried = _static_strands(context, scene.meshes, moving)
     meshes = [*solid, *still]
     count = len(meshes)
     assembly = assemble(
-        meshes, mobilities(count, parts), [group.members for group in groups], settings.ignored_pairs,
-        seams_of(count, parts),
+        meshes, mobilities(count, control_sets), [group.members for group in groups], settings.ignored_pairs,
+        seams_of(count, control_sets),
     )  # fmt: skip
-    excluded, dropped = settings.excluded.current(solid)
+    excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
-    points = assembly.positions[moving_vertices(assembly, parts)]
-    digest = _digest(stacked([part.controls for part in parts]), points, *placements)
+    points = assembly.positions[find_moving_vertices(assembly, control_sets)]
+    digest = _digest(stack_controls([control_set.controls for control_set in control_sets]), points, *placements)
     chosen = replace(settings, excluded=excluded)
-    return Beginning(assembly, parts, chosen, guard, scene.hidden, dropped, digest, carried)
+    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, digest, carried)
 
 
-def moving_vertices(assembly: Assembly, parts: Sequence[Part]) -> Indices:
-    """The vertices of the surface that follow controls of the parts."""
-    return np.concatenate([assembly.range_of(index) for part in parts for index in part.surfaces])
+def find_moving_vertices(assembly: Assembly, control_sets: Sequence[ControlSet]) -> Indices:
+    """Vertices of the surface that follow the controls."""
+    return np.concatenate([assembly.range_of(index) for control_set in control_sets for index in control_set.surfaces])
 
 
-def _still_strands(
+def _static_strands(
     context: bpy.types.Context, meshes: Sequence[VisibleMesh], moving: set[str]
 ) -> tuple[list[VisibleMesh], frozenset[str]]:
-    """The strands that stay, and the names of the objects whose strands follow what moves, by name."""
+    """The strands that do not move, and the names of the objects whose strands follow the moving objects."""
     strands = [mesh for mesh in meshes if mesh.strands is not None]
     if not strands:
         return [], frozenset()
-    follow = tied(list(context.view_layer.objects), moving)
-    carried = frozenset(mesh.owner.name for mesh in strands if _names_that_carry(mesh) & follow)
+    follow = find_dependents(list(context.view_layer.objects), moving)
+    carried = frozenset(mesh.owner.name for mesh in strands if _carriers(mesh) & follow)
     return [mesh for mesh in strands if mesh.owner.name not in carried], carried
 
 
-def _names_that_carry(strands: VisibleMesh) -> set[str]:
+def _carriers(strands: VisibleMesh) -> set[str]:
     surface = surface_of(strands.owner.find())
     return {strands.owner.name, strands.source} | ({surface.name} if surface is not None else set())
 

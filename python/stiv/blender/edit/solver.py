@@ -1,47 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The session of an edit and the trail of what it accepted; made anew when more cuts of bent faces must stay free."""
+"""The session of an edit with its history; opened again when flipped triangles have to stay free of intersections."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import stiv
-from stiv.blender.controls.control_set import Part
+from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.edit.sessions import deformation_of, make_session
-from stiv.blender.edit.trail import Place, Trail, latest
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.triangulation_flips import Cut, with_bent_quads, with_cuts
+from stiv.blender.scene.exclusions import has_only_excluded
+from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
 
 
-class Solving:
-    """Attributes: `assembly` with the cuts that are kept free, `deformation`, and the `trail`."""
+class EditSolver:
+    """Attributes: `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`."""
 
-    def __init__(self, assembly: Assembly, parts: Sequence[Part], controls: Floats, settings: EditSettings) -> None:
-        """Begin at controls of all parts, (m, 3), unless interference is off.
+    def __init__(
+        self, assembly: Assembly, control_sets: Sequence[ControlSet], controls: Floats, settings: EditSettings
+    ) -> None:
+        """Start at the controls of all control sets, (m, 3); without a session if collisions are off.
 
         Raises InputError, StartIntersectsError.
         """
-        self._parts = parts
+        self._control_sets = control_sets
         self._settings = settings
-        self._weights = [part.weights for part in parts]
+        self._weights = [control_set.weights for control_set in control_sets]
         self._session: stiv.EditSession | None = None
         self._at_start = self.assembly = assembly
-        self.deformation = deformation_of(assembly, parts)
+        self.deformation = deformation_of(assembly, control_sets)
         if settings.interference:
-            self._at_start = with_bent_quads(assembly, settings.threads)
-            self._take(self._at_start, controls)
+            self._at_start = guard_bent_quads(assembly, settings.threads)
+            self._open_session(self._at_start, controls)
         self.trail = Trail(controls, controls)
 
     @property
-    def has_begun(self) -> bool:
-        """Is there a state that is known to be free?"""
+    def has_session(self) -> bool:
+        """Is a state known to be free of intersections?"""
         return self._session is not None
 
     @property
     def session(self) -> stiv.EditSession:
-        """What solves; there is none before interference was on."""
-        assert self._session is not None, "interference has been off from the start"
+        """The open session; there is none until collisions are on."""
+        assert self._session is not None, "collisions were off from the start"
         return self._session
 
     def solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
@@ -50,59 +53,60 @@ class Solving:
         self.trail.add(goal, result)
         return result
 
-    def forget(self) -> None:
-        """Have no state any more that is known to be free."""
+    def discard_session(self) -> None:
+        """Close the session: no state is known to be free of intersections."""
         self._session = None
 
-    def weigh(self, weights: Sequence[Floats]) -> None:
-        """Go on from the accepted state with other response weights, (m,) for each part."""
+    def set_weights(self, weights: Sequence[Floats]) -> None:
+        """Continue from the accepted state with other response weights, (m,) for each control set."""
         self._weights = list(weights)
         if self._session is None:
             return
-        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.places()[-1])
-        self._take(self.assembly, accepted)
+        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.states()[-1])
+        self._open_session(self.assembly, accepted)
         self.session.restore(accepted, goal)
 
-    def go_on_from(self, controls: Floats, goal: Floats) -> None:
-        """Begin a new trail at controls that were accepted before, perhaps before the present cuts were known.
+    def restart_from(self, controls: Floats, goal: Floats) -> None:
+        """Start a new trail at accepted controls, which may be older than the present extra triangles.
 
-        Raises StartIntersectsError, with nothing changed, for controls that are not free of intersections.
+        Raises StartIntersectsError, with nothing changed, if the controls intersect.
         """
         try:
             if self._session is None:
-                self._take(self.assembly, controls)
+                self._open_session(self.assembly, controls)
             self.session.restore(controls, goal)
         except stiv.StartIntersectsError:
             if self._session is None or self.assembly is self._at_start:
                 raise
-            self._take(self._at_start, controls)
+            self._open_session(self._at_start, controls)
             self.session.restore(controls, goal)
         self.trail = Trail(controls, goal)
 
-    def solve_again(self, cuts: Sequence[Cut]) -> bool:
-        """Take in more cuts, go back to where they are free, and solve from there for what the trail was to do.
+    def retry_with(self, flips: Sequence[FaceTriangles]) -> bool:
+        """Add flipped triangles, go back to the last state that is free with them, and repeat the later calls from
+        there.
 
-        False, with nothing done, if there are no cuts, or nothing of the trail is free with them.
+        Returns False, with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
-        if not cuts:
+        if not flips:
             return False
-        assembly = with_cuts(self.assembly, cuts)
+        assembly = add_triangles(self.assembly, flips)
 
-        def is_free(place: Place) -> bool:
-            q = self.deformation.surface(place.controls)
-            return self._settings.excluded.allow(assembly, q, self._settings.threads)
+        def is_free(state: AcceptedState) -> bool:
+            q = self.deformation.surface(state.controls)
+            return has_only_excluded(self._settings.excluded, assembly, q, self._settings.threads)
 
-        place = latest(self.trail.places(), is_free)
-        if place is None:
+        state = find_latest(self.trail.states(), is_free)
+        if state is None:
             return False
-        goal = self.trail.goal_at(place)
-        self._take(assembly, place.controls)
-        self.session.restore(place.controls, goal)
-        for leg in self.trail.cut_at(place):
-            self.solve(leg.goal)
+        goal = self.trail.goal_at(state)
+        self._open_session(assembly, state.controls)
+        self.session.restore(state.controls, goal)
+        for call in self.trail.truncate_at(state):
+            self.solve(call.goal)
         return True
 
-    def _take(self, assembly: Assembly, controls: Floats) -> None:
-        deformation = deformation_of(assembly, self._parts)
-        self._session = make_session(assembly, deformation, self._parts, controls, self._weights, self._settings)
+    def _open_session(self, assembly: Assembly, controls: Floats) -> None:
+        deformation = deformation_of(assembly, self._control_sets)
+        self._session = make_session(assembly, deformation, self._control_sets, controls, self._weights, self._settings)
         self.deformation, self.assembly = deformation, assembly

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Accepted states written into Blender, and what Blender makes of them read back and tested."""
+"""Writes accepted states into Blender, reads the evaluation back, and tests it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,28 +8,29 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.control_set import Part
-from stiv.blender.edit.results import summed
-from stiv.blender.edit.sessions import split, stacked
-from stiv.blender.edit.solver import Solving
-from stiv.blender.edit.trail import Place, Trail, latest
+from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.edit.results import merge_results
+from stiv.blender.edit.sessions import split_controls, stack_controls
+from stiv.blender.edit.solver import EditSolver
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.elements import FacePair
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.verification import FacePair, Verification, Verifier
+from stiv.blender.verify.verification import Verification, Verifier
 
-MOST_HALVINGS = 8  # of a step that Blender's evaluation does not pass
-MOST_RECUTS = 4  # times that an edit is solved again because Blender cut bent faces otherwise
+MAX_HALVINGS = 8  # of a step that fails the test in Blender's evaluation
+MAX_FLIP_RETRIES = 4  # times that an edit is solved again because Blender flipped triangles of bent faces
 
 
 @dataclass(frozen=True)
 class WriteReport:
-    """What became of the accepted state in Blender.
+    """The result of writing the accepted state.
 
     Attributes:
-        passed: Blender shows it, or a state on the way to it, free of intersections; False: the one shown before.
-        intersections: what met in the state that could not be shown.
-        message: why not all of the edit is shown; empty if it is.
-        result: of all calls since the last writing, if writing had to solve again; else None.
+        passed: Blender shows the state, or one on the path to it, without intersections; False: the previous state.
+        intersections: pairs that intersect in the state that was rejected.
+        message: why the edit is not shown completely; "" if it is.
+        result: of all calls since the last write if these were solved again; None otherwise.
     """
 
     passed: bool
@@ -38,82 +39,87 @@ class WriteReport:
     result: stiv.EditResult | None = None
 
 
-class Showing:
-    """Shows what was solved. Only states that pass on Blender's own evaluation stay shown."""
+class StateWriter:
+    """Writes solved states. Only states that pass the test in Blender's evaluation remain."""
 
-    def __init__(self, parts: Sequence[Part], solving: Solving, settings: EditSettings) -> None:
-        """For the parts of an edit, as they are, and what solves for them."""
-        self._parts = parts
-        self._start = stacked([part.controls for part in parts])
-        self._solving = solving
+    def __init__(self, control_sets: Sequence[ControlSet], solver: EditSolver, settings: EditSettings) -> None:
+        """Take the control sets of an edit in their present state, and its solver."""
+        self._control_sets = control_sets
+        self._start = stack_controls([control_set.controls for control_set in control_sets])
+        self._solver = solver
         self._settings = settings
         self._verifier = self._new_verifier()
 
-    def show_accepted(self, goal: Floats) -> WriteReport:
-        """Write the accepted controls, test what Blender evaluates, and begin a new trail toward the same goal.
+    def write_accepted(self, goal: Floats) -> WriteReport:
+        """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
 
-        Faces that bent far are cut otherwise by Blender. Where that makes them meet, both cuts take part from then on,
-        and the way since the last writing is solved again from where both are free. What still fails is taken back to
-        the last state on the way that passes. Raises SceneChangedError when an object is gone or was changed.
+        Blender flips the diagonal of quads that bend far. If that causes intersections, both triangulations are kept
+        free from then on, and the path since the last write is solved again. If the test still fails, the last state on
+        the path that passes is written. Raises SceneChangedError if an object was removed or changed.
         """
-        verification = self.show(self._solving.session.controls)
+        verification = self.write_and_verify(self._solver.session.controls)
         solved_again = False
-        for _ in range(MOST_RECUTS):
-            if verification.passed or not self._solving.solve_again(verification.cuts):
+        for _ in range(MAX_FLIP_RETRIES):
+            if verification.passed or not self._solver.retry_with(verification.flips):
                 break
             solved_again = True
-            verification = self.show(self._solving.session.controls)
-        result = summed([leg.result for leg in self._solving.trail.legs]) if solved_again else None
+            verification = self.write_and_verify(self._solver.session.controls)
+        result = merge_results([call.result for call in self._solver.trail.calls]) if solved_again else None
         if not verification.passed:
             return self._fall_back(goal, verification, result)
-        self._solving.trail = Trail(self._solving.session.controls, goal)
+        self._solver.trail = Trail(self._solver.session.controls, goal)
         return WriteReport(True, result=result)
 
-    def show(self, controls: Floats) -> Verification:
-        """Write controls of all parts, (m, 3), whose surface is free, and test what Blender evaluates."""
-        self.put(controls)
-        return self.verify(self._solving.deformation.surface(controls))
+    def write_and_verify(self, controls: Floats) -> Verification:
+        """Write controls, (m, 3), whose surface is free of intersections, and test Blender's evaluation."""
+        self.write(controls)
+        return self.verify(self._solver.deformation.surface(controls))
 
     def verify(self, accepted: Floats) -> Verification:
-        """Test what Blender evaluates now, whoever wrote it, against a free surface, (N, 3)."""
-        if self._verifier.assembly is not self._solving.assembly:  # more cuts were taken in
+        """Test Blender's present evaluation against a surface, (N, 3), that is free of intersections."""
+        if self._verifier.assembly is not self._solver.assembly:  # extra triangles were added
             self._verifier = self._new_verifier()
         return self._verifier.verify(bpy.context, accepted)
 
-    def put(self, controls: Floats) -> None:
-        """Write controls of all parts, (m, 3), and have Blender evaluate them; nothing is tested."""
-        rows = zip(self._parts, split(controls, self._parts), split(self._start, self._parts), strict=True)
-        for part, wanted, start in rows:
+    def write(self, controls: Floats) -> None:
+        """Write controls, (m, 3), and update Blender's evaluation; nothing is tested."""
+        rows = zip(
+            self._control_sets,
+            split_controls(controls, self._control_sets),
+            split_controls(self._start, self._control_sets),
+            strict=True,
+        )
+        for control_set, wanted, start in rows:
             if np.array_equal(wanted, start):
-                part.writer.restore()
+                control_set.writer.restore()
             else:
-                part.writer.write(wanted)
+                control_set.writer.write(wanted)
         bpy.context.view_layer.update()
 
     def _new_verifier(self) -> Verifier:
         def is_step_free(start: Floats, end: Floats) -> bool:
-            return self._solving.session.is_step_free(start, end)
+            return self._solver.session.is_step_free(start, end)
 
-        return Verifier(self._solving.assembly, is_step_free, self._settings.threads, self._settings.excluded)
+        return Verifier(self._solver.assembly, is_step_free, self._settings.threads, self._settings.excluded)
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
-        places = self._solving.trail.places()
-        place = latest(places[:-1], lambda each: self.show(each.controls).passed)
-        if place is not None and place.leg < 0 and failure.intersections:
-            place = self._part_of_step(goal, place, places[1])
-        controls = places[0].controls if place is None else place.controls
-        self.put(controls)
-        self._solving.go_on_from(controls, goal)
-        on_the_way = place is not None and place.leg >= 0
-        message = f"stopped on the way: {failure.message}" if on_the_way else failure.message
+        states = self._solver.trail.states()
+        state = find_latest(states[:-1], lambda each: self.write_and_verify(each.controls).passed)
+        if state is not None and state.call < 0 and failure.intersections:
+            state = self._bisect_step(goal, state, states[1])
+        controls = states[0].controls if state is None else state.controls
+        self.write(controls)
+        self._solver.restart_from(controls, goal)
+        on_the_way = state is not None and state.call >= 0
+        message = f"stopped early: {failure.message}" if on_the_way else failure.message
         return WriteReport(on_the_way, failure.intersections, message, result)
 
-    def _part_of_step(self, goal: Floats, start: Place, end: Place) -> Place:
-        """A place between two that follow each other which Blender shows free; the first if none is found."""
-        for halvings in range(1, MOST_HALVINGS + 1):
-            self._solving.go_on_from(start.controls, goal)
-            self._solving.session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
-            between = self._solving.session.controls
-            if not np.array_equal(between, start.controls) and self.show(between).passed:
-                return Place(between, end.leg, end.step)
+    def _bisect_step(self, goal: Floats, start: AcceptedState, end: AcceptedState) -> AcceptedState:
+        """Bisect a step for a state that passes in Blender's evaluation; the start of the step if there is none."""
+        for halvings in range(1, MAX_HALVINGS + 1):
+            self._solver.restart_from(start.controls, goal)
+            self._solver.session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
+            between = self._solver.session.controls
+            if not np.array_equal(between, start.controls) and self.write_and_verify(between).passed:
+                return AcceptedState(between, end.call, end.step)
         return start

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an edit is about, in words and numbers for the user."""
+"""Summary of an edit for the user."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from stiv.blender.controls.control_set import Part
+from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.guarded_evaluations import Guard
 
 
 @dataclass(frozen=True)
-class Participant:
-    """An object that shows a surface.
+class ParticipantSummary:
+    """An object with a surface.
 
-    Role "cage", "soft" (moved by handles), "lattice" (deformed by one), "rigid" or "obstacle".
+    Its role is "cage", "soft" (moved by handles), "lattice" (deformed by one), "rigid" or "obstacle".
     """
 
     name: str
@@ -25,12 +25,12 @@ class Participant:
 
 @dataclass(frozen=True)
 class Summary:
-    """Who takes part, how many objects with a surface are hidden and do not, and what the user ought to know.
+    """The participants, the number of hidden objects with a surface, and warnings.
 
-    guard: what is kept free of intersections: "viewport", "render" or "both".
+    guard: the evaluations that stay free of intersections: "viewport", "render" or "both".
     """
 
-    participants: tuple[Participant, ...]
+    participants: tuple[ParticipantSummary, ...]
     hidden: int
     controls: int
     triangles: int
@@ -38,24 +38,28 @@ class Summary:
     warnings: tuple[str, ...]
 
 
-def summarise(assembly: Assembly, parts: Sequence[Part], hidden: int, guard: Guard) -> Summary:
-    """Sum up an edit."""
-    roles = {index: part.role for part in parts for index in part.surfaces}
+def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: int, guard: Guard) -> Summary:
+    """Summarise an edit."""
+    roles = {index: control_set.role for control_set in control_sets for index in control_set.surfaces}
     counts: dict[tuple[str, str], int] = {}
     for index, mesh in enumerate(assembly.meshes):
         key = (mesh.owner.name, roles.get(index, "obstacle"))
         counts[key] = counts.get(key, 0) + len(mesh.triangles)
     return Summary(
-        tuple(Participant(name, role, count) for (name, role), count in counts.items()),
+        tuple(ParticipantSummary(name, role, count) for (name, role), count in counts.items()),
         hidden,
-        sum(len(part.controls) for part in parts),
+        sum(len(control_set.controls) for control_set in control_sets),
         len(assembly.surface.triangles),
         guard.choice,
-        (*((guard.reason,) if guard.reason else ()), *(part.note for part in parts if part.note), *_warnings(assembly)),
+        (
+            *((guard.reason,) if guard.reason else ()),
+            *(control_set.note for control_set in control_sets if control_set.note),
+            *_warnings(assembly),
+        ),
     )
 
 
 def _warnings(assembly: Assembly) -> tuple[str, ...]:
     a, b, c = (assembly.positions[assembly.surface.triangles[:, corner]] for corner in range(3))
     flat = int((np.cross(b - a, c - a) == 0).all(axis=1).sum())
-    return (f"{flat} triangles without area take part",) if flat else ()
+    return (f"{flat} participating triangles have no area",) if flat else ()

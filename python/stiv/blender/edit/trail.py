@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a session was asked and what it accepted since its state was last shown."""
+"""The calls of a session since its state was last written, and the states that it accepted."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -9,79 +9,86 @@ from stiv.blender.scene.arrays import Floats
 
 
 @dataclass(frozen=True)
-class Leg:
-    """One call of a session: a drag to a goal, or a settling (None), and what came of it."""
+class SolverCall:
+    """One call of a session, a drag to a goal or a settle (None), with its result."""
 
     goal: Floats | None
     result: stiv.EditResult
     path: tuple[Floats, ...]
-    """Controls accepted on the way: all of the result's, or the first of them."""
+    """Accepted controls: all of the result's path, or the first of them."""
 
 
 @dataclass(frozen=True)
-class Place:
-    """Controls accepted on a trail: leg -1 is the state shown, and `step` counts within a leg."""
+class AcceptedState:
+    """Accepted controls. `call` is the number of the call, -1 for the state written last; `step` counts within the
+    call.
+    """
 
     controls: Floats
-    leg: int
+    call: int
     step: int
 
 
 @dataclass
 class Trail:
-    """From the state shown last, and the goal that it was dragged to, to the present one."""
+    """All calls since the state written last, and the goal before them."""
 
-    shown: Floats
+    written: Floats
     goal: Floats
-    legs: list[Leg] = field(default_factory=list)
+    calls: list[SolverCall] = field(default_factory=list)
 
     def add(self, goal: Floats | None, result: stiv.EditResult) -> None:
-        """Another call."""
-        self.legs.append(Leg(goal, result, tuple(result.path)))
+        """Append a call."""
+        self.calls.append(SolverCall(goal, result, tuple(result.path)))
 
-    def places(self) -> list[Place]:
-        """All accepted controls, oldest first; two that follow each other are joined by a free linear step."""
-        return [Place(self.shown, -1, 0)] + [
-            Place(controls, number, step)
-            for number, leg in enumerate(self.legs)
-            for step, controls in enumerate(leg.path)
+    def states(self) -> list[AcceptedState]:
+        """All accepted states, oldest first; the linear step between two neighbours is free of intersections."""
+        return [AcceptedState(self.written, -1, 0)] + [
+            AcceptedState(controls, number, step)
+            for number, call in enumerate(self.calls)
+            for step, controls in enumerate(call.path)
         ]
 
-    def goal_at(self, place: Place) -> Floats:
-        """The goal dragged to last when the controls were accepted."""
-        goals = [leg.goal for leg in self.legs[: place.leg + 1] if leg.goal is not None]
+    def goal_at(self, state: AcceptedState) -> Floats:
+        """The goal when the state was accepted."""
+        goals = [call.goal for call in self.calls[: state.call + 1] if call.goal is not None]
         return goals[-1] if goals else self.goal
 
-    def cut_at(self, place: Place) -> list[Leg]:
-        """End the trail at a place; returns the legs that are left to go, the one cut among them."""
-        if place.leg < 0:
-            left, self.legs = self.legs, []
+    def truncate_at(self, state: AcceptedState) -> list[SolverCall]:
+        """Truncate the trail at a state; returns the calls after it, including the interrupted one."""
+        if state.call < 0:
+            left, self.calls = self.calls, []
             return left
-        left = self.legs[place.leg :]
-        self.legs = [*self.legs[: place.leg], Leg(left[0].goal, left[0].result, left[0].path[: place.step + 1])]
+        left = self.calls[state.call :]
+        self.calls = [
+            *self.calls[: state.call],
+            SolverCall(left[0].goal, left[0].result, left[0].path[: state.step + 1]),
+        ]
         return left
 
 
-def latest(places: Sequence[Place], holds: Callable[[Place], bool]) -> Place | None:
-    """The last place at which something holds that held at the beginning, found by looking at few of them.
+def find_latest(states: Sequence[AcceptedState], holds: Callable[[AcceptedState], bool]) -> AcceptedState | None:
+    """Find the last state with a property that held at the start, with few evaluations of it.
 
-    Looks back in growing strides, then halves the last of them. What comes out holds; a later one may too. None: it
-    holds nowhere that was looked at.
+    Searches backwards with doubling strides, then bisects. The property holds for the result; it may hold for a later
+    state too. None: it holds for no state that was examined.
     """
-    failed, stride = len(places), 1
+    failed, stride = len(states), 1
     while failed > 0:
         index = max(0, failed - stride)
-        if holds(places[index]):
-            return _between(places, index, failed, holds)
+        if holds(states[index]):
+            return _between(states, index, failed, holds)
         failed, stride = index, 2 * stride
     return None
 
 
-def _between(places: Sequence[Place], held: int, failed: int, holds: Callable[[Place], bool]) -> Place:
+def _between(
+    states: Sequence[AcceptedState], held: int, failed: int, holds: Callable[[AcceptedState], bool]
+) -> AcceptedState:
     while failed - held > 1:
         middle = (held + failed) // 2
-        if holds(places[middle]):
+        if holds(states[middle]):
             held = middle
         else:
             failed = middle
-    return places[held]
+    return states[held]

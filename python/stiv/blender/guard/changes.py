@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a tool changed between two states of a scene, and whether motions of controls can tell it."""
+"""Compares two states of a scene, and tells whether an edit can reproduce the changes."""
 
 from dataclasses import dataclass
 
@@ -11,11 +11,11 @@ from stiv.blender.scene.references import ObjectReference
 
 @dataclass(frozen=True)
 class Change:
-    """What became of one object.
+    """The change of one object.
 
     Attributes:
-        moved, turned, scaled: its location, rotation, scale is another one.
-        points: (m,) which of its vertices or points are elsewhere in its own frame; None when none is.
+        moved, turned, scaled: location, rotation or scale changed.
+        points: (m,) flags of the vertices or points that moved in its own frame; None if none did.
     """
 
     reference: ObjectReference
@@ -26,26 +26,24 @@ class Change:
 
     @property
     def placed(self) -> bool:
-        """Does the object as a whole stand otherwise?"""
+        """Did location, rotation or scale change?"""
         return self.moved or self.turned or self.scaled
 
 
 @dataclass(frozen=True)
 class Changes:
-    """All changes of controls. `obstacle` says what else is different, which no motion of controls can tell; empty if
-    nothing is.
-    """
+    """All changes. `unsupported` describes a change that no edit can reproduce; "" if there is none."""
 
     changes: tuple[Change, ...]
-    obstacle: str = ""
+    unsupported: str = ""
 
     def __bool__(self) -> bool:
-        """Is anything different?"""
-        return bool(self.changes or self.obstacle)
+        """Did anything change?"""
+        return bool(self.changes or self.unsupported)
 
 
 def compare(before: SceneState, after: SceneState) -> Changes:
-    """Find what is different in `after`."""
+    """Find the changes from `before` to `after`."""
     for number in before.keys() ^ after.keys():
         name = (before.get(number) or after[number]).reference.name
         return Changes((), f'object "{name}" was {"added or shown" if number in after else "removed or hidden"}')
@@ -55,23 +53,23 @@ def compare(before: SceneState, after: SceneState) -> Changes:
             return Changes((), f'the structure of object "{state.reference.name}" was changed')
         change = _compare(before[number], state)
         if change.placed and change.points is not None:
-            return Changes((), f'object "{state.reference.name}" was placed and deformed at once')
+            return Changes((), f'object "{state.reference.name}" was transformed and deformed at once')
         if change.placed or change.points is not None:
             found.append(change)
     return Changes(tuple(found), "" if found else _posed(before, after))
 
 
 def _posed(before: SceneState, after: SceneState) -> str:
-    """Which pose or shape keys changed; "" for none. Beside changed controls, drivers may have changed them."""
+    """The pose or shape keys that changed; "" for none. Drivers may change them together with controls."""
     for number, state in after.items():
-        if state.posture != before[number].posture:
-            return f'the pose or the shape keys of object "{state.reference.name}" were changed'
+        if state.pose != before[number].pose:
+            return f'the pose or shape keys of object "{state.reference.name}" were changed'
     return ""
 
 
 def _compare(before: ObjectState, after: ObjectState) -> Change:
     points = None
-    if before.points is not None and after.points is not None and not before.has_points_of(after):
+    if before.points is not None and after.points is not None and not before.has_same_points(after):
         points = (before.points != after.points).any(axis=1)
     return Change(
         after.reference, before.location != after.location, before.rotation != after.rotation,

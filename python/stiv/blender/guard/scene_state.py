@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All that a user may have changed by hand, as plain values: to tell what a tool did, and to put it back bit by bit."""
+"""States of a scene: all that a user can change by hand, to detect changes and to restore them bit by bit."""
 
 import zlib
 from collections.abc import Mapping
@@ -8,28 +8,56 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from stiv.blender.controls.cage import CageWriter, read_cage
-from stiv.blender.controls.lattice_points import LatticeWriter, read_points
+from stiv import InputError
+from stiv.blender.controls.cage import CageWriter
+from stiv.blender.controls.lattice_points import LatticeWriter
 from stiv.blender.controls.object_transform import ROTATION_PROPERTIES
-from stiv.blender.guard.posture import Posture, read_posture
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix
-from stiv.blender.scene.evaluated_scene import is_visible
-from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.evaluations import is_visible
+from stiv.blender.scene.lattice_reading import read_lattice_points
+from stiv.blender.scene.mesh_reading import read_cage
+from stiv.blender.scene.references import ObjectReference, SceneChangedError
+
+
+@dataclass(frozen=True)
+class PoseState:
+    """Pose and shape key values of an object.
+
+    Attributes:
+        bones: name, location, rotation property, rotation and scale of each pose bone.
+        keys: name and value of each shape key.
+    """
+
+    bones: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]], ...] = ()
+    keys: tuple[tuple[str, float], ...] = ()
+
+    def restore(self, ob: bpy.types.Object) -> None:
+        """Restore the pose; missing bones and keys are skipped."""
+        for name, location, rotation_property, rotation, scale in self.bones:
+            bone = ob.pose.bones.get(name) if ob.pose is not None else None
+            if bone is not None:
+                bone.location, bone.scale = location, scale
+                setattr(bone, rotation_property, rotation)
+        keys = getattr(ob.data, "shape_keys", None)
+        for name, value in self.keys:
+            key = keys.key_blocks.get(name) if keys is not None else None
+            if key is not None:
+                key.value = value
 
 
 @dataclass(frozen=True)
 class ObjectState:
-    """An object as it was.
+    """The state of an object.
 
     Attributes:
-        reference: which object.
+        reference: the object.
         parent: session number of its parent, 0 for none.
-        rotation_property: name of the property that holds its rotation.
+        rotation_property: name of the property with its rotation.
         location, rotation, scale: its own properties.
         world: world matrix, (4, 4).
         points: local positions of cage vertices or lattice points, (m, 3); None for other types.
-        connectivity: checksum of which vertices are joined; 0 for what is no mesh.
-        posture: its pose and the values of its shape keys.
+        connectivity: checksum of its faces and edges; 0 for other types than meshes.
+        pose: pose and shape key values.
     """
 
     reference: ObjectReference
@@ -41,11 +69,11 @@ class ObjectState:
     world: Floats
     points: Singles | None
     connectivity: int
-    posture: Posture
+    pose: PoseState
 
     @property
     def kind(self) -> tuple[int, str, int, int]:
-        """What must be the same for two states of an object to be joined by a motion of its controls."""
+        """Properties that must agree before an edit can lead from one state to another."""
         return self.parent, self.rotation_property, -1 if self.points is None else len(self.points), self.connectivity
 
     @property
@@ -53,21 +81,21 @@ class ObjectState:
         """Location, rotation and scale."""
         return self.location, self.rotation, self.scale
 
-    def has_points_of(self, other: "ObjectState") -> bool:
-        """Are the vertices or points where those of another state of the object are, to the last bit?"""
+    def has_same_points(self, other: "ObjectState") -> bool:
+        """Do the vertices or points agree with another state, bit by bit?"""
         if self.points is None or other.points is None:
             return self.points is other.points
         return np.array_equal(self.points, other.points)
 
     def restore_placement(self) -> None:
-        """Write location, rotation and scale back. Raises SceneChangedError."""
+        """Restore location, rotation and scale. Raises SceneChangedError."""
         ob = self.reference.find()
         ob.location = self.location
         setattr(ob, self.rotation_property, self.rotation)
         ob.scale = self.scale
 
     def restore_points(self) -> None:
-        """Write vertices or lattice points back, if there are any. Raises SceneChangedError."""
+        """Restore vertices or lattice points, if there are any. Raises SceneChangedError."""
         if self.points is None:
             return
         ob = self.reference.find()
@@ -80,28 +108,28 @@ SceneState = Mapping[int, ObjectState]
 
 
 def read_state(context: bpy.types.Context) -> SceneState:
-    """All visible objects as they are now."""
+    """Read all visible objects."""
     context.view_layer.update()
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     return {ob.session_uid: read_object(ob) for ob in objects}
 
 
 def read_object(ob: bpy.types.Object) -> ObjectState:
-    """One object as it is now."""
+    """Read one object."""
     if ob.type == "MESH" and ob.mode == "EDIT":
         ob.update_from_editmode()
     rotation = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
     return ObjectState(
         ObjectReference.of(ob), 0 if ob.parent is None else ob.parent.session_uid, rotation, tuple(ob.location),
         tuple(getattr(ob, rotation)), tuple(ob.scale), as_matrix(ob.matrix_world), _points(ob), _connectivity(ob),
-        read_posture(ob),
+        read_pose(ob),
     )  # fmt: skip
 
 
 def _points(ob: bpy.types.Object) -> Singles | None:
     if ob.type == "MESH":
         return read_cage(ob)
-    return read_points(ob.data) if ob.type == "LATTICE" else None
+    return read_lattice_points(ob.data) if ob.type == "LATTICE" else None
 
 
 def _connectivity(ob: bpy.types.Object) -> int:
@@ -113,3 +141,49 @@ def _connectivity(ob: bpy.types.Object) -> int:
         collection.foreach_get(attribute, values)
         checksum = zlib.crc32(values.tobytes(), checksum)
     return checksum
+
+
+def read_pose(ob: bpy.types.Object) -> PoseState:
+    """Read pose and shape key values; empty for objects without."""
+    keys = getattr(ob.data, "shape_keys", None)
+    return PoseState(
+        tuple(map(_read_bone, ob.pose.bones)) if ob.pose is not None else (),
+        tuple((key.name, key.value) for key in keys.key_blocks) if keys is not None else (),
+    )
+
+
+def _read_bone(
+    bone: bpy.types.PoseBone,
+) -> tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]]:
+    rotation = ROTATION_PROPERTIES.get(bone.rotation_mode, "rotation_euler")
+    return bone.name, tuple(bone.location), rotation, tuple(getattr(bone, rotation)), tuple(bone.scale)
+
+
+def revert(context: bpy.types.Context, state: SceneState) -> tuple[str, ...]:
+    """Restore the controls of every object in a state; returns the names of those that differed.
+
+    New objects stay as they are, and removed ones are skipped. Raises InputError naming an object whose vertices,
+    parent or rotation mode changed, before anything is changed.
+    """
+    differing = [former for former in state.values() if _differs(former)]
+    for former in differing:
+        ob = former.reference.find()
+        if former.placement != (now := read_object(ob)).placement:
+            former.restore_placement()
+        if former.pose != now.pose:
+            former.pose.restore(ob)
+        if not former.has_same_points(now):
+            former.restore_points()
+    context.view_layer.update()
+    return tuple(former.reference.name for former in differing)
+
+
+def _differs(former: ObjectState) -> bool:
+    try:
+        now = read_object(former.reference.find())
+    except SceneChangedError:  # removed meanwhile
+        return False
+    if now.kind != former.kind:
+        raise InputError(f'object "{former.reference.name}": its structure has changed; use Undo instead')
+    same = former.placement == now.placement and former.pose == now.pose
+    return not (same and former.has_same_points(now))

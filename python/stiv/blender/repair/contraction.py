@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contraction of selected meshes of the open scene toward their skeletons; it may end in anything, and says in what."""
+"""Contracts selected meshes toward their skeletons; the result may intersect, and the report says so."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.repair.repair import carry_out
-from stiv.blender.repair.reshaping import Reshaped, ReshapeReport, read_reshaped, writer_of
-from stiv.blender.repair.rest_shape import keep_original, read_original
+from stiv.blender.repair.repair import run_to_end
+from stiv.blender.repair.reshaping import ReshapeReport, ReshapeSnapshot, cage_writer_of, take_reshape_snapshot
+from stiv.blender.repair.rest_shape import read_rest_shape, store_rest_shape
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.verification import named_pairs, read_shown
+from stiv.blender.verify.verification import read_shown
 from stiv.edit_session import Progress
 
 
@@ -26,10 +27,10 @@ class ContractionSettings:
 
     Attributes:
         edit: roles, ignored pairs, threads.
-        steps: how many, each twice as strong as the one before; with `until_free` at most so many.
-        smoothing: how strong the first is.
-        until_free: stop as soon as nothing intersects, and give the step that left the fewest pairs.
-        new_original: keep the shape before as the one to go back to, also where one is kept already.
+        steps: number of steps, each twice as strong as the one before; the maximum with `until_free`.
+        smoothing: strength of the first step.
+        until_free: stop when clear, and use the step with the fewest intersections.
+        new_original: store the present shape as rest shape, even if there is one already.
     """
 
     edit: EditSettings = field(default_factory=EditSettings)
@@ -40,16 +41,19 @@ class ContractionSettings:
 
 
 class BlenderContraction:
-    """A contraction from its beginning to what is written: `solve`, then `write`. As BlenderRepair."""
+    """A contraction from the snapshot of the scene to the written state: `solve`, then `write`, as BlenderRepair."""
 
-    def __init__(self, reshaped: Reshaped, settings: ContractionSettings) -> None:
+    def __init__(self, snapshot: ReshapeSnapshot, settings: ContractionSettings) -> None:
         """Use `begin`."""
-        self._reshaped = reshaped
+        self._snapshot = snapshot
         self._settings = settings
-        kept = [None if settings.new_original else _kept(ob, reshaped, k) for k, ob in enumerate(reshaped.objects)]
-        self._fresh = [local is None for local in kept]
-        self._originals = reshaped.world(kept)
-        self._before = len(named_pairs(reshaped.assembly, reshaped.assembly.positions, settings.edit.threads))
+        stored = [
+            None if settings.new_original else _stored_rest_shape(ob, snapshot, k)
+            for k, ob in enumerate(snapshot.objects)
+        ]
+        self._needs_rest_shape = [local is None for local in stored]
+        self._rest_shapes = snapshot.world(stored)
+        self._before = len(find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads))
         self._controls: Floats | None = None
 
     @classmethod
@@ -58,14 +62,14 @@ class BlenderContraction:
         chosen = settings or ContractionSettings()
         if chosen.steps < 1:
             raise InputError(f"steps: {chosen.steps} is less than 1")
-        return cls(read_reshaped(context, chosen.edit), chosen)
+        return cls(take_reshape_snapshot(context, chosen.edit), chosen)
 
     def solve(self, *, cancel: stiv.CancelToken | None = None, progress: Progress | None = None) -> None:
-        """Contract; `cancel` and `progress` as of stiv.EditSession."""
+        """Contract; `cancel` and `progress` are those of stiv.EditSession."""
         if self._settings.until_free:
             self._controls = self._until_free(cancel, progress)
             return
-        now, strength = self._reshaped.start, self._settings.smoothing
+        now, strength = self._snapshot.start, self._settings.smoothing
         for step in range(self._settings.steps):
             if progress is not None:
                 progress("contraction", step / self._settings.steps)
@@ -73,34 +77,36 @@ class BlenderContraction:
                 self._controls = None
                 return
             now = stiv.contraction_step(
-                self._reshaped.cage, now, start=self._originals, smoothing=strength, moves=self._reshaped.moves
+                self._snapshot.cage, now, start=self._rest_shapes, smoothing=strength, moves=self._snapshot.moves
             )
             strength *= 2
         self._controls = now
 
     def write(self) -> ReshapeReport:
-        """Write the contracted shape, keep the one before with the mesh, and count what meets in what Blender shows."""
-        controls, reshaped = self._controls, self._reshaped
+        """Write the contracted shape, store the rest shape, and count the intersections that Blender shows."""
+        controls, snapshot = self._controls, self._snapshot
         if controls is None:
             return ReshapeReport("cancelled", False, "cancelled", (), self._before)
-        reshaped.show(controls)
-        pairs = named_pairs(reshaped.assembly, read_shown(bpy.context, reshaped.assembly), self._settings.edit.threads)
-        for part, is_fresh in zip(reshaped.parts, self._fresh, strict=True):
-            if is_fresh:
-                keep_original(writer_of(part).reference.find(), writer_of(part).original)
-        changed = not np.array_equal(controls, reshaped.start)
-        return ReshapeReport("contracted", changed, "", pairs, self._before, reshaped.deviation(controls))
+        snapshot.show(controls)
+        pairs = find_face_pairs(
+            snapshot.assembly, read_shown(bpy.context, snapshot.assembly), self._settings.edit.threads
+        )
+        for control_set, needs_one in zip(snapshot.control_sets, self._needs_rest_shape, strict=True):
+            if needs_one:
+                store_rest_shape(cage_writer_of(control_set).reference.find(), cage_writer_of(control_set).original)
+        changed = not np.array_equal(controls, snapshot.start)
+        return ReshapeReport("contracted", changed, "", pairs, self._before, snapshot.deviation(controls))
 
     def restore(self) -> None:
-        """Put everything back, bit by bit."""
-        self._reshaped.restore()
+        """Restore everything bit by bit."""
+        self._snapshot.restore()
 
     def _until_free(self, cancel: stiv.CancelToken | None, progress: Progress | None) -> Floats | None:
         options = stiv.ContractionOptions(smoothing=self._settings.smoothing, max_steps=self._settings.steps)
         found = stiv.contract(
-            self._reshaped.assembly.surface, self._reshaped.start, options,
-            deformation=self._reshaped.deformation, cage=self._reshaped.cage, moves=self._reshaped.moves,
-            storage=self._reshaped.frames, threads=self._settings.edit.threads, cancel=cancel, progress=progress,
+            self._snapshot.assembly.surface, self._snapshot.start, options,
+            deformation=self._snapshot.deformation, cage=self._snapshot.cage, moves=self._snapshot.moves,
+            storage=self._snapshot.frames, threads=self._settings.edit.threads, cancel=cancel, progress=progress,
         )  # fmt: skip
         return found.positions if found.pairs else None
 
@@ -108,14 +114,18 @@ class BlenderContraction:
 def contract_scene(
     context: bpy.types.Context, settings: ContractionSettings | None = None, **execution: Any
 ) -> ReshapeReport:
-    """Contract the selected meshes, as the operator `stiv.contract` does; `cancel` and `progress` as elsewhere.
+    """Contract the selected meshes, as the operator `stiv.contract` does; `cancel` and `progress` as in `solve`.
 
     Raises InputError and SceneChangedError, with everything as it was.
     """
-    return carry_out(BlenderContraction.begin(context, settings), **execution)
+    return run_to_end(BlenderContraction.begin(context, settings), **execution)
 
 
-def _kept(ob: bpy.types.Object, reshaped: Reshaped, part: int) -> Any:
-    """The original kept with a mesh, if it fits the mesh as it is."""
-    local = read_original(ob)
-    return local if local is not None and len(local) == len(writer_of(reshaped.parts[part]).original) else None
+def _stored_rest_shape(ob: bpy.types.Object, snapshot: ReshapeSnapshot, control_set: int) -> Any:
+    """The rest shape of a mesh, if it fits the present mesh."""
+    local = read_rest_shape(ob)
+    return (
+        local
+        if local is not None and len(local) == len(cage_writer_of(snapshot.control_sets[control_set]).original)
+        else None
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Expansion of selected meshes toward the shape kept with them or that of another object, without intersections."""
+"""Expands selected meshes toward their rest shape, or the shape of another object, without intersections."""
 
 from __future__ import annotations
 
@@ -12,13 +12,19 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.controls.cage import read_cage
-from stiv.blender.edit.results import summed
-from stiv.blender.edit.trail import Place, latest
-from stiv.blender.repair.repair import carry_out
-from stiv.blender.repair.reshaping import MOST_RECUTS, Reshaped, ReshapeReport, read_reshaped, writer_of
-from stiv.blender.repair.rest_shape import forget_original, read_original
+from stiv.blender.edit.results import merge_results
+from stiv.blender.edit.trail import AcceptedState, find_latest
+from stiv.blender.repair.repair import run_to_end
+from stiv.blender.repair.reshaping import (
+    MAX_FLIP_RETRIES,
+    ReshapeReport,
+    ReshapeSnapshot,
+    cage_writer_of,
+    take_reshape_snapshot,
+)
+from stiv.blender.repair.rest_shape import read_rest_shape, remove_rest_shape
 from stiv.blender.scene.arrays import Floats, Singles
+from stiv.blender.scene.mesh_reading import read_cage
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification
 
@@ -29,11 +35,11 @@ class ExpansionSettings:
 
     Attributes:
         edit: separation, roles, ignored pairs, smoothness, threads, time budget.
-        target: name of a mesh object with the same vertices, whose shape, in its own frame, is gone toward; it does not
-            take part itself. Empty: the shape kept with each mesh by contraction or repair; meshes that none is kept
-            with are wanted as they are, and give way to the others.
-        amount: how much of the way to go, in [0, 1].
-        rounds: solved again so many times, from where the one before ended, while that brings it nearer.
+        target: name of a mesh object with the same vertices, whose local shape is the goal; it does not participate. ""
+            uses the rest shapes that contraction and repair store. Meshes without one keep their shape as goal, and
+            yield to the others.
+        amount: fraction of the way to the goal, in [0, 1].
+        rounds: maximum number of solves; each starts from the result before, as long as the energy decreases.
     """
 
     edit: EditSettings = field(default_factory=EditSettings)
@@ -43,12 +49,12 @@ class ExpansionSettings:
 
 
 class BlenderExpansion:
-    """An expansion from its beginning to what is written: `solve`, then `write`, as BlenderRepair."""
+    """An expansion from the snapshot of the scene to the written state: `solve`, then `write`, as BlenderRepair."""
 
-    def __init__(self, reshaped: Reshaped, goal: Floats, settings: ExpansionSettings) -> None:
+    def __init__(self, snapshot: ReshapeSnapshot, goal: Floats, settings: ExpansionSettings) -> None:
         """Use `begin`; `goal` of the controls, (m, 3)."""
-        self._reshaped = reshaped
-        self._goal = np.where(reshaped.moves[:, None], goal, reshaped.start)
+        self._snapshot = snapshot
+        self._goal = np.where(snapshot.moves[:, None], goal, snapshot.start)
         self._settings = settings
         self._results: list[stiv.EditResult] = []
         self._attempts = 0
@@ -61,20 +67,20 @@ class BlenderExpansion:
             raise InputError(f"amount: {chosen.amount} is not between 0 and 1")
         if chosen.rounds < 1:
             raise InputError(f"rounds: {chosen.rounds} is less than 1")
-        reshaped = read_reshaped(context, chosen.edit, frozenset({chosen.target} if chosen.target else ()))
-        whole = reshaped.world(_targets(reshaped.objects, chosen.target))
-        return cls(reshaped, reshaped.start + chosen.amount * (whole - reshaped.start), chosen)
+        snapshot = take_reshape_snapshot(context, chosen.edit, frozenset({chosen.target} if chosen.target else ()))
+        whole = snapshot.world(_targets(snapshot.objects, chosen.target))
+        return cls(snapshot, snapshot.start + chosen.amount * (whole - snapshot.start), chosen)
 
     def solve(self, **execution: Any) -> None:
-        """Go toward the goal, never farther from it; `cancel` and `progress` as of stiv.EditSession.
+        """Solve toward the goal, never away from it; `cancel` and `progress` are those of stiv.EditSession.
 
         Raises StartIntersectsError.
         """
-        now, least, self._results = self._reshaped.start, self._energy(self._reshaped.start), []
+        now, least, self._results = self._snapshot.start, self._energy(self._snapshot.start), []
         for _ in range(self._settings.rounds):
             result = stiv.expand(
-                self._reshaped.assembly.surface, now, self._goal, self._reshaped.edit_options(),
-                deformation=self._reshaped.deformation, **execution,
+                self._snapshot.assembly.surface, now, self._goal, self._snapshot.edit_options(),
+                deformation=self._snapshot.deformation, **execution,
             )  # fmt: skip
             if result.status == "cancelled":
                 self._results = [result]
@@ -88,79 +94,79 @@ class BlenderExpansion:
                 return
 
     def write(self) -> ReshapeReport | None:
-        """Write what was reached, and test what Blender shows; None: `solve` again, faces were cut otherwise.
+        """Write the result and test Blender's evaluation; None: `solve` again, because Blender flipped triangles.
 
-        Ends at the last state on the way that Blender shows free of intersections. Raises SceneChangedError.
+        Writes the last state on the path that passes in Blender's evaluation. Raises SceneChangedError.
         """
         last = self._results[-1]
         if last.status == "cancelled":
             return ReshapeReport("cancelled", False, "cancelled")
         path = [controls for result in self._results for controls in result.path]
         if not path:
-            return self._written(self._reshaped.start, last.status, "")
-        verification = self._reshaped.verify(path[-1])
+            return self._written(self._snapshot.start, last.status, "")
+        verification = self._snapshot.verify(path[-1])
         if verification.passed:
             return self._written(path[-1], last.status, "")
         self._attempts += 1
-        if verification.cuts and self._attempts <= MOST_RECUTS and self._take_in(verification):
-            self._reshaped.restore()
+        if verification.flips and self._attempts <= MAX_FLIP_RETRIES and self._add_flips(verification):
+            self._snapshot.restore()
             return None
-        places = [Place(controls, 0, step) for step, controls in enumerate(path[:-1])]
-        place = latest(places, lambda each: self._reshaped.verify(each.controls).passed)
+        places = [AcceptedState(controls, 0, step) for step, controls in enumerate(path[:-1])]
+        place = find_latest(places, lambda each: self._snapshot.verify(each.controls).passed)
         if place is None:
-            self._reshaped.restore()
+            self._snapshot.restore()
             return ReshapeReport("blocked", False, verification.message)
-        self._reshaped.show(place.controls)
-        return self._written(place.controls, "blocked", f"stopped on the way: {verification.message}")
+        self._snapshot.show(place.controls)
+        return self._written(place.controls, "blocked", f"stopped early: {verification.message}")
 
     def restore(self) -> None:
-        """Put everything back, bit by bit."""
-        self._reshaped.restore()
+        """Restore everything bit by bit."""
+        self._snapshot.restore()
 
     def _energy(self, controls: Floats) -> float:
-        """Half the sum of squared distances of the surface to that of the goal, as of stiv.EditResult."""
-        surface = self._reshaped.deformation.surface
+        """Half the sum of squared distances to the goal's surface, as in stiv.EditResult."""
+        surface = self._snapshot.deformation.surface
         return 0.5 * float(((surface(controls) - surface(self._goal)) ** 2).sum())
 
-    def _take_in(self, verification: Verification) -> bool:
-        """Keep further cuts of faces free from now on; False if the start is not free with them."""
-        reshaped = self._reshaped.with_cuts(verification.cuts)
-        start = reshaped.deformation.surface(reshaped.start)
-        if len(stiv.find_intersections(start, reshaped.assembly.surface, threads=self._settings.edit.threads)):
+    def _add_flips(self, verification: Verification) -> bool:
+        """Keep flipped triangles free from now on; False if they intersect at the start."""
+        snapshot = self._snapshot.add_triangles(verification.flips)
+        start = snapshot.deformation.surface(snapshot.start)
+        if len(stiv.find_intersections(start, snapshot.assembly.surface, threads=self._settings.edit.threads)):
             return False
-        self._reshaped = reshaped
+        self._snapshot = snapshot
         return True
 
     def _written(self, controls: Floats, status: str, message: str) -> ReshapeReport:
         if not self._settings.target and self._settings.amount == 1 and status == "reached":
-            for part in self._reshaped.parts:
-                if self._reshaped.moves.all():
-                    forget_original(writer_of(part).reference.find())
-        changed = not np.array_equal(controls, self._reshaped.start)
-        done = summed(self._results)
-        return ReshapeReport(status, changed, message, (), 0, self._reshaped.deviation(controls), result=done)
+            for control_set in self._snapshot.control_sets:
+                if self._snapshot.moves.all():
+                    remove_rest_shape(cage_writer_of(control_set).reference.find())
+        changed = not np.array_equal(controls, self._snapshot.start)
+        done = merge_results(self._results)
+        return ReshapeReport(status, changed, message, (), 0, self._snapshot.deviation(controls), result=done)
 
 
 def expand_scene(
     context: bpy.types.Context, settings: ExpansionSettings | None = None, **execution: Any
 ) -> ReshapeReport:
-    """Expand the selected meshes, as the operator `stiv.expand` does; `cancel` and `progress` as elsewhere.
+    """Expand the selected meshes, as the operator `stiv.expand` does; `cancel` and `progress` as in `solve`.
 
     Raises InputError, StartIntersectsError and SceneChangedError, with everything as it was.
     """
-    return carry_out(BlenderExpansion.begin(context, settings), **execution)
+    return run_to_end(BlenderExpansion.begin(context, settings), **execution)
 
 
 def _targets(objects: Sequence[bpy.types.Object], target: str) -> list[Singles | None]:
-    """Where the vertices of each object are to go; None where they are. Raises InputError if none is to go anywhere."""
+    """Goal of each object's vertices; None for its present shape. Raises InputError if no object has a goal."""
     if target or len(objects) == 1:
         return [_target_of(ob, target) for ob in objects]
-    kept = [None if read_original(ob) is None else _target_of(ob, "") for ob in objects]
-    return kept if any(each is not None for each in kept) else [_target_of(ob, "") for ob in objects]
+    stored = [None if read_rest_shape(ob) is None else _target_of(ob, "") for ob in objects]
+    return stored if any(each is not None for each in stored) else [_target_of(ob, "") for ob in objects]
 
 
 def _target_of(ob: bpy.types.Object, target: str) -> Singles:
-    """Where an object's vertices are to go, in its frame."""
+    """Goal of an object's vertices in its own frame."""
     if target:
         other = bpy.data.objects.get(target)
         if other is None or other.type != "MESH":
@@ -170,16 +176,15 @@ def _target_of(ob: bpy.types.Object, target: str) -> Singles:
         local = read_cage(other)
         whose = f'object "{target}"'
     else:
-        kept = read_original(ob)
-        if kept is None:
+        stored = read_rest_shape(ob)
+        if stored is None:
             raise InputError(
-                f'object "{ob.name}": no shape to go back to is kept with it; Contract and Repair keep one, or name a '
-                "target object"
+                f'object "{ob.name}": it has no rest shape; use Contract or Repair first, or choose a target'
             )
-        local, whose = kept, "the shape kept with it"
+        local, whose = stored, "its rest shape"
     if len(local) != len(ob.data.vertices):
         raise InputError(
-            f'object "{ob.name}" has {len(ob.data.vertices)} vertices, {whose} has {len(local)}; both must be the same'
+            f'object "{ob.name}" has {len(ob.data.vertices)} vertices, but {whose} has {len(local)}; use another target'
         )
     if not np.isfinite(local).all():
         raise InputError(f'object "{ob.name}": {whose} has a coordinate that is not finite')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repair of the open scene: selected meshes lose the intersections that they have."""
+"""Repairs selected meshes: removes their intersections."""
 
 from __future__ import annotations
 
@@ -9,12 +9,19 @@ from typing import Any
 import bpy
 
 import stiv
-from stiv.blender.repair.reshaping import MOST_RECUTS, Reshaped, ReshapeReport, read_reshaped, writer_of
-from stiv.blender.repair.rest_shape import keep_original
-from stiv.blender.repair.welding import WeldedMeshes, weld_selected
+from stiv.blender.repair.reshaping import (
+    MAX_FLIP_RETRIES,
+    ReshapeReport,
+    ReshapeSnapshot,
+    cage_writer_of,
+    take_reshape_snapshot,
+)
+from stiv.blender.repair.rest_shape import store_rest_shape
+from stiv.blender.repair.welding import WeldedMeshes, weld_copies
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.verification import FacePair, named_pairs
 
 
 @dataclass(frozen=True)
@@ -23,8 +30,8 @@ class RepairSettings:
 
     Attributes:
         edit: separation, roles, ignored pairs, threads, time budget.
-        max_deviation: what deviates more from the start is refused: root mean square in diagonals of what moves.
-        weld: make vertices of a mesh one that lie in exactly the same place, before; Object Mode only.
+        max_deviation: greatest root mean square distance from the start, in diagonals of the moving surface.
+        weld: merge coincident vertices first; Object Mode only.
     """
 
     edit: EditSettings = field(default_factory=EditSettings)
@@ -33,17 +40,18 @@ class RepairSettings:
 
 
 class BlenderRepair:
-    """A repair from its beginning to what is written: `solve`, then `write`, again until `write` gives a report.
+    """A repair from the snapshot of the scene to the written state: `solve`, then `write`, until `write` returns a
+    report.
 
-    `solve` may run in another thread than Blender's. Whatever ends it early, `restore` puts everything back.
+    `solve` may run in another thread. `restore` undoes an interrupted repair.
     """
 
-    def __init__(self, reshaped: Reshaped, settings: RepairSettings, welded: WeldedMeshes | None = None) -> None:
+    def __init__(self, snapshot: ReshapeSnapshot, settings: RepairSettings, welded: WeldedMeshes | None = None) -> None:
         """Use `begin`."""
-        self._reshaped = reshaped
+        self._snapshot = snapshot
         self._settings = settings
         self._welded = welded
-        self._before = named_pairs(reshaped.assembly, reshaped.assembly.positions, settings.edit.threads)
+        self._before = find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads)
         self._result: stiv.RepairResult | None = None
         self._attempts = 0
 
@@ -51,62 +59,62 @@ class BlenderRepair:
     def begin(cls, context: bpy.types.Context, settings: RepairSettings | None = None) -> BlenderRepair:
         """Read the scene. Raises InputError naming object and ways out, with nothing changed."""
         chosen = settings or RepairSettings()
-        reshaped = read_reshaped(context, chosen.edit)
+        snapshot = take_reshape_snapshot(context, chosen.edit)
         if not chosen.weld:
-            return cls(reshaped, chosen)
-        welded = weld_selected(reshaped.objects)
+            return cls(snapshot, chosen)
+        welded = weld_copies(snapshot.objects)
         try:
-            return cls(read_reshaped(context, chosen.edit), chosen, welded)
+            return cls(take_reshape_snapshot(context, chosen.edit), chosen, welded)
         except BaseException:
             welded.undo()
             raise
 
     def solve(self, **execution: Any) -> None:
-        """Contract and expand; `cancel` and `progress` as of stiv.EditSession."""
+        """Contract and expand; `cancel` and `progress` are those of stiv.EditSession."""
         options = stiv.RepairOptions(
-            edit=self._reshaped.edit_options(), moves=self._reshaped.moves, max_deviation=self._settings.max_deviation
+            edit=self._snapshot.edit_options(), moves=self._snapshot.moves, max_deviation=self._settings.max_deviation
         )
         self._result = stiv.repair(
-            self._reshaped.assembly.surface, self._reshaped.start, options,
-            deformation=self._reshaped.deformation, cage=self._reshaped.cage, **execution,
+            self._snapshot.assembly.surface, self._snapshot.start, options,
+            deformation=self._snapshot.deformation, cage=self._snapshot.cage, **execution,
         )  # fmt: skip
 
     def write(self) -> ReshapeReport | None:
-        """Write what was found, and test what Blender shows; None: `solve` again, Blender cut bent faces otherwise.
+        """Write the result and test Blender's evaluation; None: `solve` again, because Blender flipped triangles.
 
-        What Blender does not show free of intersections is taken back, bit by bit. Raises SceneChangedError.
+        Restores the start bit by bit if Blender's evaluation intersects. Raises SceneChangedError.
         """
         result = self._result
         assert result is not None
         if result.status == "already_free":
             return self._ended("already_free", "") if not self._before else self._refused(
-                "what Blender shows differs by rounding from what is computed; use a separation"
+                "rounding causes intersections; use a larger minimum distance"
             )  # fmt: skip
         if result.status != "repaired":
             return self._refused(result.message)
-        verification = self._reshaped.verify(result.positions)
+        verification = self._snapshot.verify(result.positions)
         if verification.passed:
             return self._repaired(result.positions)
-        self._reshaped.restore()
+        self._snapshot.restore()
         self._attempts += 1
-        if verification.cuts and self._attempts <= MOST_RECUTS:
-            self._reshaped = self._reshaped.with_cuts(verification.cuts)
+        if verification.flips and self._attempts <= MAX_FLIP_RETRIES:
+            self._snapshot = self._snapshot.add_triangles(verification.flips)
             return None
-        return self._refused(f"what Blender makes of the repair is not free: {verification.message}")
+        return self._refused(f"the repair intersects in Blender's evaluation: {verification.message}")
 
     def restore(self) -> None:
-        """Put everything back, bit by bit."""
-        self._reshaped.restore()
+        """Restore everything bit by bit."""
+        self._snapshot.restore()
         if self._welded is not None:
             self._welded.undo()
 
     def _repaired(self, controls: Floats) -> ReshapeReport:
         assert self._result is not None
         if self._welded is not None:
-            self._welded.keep()
-        for part in self._reshaped.parts:
-            keep_original(writer_of(part).reference.find(), writer_of(part).original)
-        deviation = self._reshaped.deviation(controls)
+            self._welded.apply()
+        for control_set in self._snapshot.control_sets:
+            store_rest_shape(cage_writer_of(control_set).reference.find(), cage_writer_of(control_set).original)
+        deviation = self._snapshot.deviation(controls)
         return ReshapeReport("repaired", True, "", (), len(self._before), deviation, self._result.contracted)
 
     def _refused(self, message: str) -> ReshapeReport:
@@ -115,22 +123,22 @@ class BlenderRepair:
         return self._ended(status, message)
 
     def _ended(self, status: str, message: str) -> ReshapeReport:
-        """Nothing is changed."""
+        """Restore the start and report it."""
         self.restore()
         pairs: tuple[FacePair, ...] = self._before
         return ReshapeReport(status, False, message, pairs, len(self._before))
 
 
 def repair_scene(context: bpy.types.Context, settings: RepairSettings | None = None, **execution: Any) -> ReshapeReport:
-    """Repair the selected meshes, as the operator `stiv.repair` does; `cancel` and `progress` as of stiv.EditSession.
+    """Repair the selected meshes, as the operator `stiv.repair` does; `cancel` and `progress` as in `solve`.
 
     Raises InputError and SceneChangedError, with everything as it was.
     """
-    return carry_out(BlenderRepair.begin(context, settings), **execution)
+    return run_to_end(BlenderRepair.begin(context, settings), **execution)
 
 
-def carry_out(task: Any, **execution: Any) -> ReshapeReport:
-    """Solve and write until there is a report; on any error everything is put back."""
+def run_to_end(task: Any, **execution: Any) -> ReshapeReport:
+    """Solve and write until there is a report; restores everything on any error."""
     try:
         while True:
             task.solve(**execution)

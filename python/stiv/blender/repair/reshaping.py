@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What contraction, expansion and repair share: meshes that change by their cages, written and tested as Blender shows.
+"""The common basis of contraction, expansion and repair: meshes that change by their cages.
 
-Reading and writing belong to Blender's main thread; what lies between touches nothing of Blender's.
+Reading and writing require Blender's main thread; solving does not access Blender.
 """
 
 from __future__ import annotations
@@ -17,46 +17,46 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import CageWriter
-from stiv.blender.controls.control_reading import make_parts
-from stiv.blender.controls.control_set import Part
-from stiv.blender.controls.joined_seams import TiedWriter, joined_rows
-from stiv.blender.controls.movers import Mover
+from stiv.blender.controls.control_reading import make_control_sets
+from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.joined_seams import SeamWriter, join_rows
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.sessions import (
     axes_of_all,
+    body_separations,
     deformation_of,
     mobilities,
-    pair_separations_of,
     seams_of,
-    stacked,
+    stack_controls,
     weights_of_all,
 )
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
 from stiv.blender.scene.assembly import Assembly, assemble
-from stiv.blender.scene.evaluated_scene import is_visible
+from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.scene.mesh_reading import read_edges, read_loose_numbers, read_triangles
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.triangulation_flips import Cut, with_cuts
+from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.verification import FacePair, Verification, Verifier
+from stiv.blender.verify.verification import Verification, Verifier
 
-MOST_RECUTS = 4  # times that work is done again because Blender cut bent faces otherwise
+MAX_FLIP_RETRIES = 4  # times that the work is repeated because Blender flipped triangles of bent faces
 
 
 @dataclass(frozen=True)
 class ReshapeReport:
-    """What became of a contraction, an expansion or a repair in Blender.
+    """The result of a contraction, an expansion or a repair.
 
     Attributes:
         status: of stiv.RepairResult or stiv.EditResult, or "contracted".
-        changed: Blender shows something new; if not, everything is as it was, bit by bit.
-        message: what the user should know; empty if there is nothing.
-        pairs: what meets in what Blender shows now.
-        pairs_before: how many pairs met at the start.
-        deviation: root mean square distance from the start, in diagonals of what moved.
-        contracted: what a repair contracted.
-        result: of an expansion's edits, all together; None of anything else.
+        changed: Blender shows a new state; if False, everything is as it was, bit by bit.
+        message: for the user; may be "".
+        pairs: intersections that Blender shows now.
+        pairs_before: number of intersections at the start.
+        deviation: root mean square distance from the start, in diagonals of the moving surface.
+        contracted: the objects that a repair contracted.
+        result: merged result of an expansion's edits; None for the others.
     """
 
     status: str
@@ -70,20 +70,21 @@ class ReshapeReport:
 
 
 @dataclass(frozen=True)
-class Reshaped:
-    """The meshes that change and everything in their way.
+class ReshapeSnapshot:
+    """The meshes that change, and all obstacles.
 
     Attributes:
-        assembly: all visible meshes as one surface; what does not change is fixed.
-        parts: the cages, one an object.
-        cage: the meshes of all cages side by side, the vertices of which are the controls.
-        start: controls at the beginning, (m, 3).
-        moves: which of them may move, (m,): the selected ones in Edit Mode, all in Object Mode, without pinned ones.
+        assembly: all visible meshes as one surface; meshes that do not change are fixed.
+        control_sets: the cages, one for each object.
+        cage: the meshes of all cages; its vertices are the controls.
+        start: controls at the start, (m, 3).
+        moves: flags of the controls that may move, (m,): the selected ones in Edit Mode, all in Object Mode; never
+            pinned ones.
         settings: separation, roles, threads.
     """
 
     assembly: Assembly
-    parts: tuple[Part, ...]
+    control_sets: tuple[ControlSet, ...]
     cage: stiv.Surface
     start: Floats
     moves: NDArray[np.bool_]
@@ -92,49 +93,55 @@ class Reshaped:
     @cached_property
     def deformation(self) -> stiv.Deformation:
         """From the controls to the surface."""
-        return deformation_of(self.assembly, self.parts)
+        return deformation_of(self.assembly, self.control_sets)
 
     @property
     def frames(self) -> tuple[stiv.StorageFrame, ...]:
         """How the controls are stored."""
-        firsts = np.cumsum([0, *(len(part.controls) for part in self.parts)])
+        firsts = np.cumsum([0, *(len(control_set.controls) for control_set in self.control_sets)])
         return tuple(
-            stiv.StorageFrame(int(first), len(part.controls), part.frame)
-            for first, part in zip(firsts, self.parts, strict=False)
-            if part.frame is not None
+            stiv.StorageFrame(int(first), len(control_set.controls), control_set.frame)
+            for first, control_set in zip(firsts, self.control_sets, strict=False)
+            if control_set.frame is not None
         )
 
     @property
     def objects(self) -> list[bpy.types.Object]:
-        """The objects that change, in the order of the parts."""
-        return [writer_of(part).reference.find() for part in self.parts]
+        """The objects that change, in the order of the control sets."""
+        return [cage_writer_of(control_set).reference.find() for control_set in self.control_sets]
 
-    def with_cuts(self, cuts: Sequence[Cut]) -> Reshaped:
-        """The same with more triangles of faces that bent."""
-        return replace(self, assembly=with_cuts(self.assembly, cuts))
+    def add_triangles(self, flips: Sequence[FaceTriangles]) -> ReshapeSnapshot:
+        """The snapshot with additional triangles of bent faces."""
+        return replace(self, assembly=add_triangles(self.assembly, flips))
 
     def edit_options(self) -> stiv.EditOptions:
-        """How an edit of all controls that may move is solved."""
-        given = weights_of_all([part.given for part in self.parts])
+        """Options for edits of all controls that may move."""
+        max_weights = weights_of_all([control_set.max_weights for control_set in self.control_sets])
         return stiv.EditOptions(
             **self.settings.shared(),
-            pair_separations=pair_separations_of(self.assembly, self.settings),
-            weights=point_weights(self.moves, 1.0, 0.0, given),
-            weight_axes=axes_of_all(self.parts),
+            pair_separations=body_separations(self.assembly, self.settings),
+            weights=point_weights(self.moves, 1.0, 0.0, max_weights),
+            weight_axes=axes_of_all(self.control_sets),
             storage=self.frames,
         )
 
     def world(self, locals_: Sequence[Singles | None]) -> Floats:
-        """Controls, (m, 3), of local positions of each part; None: those of the start."""
-        rows = np.split(self.start, np.cumsum([len(part.controls) for part in self.parts])[:-1])
+        """Controls, (m, 3), for local positions of each control set; None stands for those at the start."""
+        rows = np.split(self.start, np.cumsum([len(control_set.controls) for control_set in self.control_sets])[:-1])
         found = []
-        for part, local, row in zip(self.parts, locals_, rows, strict=True):
-            found.append(row if local is None else transform_points(writer_of(part).frame, part.of_vertices(local)))
-        return stacked(found)
+        for control_set, local, row in zip(self.control_sets, locals_, rows, strict=True):
+            found.append(
+                row
+                if local is None
+                else transform_points(cage_writer_of(control_set).frame, control_set.values_at_controls(local))
+            )
+        return stack_controls(found)
 
     def deviation(self, controls: Floats) -> float:
-        """Root mean square distance of the surface from the start, over what may move and in its diagonals."""
-        moving = np.concatenate([self.assembly.range_of(index) for part in self.parts for index in part.surfaces])
+        """Root mean square distance of the moving surface from the start, in its diagonals."""
+        moving = np.concatenate(
+            [self.assembly.range_of(index) for control_set in self.control_sets for index in control_set.surfaces]
+        )
         before = self.deformation.surface(self.start)[moving]
         after = self.deformation.surface(controls)[moving]
         diagonal = float(np.linalg.norm(np.ptp(before, axis=0))) if len(before) else 0.0
@@ -142,90 +149,92 @@ class Reshaped:
         return rms / diagonal if diagonal > 0 else 0.0
 
     def show(self, controls: Floats) -> None:
-        """Write controls, (m, 3). Raises SceneChangedError when an object is gone or was changed."""
-        ends = np.cumsum([len(part.controls) for part in self.parts])[:-1]
-        for part, rows, start in zip(self.parts, np.split(controls, ends), np.split(self.start, ends), strict=True):
+        """Write controls, (m, 3). Raises SceneChangedError if an object was removed or changed."""
+        ends = np.cumsum([len(control_set.controls) for control_set in self.control_sets])[:-1]
+        for control_set, rows, start in zip(
+            self.control_sets, np.split(controls, ends), np.split(self.start, ends), strict=True
+        ):
             if np.array_equal(rows, start):
-                part.writer.restore()
+                control_set.writer.restore()
             else:
-                part.writer.write(rows)
+                control_set.writer.write(rows)
         bpy.context.view_layer.update()
 
     def verify(self, controls: Floats) -> Verification:
-        """Write controls whose surface is free, and test what Blender makes of them."""
+        """Write controls whose surface is free of intersections, and test Blender's evaluation."""
         self.show(controls)
         steps = stiv.StepCheck(self.assembly.surface, self.settings.threads)
         verifier = Verifier(self.assembly, steps.is_free, self.settings.threads)
         return verifier.verify(bpy.context, self.deformation.surface(controls))
 
     def restore(self) -> None:
-        """Put everything back, bit by bit."""
-        for part in self.parts:
-            part.writer.restore()
+        """Restore everything bit by bit."""
+        for control_set in self.control_sets:
+            control_set.writer.restore()
         bpy.context.view_layer.update()
 
 
-def read_reshaped(
+def take_reshape_snapshot(
     context: bpy.types.Context, settings: EditSettings, left_out: frozenset[str] = frozenset()
-) -> Reshaped:
-    """The selected meshes, in Edit Mode the selected vertices, and all that is visible; changes nothing.
+) -> ReshapeSnapshot:
+    """Read the selected meshes, in Edit Mode the selected vertices, and all obstacles; changes nothing.
 
-    left_out: names of objects that nothing is tested against. Raises InputError naming object and ways out.
+    left_out: names of objects that do not participate. Raises InputError naming object and ways out.
     """
-    movers = _movers(context, settings)
-    scene, _ = read_guarded_scene(context, settings, lambda name: settings.takes_part(name) and name not in left_out)
-    parts, _ = make_parts(context, movers, scene.meshes, settings, "move")
-    if not parts:
-        raise InputError("nothing that is selected has a surface; select meshes that are visible")
+    participants = _participants(context, settings)
+    scene, _ = read_guarded_scene(context, settings, lambda name: settings.participates(name) and name not in left_out)
+    control_sets, _ = make_control_sets(context, participants, scene.meshes, settings, "move")
+    if not control_sets:
+        raise InputError("the selection has no surface; select visible meshes")
     count = len(scene.meshes)
     assembly = assemble(
-        scene.meshes, mobilities(count, parts), (), settings.ignored_pairs, seams_of(count, parts)
+        scene.meshes, mobilities(count, control_sets), (), settings.ignored_pairs, seams_of(count, control_sets)
     )  # fmt: skip
-    moves = np.concatenate([_selected(part) for part in parts])
+    moves = np.concatenate([_selected(control_set) for control_set in control_sets])
     if not moves.any():
-        raise InputError("no vertex is selected; select those that may move, or leave Edit Mode")
-    start = stacked([part.controls for part in parts])
-    return Reshaped(assembly, tuple(parts), _cage_of(parts), start, moves, settings)
+        raise InputError("no movable vertex is selected; select some, or leave Edit Mode")
+    start = stack_controls([control_set.controls for control_set in control_sets])
+    return ReshapeSnapshot(assembly, tuple(control_sets), _cage_of(control_sets), start, moves, settings)
 
 
-def writer_of(part: Part) -> CageWriter:
-    """The writer of a cage with all its vertices."""
-    writer = part.writer.writer if isinstance(part.writer, TiedWriter) else part.writer
+def cage_writer_of(control_set: ControlSet) -> CageWriter:
+    """The writer of all vertices of a cage."""
+    writer = control_set.writer.writer if isinstance(control_set.writer, SeamWriter) else control_set.writer
     assert isinstance(writer, CageWriter)
     return writer
 
 
-def _selected(part: Part) -> NDArray[np.bool_]:
-    """Those that may move. What is pinned along any axis stays: shapes contract along all three."""
-    rule = part.rule
+def _selected(control_set: ControlSet) -> NDArray[np.bool_]:
+    """The controls that may move. Those pinned along any axis are fixed, because contraction acts along all three."""
+    rule = control_set.rule
     assert isinstance(rule, PointGoal)
     return rule.selected if rule.pinned is None else rule.selected & ~rule.pinned.points
 
 
-def _movers(context: bpy.types.Context, settings: EditSettings) -> list[Mover]:
+def _participants(context: bpy.types.Context, settings: EditSettings) -> list[Participant]:
     if context.mode not in ("OBJECT", "EDIT_MESH"):
         mode = context.mode.replace("_", " ").title()
-        raise InputError(f"mode {mode} is not supported; go to Object Mode, or Edit Mode of a mesh")
+        raise InputError(f"mode {mode} is not supported; use Object Mode, or Edit Mode of a mesh")
     visible = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     chosen = [ob for ob in visible if (ob.mode == "EDIT" if context.mode == "EDIT_MESH" else ob.select_get())]
-    movers = []
+    participants = []
     for ob in chosen:
         if settings.role(ob.name) in ("obstacle", "ignored") or settings.cage_of(ob.name) != ob.name:
             continue
         if ob.type != "MESH":
-            raise InputError(f'object "{ob.name}": only meshes can change shape here; deselect it, or convert it')
-        movers.append(Mover(ObjectReference.of(ob), "cage", True))
-    if not movers:
-        raise InputError("no mesh is selected that may move; select one that is neither obstacle nor ignored")
-    return movers
+            raise InputError(f'object "{ob.name}": only meshes can be reshaped; deselect it, or convert it to a mesh')
+        participants.append(Participant(ObjectReference.of(ob), "cage", True))
+    if not participants:
+        raise InputError("no movable mesh is selected; select one that is no obstacle and has collisions")
+    return participants
 
 
-def _cage_of(parts: Sequence[Part]) -> stiv.Surface:
-    """The meshes below the modifiers side by side."""
+def _cage_of(control_sets: Sequence[ControlSet]) -> stiv.Surface:
+    """The meshes of all cages, below their modifiers."""
     triangles, loose, first = [np.empty((0, 3), np.int32)], [np.empty((0, 2), np.int32)], 0
-    for part in parts:
-        mesh = writer_of(part).reference.find().data
-        triangles.append(joined_rows(read_triangles(mesh)[0], part.tied) + first)
-        loose.append(joined_rows(read_edges(mesh)[read_loose_numbers(mesh)], part.tied) + first)
-        first += len(part.controls)
+    for control_set in control_sets:
+        mesh = cage_writer_of(control_set).reference.find().data
+        triangles.append(join_rows(read_triangles(mesh)[0], control_set.control_seams) + first)
+        loose.append(join_rows(read_edges(mesh)[read_loose_numbers(mesh)], control_set.control_seams) + first)
+        first += len(control_set.controls)
     return stiv.Surface(np.concatenate(triangles), first, np.concatenate(loose))

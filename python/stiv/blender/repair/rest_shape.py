@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shape that a mesh had before it was contracted or repaired, kept with the mesh to go back to.
+"""The rest shape of a mesh: its shape before contraction or repair, stored with the mesh.
 
-It is a mesh attribute, one position a vertex in the object's own frame, and not a shape key: keys decide what Blender
-evaluates and hide later changes of the vertices, while an attribute is carried along by topology edits, by copies and
-by the file, and changes nothing that is seen.
+It is a mesh attribute, one local position for each vertex. Shape keys would change what Blender evaluates and hide
+later changes of vertices. An attribute survives topology edits, copies and saving, and changes nothing visible.
 """
 
 from __future__ import annotations
@@ -17,8 +16,8 @@ from stiv.blender.scene.arrays import Singles, read_collection
 NAME = "stiv_original"
 
 
-def read_original(ob: bpy.types.Object) -> Singles | None:
-    """Local positions, (m, 3), of the shape kept with the object's mesh; None if there is none, or none that fits."""
+def read_rest_shape(ob: bpy.types.Object) -> Singles | None:
+    """Local positions, (m, 3), of the stored rest shape; None if there is none, or none that fits."""
     if ob.mode == "EDIT":
         edited = bmesh.from_edit_mesh(ob.data).verts
         layer = edited.layers.float_vector.get(NAME)
@@ -29,20 +28,20 @@ def read_original(ob: bpy.types.Object) -> Singles | None:
     return read_collection(attribute.data, "vector", 3, np.float32)
 
 
-def keep_original(ob: bpy.types.Object, local: Singles) -> None:
-    """Keep local positions, (m, 3), with the object's mesh, in place of those kept before."""
+def store_rest_shape(ob: bpy.types.Object, local: Singles) -> None:
+    """Store local positions, (m, 3), as rest shape; replaces an earlier one."""
     if ob.mode == "EDIT":
         edited = bmesh.from_edit_mesh(ob.data).verts
         layer = edited.layers.float_vector.get(NAME) or edited.layers.float_vector.new(NAME)
         for vertex, position in zip(edited, local.tolist(), strict=True):
             vertex[layer] = position
         return
-    forget_original(ob)
+    remove_rest_shape(ob)
     ob.data.attributes.new(NAME, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", local.ravel())
 
 
-def forget_original(ob: bpy.types.Object) -> None:
-    """Drop what is kept with the object's mesh."""
+def remove_rest_shape(ob: bpy.types.Object) -> None:
+    """Remove the stored rest shape."""
     if ob.mode == "EDIT":
         layers = bmesh.from_edit_mesh(ob.data).verts.layers.float_vector
         if (layer := layers.get(NAME)) is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertices of meshes that lie in exactly the same place made one: first in copies, in the meshes when all went well."""
+"""Merges coincident vertices: first in copies of the meshes, and in the meshes themselves on success."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from stiv.blender.scene.references import ObjectReference
 
 @dataclass(frozen=True)
 class WeldedMeshes:
-    """Objects that show welded copies of their meshes. One of `keep` and `undo` has to follow.
+    """Objects that show welded copies of their meshes. Call either `keep` or `undo`.
 
-    `meshes` and `copies` are names of meshes, one an object.
+    `meshes` and `copies` are names of meshes, one for each object.
     """
 
     owners: tuple[ObjectReference, ...]
     meshes: tuple[str, ...]
     copies: tuple[str, ...]
 
-    def keep(self) -> None:
-        """Weld the meshes themselves, give them the positions of the copies, and remove the copies."""
+    def apply(self) -> None:
+        """Weld the meshes themselves, take over the positions of the copies, and remove these."""
         for name, copy in zip(self.meshes, self.copies, strict=True):
             mesh = bpy.data.meshes[name]
             _weld(mesh)
@@ -39,7 +39,7 @@ class WeldedMeshes:
         self.undo()
 
     def undo(self) -> None:
-        """Show the meshes again, and remove the copies; a second call does nothing."""
+        """Show the original meshes again, and remove the copies; a second call does nothing."""
         for owner, name, copy in zip(self.owners, self.meshes, self.copies, strict=True):
             if copy in bpy.data.meshes:
                 owner.find().data = bpy.data.meshes[name]
@@ -47,8 +47,8 @@ class WeldedMeshes:
         bpy.context.view_layer.update()
 
 
-def weld_selected(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
-    """Let objects show welded copies of their meshes. Raises InputError in Edit Mode, with nothing changed."""
+def weld_copies(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
+    """Replace the meshes of objects by welded copies. Raises InputError in Edit Mode, with nothing changed."""
     for ob in objects:
         if ob.mode == "EDIT":
             raise InputError(f'object "{ob.name}": cannot be welded in Edit Mode; leave it, or use Merge by Distance')
@@ -70,7 +70,7 @@ def _weld(mesh: bpy.types.Mesh) -> None:
         first: dict[tuple[float, ...], bmesh.types.BMVert] = {}
         targets = {}
         for vertex in edited.verts:
-            place = tuple(coordinate + 0.0 for coordinate in vertex.co)  # -0.0 and 0.0 are one place
+            place = tuple(coordinate + 0.0 for coordinate in vertex.co)  # -0.0 and 0.0 are equal
             if first.setdefault(place, vertex) is not vertex:
                 targets[vertex] = first[place]
         bmesh.ops.weld_verts(edited, targetmap=targets)

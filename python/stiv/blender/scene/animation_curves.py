@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which properties of a data-block are animated or driven."""
+"""Finds animated and driven properties."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -7,8 +7,8 @@ from typing import Any
 import bpy
 
 
-def controlled_paths(data: bpy.types.ID) -> set[str]:
-    """Data paths of all curves and drivers that act on a data-block; muted ones left out."""
+def animated_paths(data: bpy.types.ID) -> set[str]:
+    """Data paths of all curves and drivers of a data-block; muted ones are left out."""
     animation = getattr(data, "animation_data", None)
     if animation is None:
         return set()
@@ -29,7 +29,7 @@ def _actions(animation: bpy.types.AnimData) -> Iterator[bpy.types.Action]:
 
 
 def channel_curves(action: Any) -> Iterator[Any]:
-    """Curves of an action: by layers where Blender has them (4.4 and later), else its plain list."""
+    """Curves of an action: those of its layers (Blender 4.4 and later), or its plain list."""
     if not hasattr(action, "layers"):
         yield from action.fcurves
         return

@@ -14,17 +14,17 @@ Flags = NDArray[np.bool_]
 
 
 def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:
-    """A 4x4 matrix of Blender's, or anything like it, in double precision."""
+    """Blender's 4x4 matrix, or any nested sequence, in double precision."""
     return np.array([list(row) for row in matrix], dtype=np.float64)
 
 
 def transform_points(matrix: Floats, points: NDArray[Any]) -> Floats:
-    """Affine map, (4, 4), of points, (n, 3)."""
+    """Apply an affine map, (4, 4), to points, (n, 3)."""
     return np.asarray(points, np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:
-    """An attribute of every item of a Blender collection, (n, width), or (n,) when the width is 1."""
+    """Read an attribute of every item of a Blender collection, (n, width), or (n,) for width 1."""
     values: NDArray[Any] = np.empty(len(collection) * width, dtype)
     collection.foreach_get(attribute, values)
     return values if width == 1 else values.reshape(-1, width)

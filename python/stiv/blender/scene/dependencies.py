@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects an object's modifiers and constraints look at."""
+"""Finds the objects that an object depends on."""
+
+from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
@@ -12,7 +14,7 @@ from stiv.blender.scene.evaluations import VIEWPORT, is_active
 
 @dataclass(frozen=True)
 class Dependency:
-    """`user` looks at object `used` through a modifier or constraint, named as in messages."""
+    """Object `user` refers to object `used` through a modifier or constraint, named as in messages."""
 
     user: str
     used: str
@@ -20,13 +22,13 @@ class Dependency:
 
 
 def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,)) -> Iterator[Dependency]:
-    """What modifiers active in an evaluation, and constraints, of an object look at, the object itself left out."""
+    """Other objects that active modifiers and constraints of an object refer to."""
     for modifier in ob.modifiers:
         if any(is_active(modifier, ob, evaluation) for evaluation in evaluations):
-            yield from _named(ob, f'modifier "{modifier.name}"', looked_at(modifier))
+            yield from _named(ob, f'modifier "{modifier.name}"', referenced_objects(modifier))
     for constraint in ob.constraints:
         if not constraint.mute:
-            yield from _named(ob, f'constraint "{constraint.name}"', looked_at(constraint))
+            yield from _named(ob, f'constraint "{constraint.name}"', referenced_objects(constraint))
 
 
 def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[Dependency]:
@@ -35,8 +37,8 @@ def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[
             yield Dependency(ob.name, other.name, through)
 
 
-def looked_at(owner: Any) -> Iterator[bpy.types.Object]:
-    """Objects that a modifier or constraint looks at."""
+def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:
+    """Objects that a modifier or constraint refers to."""
     values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
     if isinstance(owner, bpy.types.NodesModifier):
         values += _inputs(owner)
@@ -51,16 +53,18 @@ def looked_at(owner: Any) -> Iterator[bpy.types.Object]:
 
 
 def _inputs(modifier: bpy.types.NodesModifier) -> list[Any]:
-    """What is given to a node tree: properties of its interface since Blender 5.2, before that the modifier's own."""
-    given = getattr(getattr(modifier, "properties", None), "inputs", None)
-    if given is None:
+    """Inputs of a node tree: properties of its interface since Blender 5.2, of the modifier before that."""
+    max_weights = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if max_weights is None:
         return list(modifier.values())
-    sockets = [getattr(given, item.identifier) for item in given.bl_rna.properties if item.type == "POINTER"]
+    sockets = [
+        getattr(max_weights, item.identifier) for item in max_weights.bl_rna.properties if item.type == "POINTER"
+    ]
     return [getattr(socket, "value", None) for socket in sockets]
 
 
 def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:
-    """Objects and collections chosen inside a node tree and the groups in it."""
+    """Objects and collections that a node tree and its groups refer to."""
     if tree is None or tree.name in seen:
         return []
     seen.add(tree.name)
@@ -69,3 +73,16 @@ def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:
         values += [socket.default_value for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION")]
         values += _in_nodes(getattr(node, "node_tree", None), seen)
     return values
+
+
+def shape_dependencies(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Objects on which the shape or the instances of an object depend, in any evaluation."""
+
+    for modifier in ob.modifiers:
+        yield from referenced_objects(modifier)
+    if ob.instance_type == "COLLECTION" and ob.instance_collection is not None:
+        yield from ob.instance_collection.all_objects
+    elif ob.instance_type in ("VERTS", "FACES"):
+        yield from ob.children
+    if ob.parent is not None and (ob.parent_type.startswith("VERTEX") or ob.parent.instance_type != "NONE"):
+        yield ob.parent

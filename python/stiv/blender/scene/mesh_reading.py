@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays out of Blender's mesh data."""
+"""Reads Blender's meshes as arrays."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -14,10 +14,10 @@ from stiv.blender.scene.arrays import Indices, Singles, read_collection
 
 @contextmanager
 def evaluated_mesh(evaluated: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
-    """The mesh of an evaluated object, for as long as the context lasts.
+    """The mesh of an evaluated object, valid inside the `with` statement.
 
-    In Edit Mode the evaluated data may be an empty shell around the edit mesh (no attributes, no vertices when there
-    is no modifier), so there a copy is made of it.
+    In Edit Mode the evaluated data may be an empty shell around the edit mesh (without attributes, and without vertices
+    if there is no modifier). In that case a copy is made.
     """
     mesh = evaluated.data
     if isinstance(mesh, bpy.types.Mesh) and mesh.attributes.get("position") is not None:
@@ -39,10 +39,10 @@ def read_positions(mesh: bpy.types.Mesh) -> Singles:
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
-    """Blender's own triangulation: corners, (f, 3), and the face each triangle belongs to, (f,)."""
+    """Blender's triangulation: corners, (f, 3), and the face of each triangle, (f,)."""
     mesh.calc_loop_triangles()
     sizes = read_collection(mesh.polygons, "loop_total", 1, np.int32)
-    faces = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes - 2)  # in their order; faster than to ask for it
+    faces = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes - 2)  # in the order of faces
     return read_collection(mesh.loop_triangles, "vertices", 3, np.int32), faces
 
 
@@ -52,11 +52,11 @@ def read_edges(mesh: bpy.types.Mesh) -> Indices:
 
 
 def read_loose_numbers(mesh: bpy.types.Mesh) -> Indices:
-    """Numbers of the edges of no face, (l,)."""
+    """Numbers of the edges without a face, (l,)."""
     used = mesh.attributes.get(".corner_edge")
     if used is None:
         loose = read_collection(mesh.edges, "is_loose", 1, np.bool_)
-    else:  # a tenth of the time
+    else:  # ten times faster
         loose = np.ones(len(mesh.edges), np.bool_)
         loose[read_collection(used.data, "value", 1, np.int32)] = False
     return np.flatnonzero(loose).astype(np.int32)
@@ -73,15 +73,15 @@ def read_corners(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
 
 
 def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
-    """Corners of all faces, one after the other, and the first corner of each face with the end added, (F + 1,)."""
+    """Corners of all faces, stacked, and the first corner of each face followed by the total, (F + 1,)."""
     corners = read_collection(mesh.loops, "vertex_index", 1, np.int32)
     starts = read_collection(mesh.polygons, "loop_start", 1, np.int32)
     return corners, np.append(starts, len(corners)).astype(np.int32)
 
 
 def read_creases(mesh: bpy.types.Mesh) -> tuple[Singles | None, Singles | None]:
-    """Creases of edges, (E,), and of vertices, (V,); None where there are none."""
-    if mesh.is_editmode:  # attributes are empty there
+    """Creases of edges, (E,), and of vertices, (V,); None if there are none."""
+    if mesh.is_editmode:  # attributes are empty in Edit Mode
         edited = bmesh.from_edit_mesh(mesh)
         return _edited_creases(edited.edges, "crease_edge"), _edited_creases(edited.verts, "crease_vert")
 
@@ -97,11 +97,8 @@ def _edited_creases(elements: Any, name: str) -> Singles | None:
     return None if layer is None else np.array([element[layer] for element in elements], np.float32)
 
 
-def read_group_weights(vertices: Collection[Any], group: int) -> Singles:
-    """Weights of a vertex group by its index, (n,); 0 where a vertex is not in it."""
-    weights = np.zeros(len(vertices), np.float32)
-    for index, vertex in enumerate(vertices):
-        for element in vertex.groups:
-            if element.group == group:
-                weights[index] = element.weight
-    return weights
+def read_cage(ob: bpy.types.Object) -> Singles:
+    """Local positions of the cage, (m, 3); in Edit Mode as of the last `update_from_editmode`."""
+    keys = ob.data.shape_keys
+    points = ob.data.vertices if keys is None or ob.mode == "EDIT" else keys.key_blocks[0].data
+    return read_collection(points, "co", 3, np.float32)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Modifier stacks that are understood, as a list of linear stages."""
+"""Reads supported modifier stacks as a list of linear stages."""
 
 from dataclasses import dataclass
 
@@ -9,15 +9,15 @@ from stiv import InputError
 from stiv.blender.scene.evaluations import SHOWN, VIEWPORT, is_active, subdivision_levels
 from stiv.blender.scene.references import ObjectReference
 
-# Leave every position as it is, and the vertices' number and order.
+# Change neither positions nor the number and order of vertices.
 POSITION_KEEPING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
 
-WAYS_OUT = "apply it, disable it in the viewport, let the object respond rigidly, or make it an obstacle"
+WAYS_OUT = "apply or disable it, or make the object rigid or an obstacle"
 
 
 @dataclass(frozen=True)
-class Subdivision:
-    """A Subdivision Surface modifier, as one evaluation has it."""
+class SubdivisionStage:
+    """A Subdivision Surface modifier in one evaluation."""
 
     modifier: str
     levels: int
@@ -29,8 +29,8 @@ class Subdivision:
 
 
 @dataclass(frozen=True)
-class Bending:
-    """A Lattice modifier. `vertex_group` is the group's index, None without one."""
+class LatticeStage:
+    """A Lattice modifier. `vertex_group` is the index of its group, or None."""
 
     modifier: str
     lattice: ObjectReference
@@ -39,13 +39,13 @@ class Bending:
     inverted: bool
 
 
-Stage = Subdivision | Bending
+Stage = SubdivisionStage | LatticeStage
 
 
 def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
-    """The stages of an evaluation, in order; what does nothing is left out.
+    """Read the stages of an evaluation in order; modifiers without effect are left out.
 
-    Raises InputError naming object, modifier and ways out for everything that is not understood.
+    Raises InputError naming object, modifier and ways out for any other modifier.
     """
     stages: list[Stage] = []
     triangulated = ""
@@ -55,15 +55,15 @@ def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = S
         if modifier.type == "TRIANGULATE":
             triangulated = modifier.name
         stage = _stage(ob, modifier, scene, evaluation)
-        if isinstance(stage, Subdivision):
+        if isinstance(stage, SubdivisionStage):
             _check_subdivision(ob, stage, stages, triangulated)
         if stage is not None:
             stages.append(stage)
     return stages
 
 
-def refuse(ob: bpy.types.Object, modifier: str, reason: str) -> InputError:
-    """The error for a modifier that cannot be followed."""
+def modifier_error(ob: bpy.types.Object, modifier: str, reason: str) -> InputError:
+    """The error for an unsupported modifier."""
     return InputError(f'object "{ob.name}", modifier "{modifier}": {reason}; {WAYS_OUT}')
 
 
@@ -76,22 +76,24 @@ def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.
         return None
     if not is_active(modifier, ob):
         raise _refuse_unseen(ob, modifier, evaluation)
-    kind = modifier.bl_rna.name.removesuffix("Modifier").strip()
-    raise refuse(ob, modifier.name, f"STIV cannot follow {kind}")
+    kind = modifier.bl_rna.properties["type"].enum_items[modifier.type].name
+    raise modifier_error(ob, modifier.name, f"{kind} is not supported")
 
 
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
-    """The error for a modifier that the user does not see now, short enough for the status bar."""
+    """The error for a modifier that is not shown now; short enough for the status bar."""
     if evaluation == VIEWPORT:
         return InputError(f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode')
     return InputError(f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport')
 
 
-def _subdivision(modifier: bpy.types.SubsurfModifier, scene: bpy.types.Scene, evaluation: str) -> Subdivision | None:
+def _subdivision(
+    modifier: bpy.types.SubsurfModifier, scene: bpy.types.Scene, evaluation: str
+) -> SubdivisionStage | None:
     levels = subdivision_levels(modifier, scene, evaluation)
     if levels == 0:
         return None
-    return Subdivision(
+    return SubdivisionStage(
         modifier.name,
         levels,
         modifier.use_limit_surface,
@@ -102,18 +104,18 @@ def _subdivision(modifier: bpy.types.SubsurfModifier, scene: bpy.types.Scene, ev
     )
 
 
-def _check_subdivision(ob: bpy.types.Object, stage: Subdivision, before: list[Stage], triangulated: str) -> None:
-    if any(isinstance(other, Subdivision) for other in before):
-        raise refuse(ob, stage.modifier, "is the second subdivision of the stack")
+def _check_subdivision(ob: bpy.types.Object, stage: SubdivisionStage, before: list[Stage], triangulated: str) -> None:
+    if any(isinstance(other, SubdivisionStage) for other in before):
+        raise modifier_error(ob, stage.modifier, "is a second subdivision")
     if triangulated:
-        raise refuse(ob, triangulated, "comes before a subdivision")
+        raise modifier_error(ob, triangulated, "precedes a subdivision")
 
 
-def _bending(ob: bpy.types.Object, modifier: bpy.types.LatticeModifier) -> Bending | None:
+def _bending(ob: bpy.types.Object, modifier: bpy.types.LatticeModifier) -> LatticeStage | None:
     if modifier.object is None or modifier.strength == 0:
         return None
     group = ob.vertex_groups.get(modifier.vertex_group)
-    return Bending(
+    return LatticeStage(
         modifier.name,
         ObjectReference.of(modifier.object),
         modifier.strength,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a line of sight meets first, of what Blender shows."""
+"""Casts rays at what Blender shows."""
 
 from typing import Any
 
@@ -8,21 +8,21 @@ import numpy as np
 
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 
-MOST_PASSED = 100  # surfaces of what is looked through
-STEP = 1e-6  # of the way to a surface, to be behind it
+MAX_PASSED = 100  # surfaces of transparent objects
+STEP = 1e-6  # of the distance to a surface, to continue behind it
 
 
-def first_seen(
+def first_hit(
     context: bpy.types.Context, origin: Floats, direction: Floats, through: frozenset[str]
 ) -> tuple[Floats, Floats] | None:
-    """The place, (3,), where a ray meets the first surface, and the corners, (k, 3), of the face there.
+    """Point, (3,), where a ray hits the first surface, and the corners, (k, 3), of that face.
 
-    Objects named in `through` are passed. None where nothing is met within the length of `direction`.
+    The ray passes through objects named in `through`. None if it hits nothing within the length of `direction`.
     """
     depsgraph = context.evaluated_depsgraph_get()
     length = float(np.linalg.norm(direction))
     unit, travelled = direction / length, 0.0
-    for _ in range(MOST_PASSED):
+    for _ in range(MAX_PASSED):
         start = origin + travelled * unit
         left = length - travelled
         hit, place, _, face, thing, matrix = context.scene.ray_cast(depsgraph, start, unit, distance=left)
@@ -35,7 +35,7 @@ def first_seen(
 
 
 def _corners(thing: bpy.types.Object, face: int, matrix: Any, place: Floats) -> Floats:
-    """World positions of a face's corners; the place alone where the evaluated mesh does not have the face at hand."""
+    """World positions of a face's corners; the hit point alone if the evaluated mesh does not have the face."""
     mesh = thing.data
     if not isinstance(mesh, bpy.types.Mesh) or not 0 <= face < len(mesh.polygons):
         return place[None]

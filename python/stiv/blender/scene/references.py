@@ -1,28 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names for objects that outlive undo: Blender's own references do not."""
+"""References to objects that survive undo, which invalidates Blender's own."""
 
 from dataclasses import dataclass
 
 import bpy
 
-from stiv.blender.scene.errors import SceneChangedError
+
+class SceneChangedError(RuntimeError):
+    """An object of a running edit was removed, or its mode or size changed; the edit has to be cancelled."""
+
+
+def type_name(ob: bpy.types.Object) -> str:
+    """The object's type as Blender's menus name it, in lower case."""
+    name: str = ob.bl_rna.properties["type"].enum_items[ob.type].name
+    return name.lower()
 
 
 @dataclass(frozen=True)
 class ObjectReference:
-    """An object by name and by the number it keeps while the file is open (through renaming and undo)."""
+    """An object by name and session number, which renaming and undo preserve."""
 
     name: str
     session_uid: int
 
     @staticmethod
     def of(ob: bpy.types.Object) -> "ObjectReference":
-        """Reference to an object, or to the original of an evaluated one."""
+        """Reference to an object, or to the original of an evaluated object."""
         original = ob.original
         return ObjectReference(original.name, original.session_uid)
 
     def find(self) -> bpy.types.Object:
-        """The object as it is now. Raises SceneChangedError when it is gone."""
+        """The object at present. Raises SceneChangedError if it was removed."""
         ob = bpy.data.objects.get(self.name)
         if ob is not None and ob.session_uid == self.session_uid:
             return ob
@@ -32,7 +40,7 @@ class ObjectReference:
         raise SceneChangedError(f'object "{self.name}" is gone')
 
     def find_in_mode(self, mode: str) -> bpy.types.Object:
-        """The object, still in this mode ("OBJECT", "EDIT"). Raises SceneChangedError."""
+        """The object, if it is still in this mode ("OBJECT", "EDIT"). Raises SceneChangedError."""
         ob = self.find()
         if ob.mode != mode:
             raise SceneChangedError(f'object "{self.name}" has left {mode.title()} Mode')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curves and hair as segments with a radius, and the closed boxes that cover them."""
+"""Strands as segments with a radius, and the closed boxes that cover them."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Strands:
 
     Attributes:
         ends: both ends of each segment, (s, 2, 3).
-        radii: the radius of each segment, (s,); 0: a line.
-        numbers: the strand that each segment belongs to, (s,).
+        radii: radius of each segment, (s,); 0 for a line.
+        numbers: strand of each segment, (s,).
     """
 
     ends: Floats
@@ -32,20 +32,20 @@ class Strands:
     numbers: Indices
 
     def moved(self, matrix: Floats) -> Strands:
-        """In the frame that a matrix, (4, 4), leads to; radii by its largest scale."""
+        """Transform by a matrix, (4, 4); radii grow by its largest scale."""
         ends = transform_points(matrix, self.ends.reshape(-1, 3)).reshape(-1, 2, 3)
         return Strands(ends, self.radii * float(np.linalg.norm(matrix[:3, :3], 2)), self.numbers)
 
 
 @dataclass(frozen=True)
 class StrandSurface:
-    """What covers strands.
+    """The surface that covers strands.
 
     Attributes:
         positions: (n, 3) in the world.
-        triangles: closed boxes, one for each segment with a radius, (f, 3).
+        triangles: a closed box for each segment with a radius, (f, 3).
         edges: segments without a radius, (l, 2).
-        numbers: the strand that each vertex belongs to, (n,).
+        numbers: strand of each vertex, (n,).
     """
 
     positions: Floats
@@ -54,25 +54,25 @@ class StrandSurface:
     numbers: Indices
 
 
-def polylines(points: Floats, counts: Indices, radii: Floats) -> Strands:
-    """Strands of `counts` points each, (k,), one after the other: positions, (n, 3), and radii, (n,)."""
+def polyline_strands(points: Floats, counts: Indices, radii: Floats) -> Strands:
+    """Polylines of `counts` points each, (k,), with stacked positions, (n, 3), and radii, (n,)."""
     numbers = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
     first = np.flatnonzero(numbers[:-1] == numbers[1:])
     ends = np.stack([points[first], points[first + 1]], axis=1)
     return Strands(ends, np.maximum(radii[first], radii[first + 1]), numbers[first])
 
 
-def edges_of(points: Floats, edges: Indices) -> Strands:
+def edge_strands(points: Floats, edges: Indices) -> Strands:
     """Segments without radius; each run of edges that share vertices is a strand."""
     breaks = np.append(True, edges[1:, 0] != edges[:-1, 1])[: len(edges)]
     numbers = (np.cumsum(breaks) - 1).astype(np.int32)
     return Strands(points[edges].reshape(-1, 2, 3), np.zeros(len(edges)), numbers)
 
 
-def hair(points: Floats, counts: Indices, radii: Floats, smooth: Flags, cyclic: Flags) -> Strands:
-    """Curves of `counts` points each, (k,): straight, or Catmull-Rom curves where `smooth`, (k,), says so.
+def hair_strands(points: Floats, counts: Indices, radii: Floats, smooth: Flags, cyclic: Flags) -> Strands:
+    """Curves of `counts` points each, (k,): Catmull-Rom curves if `smooth`, (k,), otherwise polylines.
 
-    The radius of a chord of a smooth curve includes how far the curve bends away from it.
+    The radius of a smooth curve's chord includes its distance from the curve.
     """
     numbers = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
     firsts = np.repeat(np.cumsum(counts) - counts, counts)
@@ -90,11 +90,11 @@ def hair(points: Floats, counts: Indices, radii: Floats, smooth: Flags, cyclic: 
         Strands(straight[..., :3], straight[..., 3].max(axis=1, initial=0.0), numbers[spans[~bent]]),
         _catmull_rom(values[nodes[bent]], numbers[spans[bent]]),
     ]
-    return joined(parts)
+    return join_strands(parts)
 
 
-def joined(parts: Sequence[Strands]) -> Strands:
-    """Segments one after the other."""
+def join_strands(parts: Sequence[Strands]) -> Strands:
+    """Concatenate strands."""
     return Strands(
         np.concatenate([np.empty((0, 2, 3)), *(each.ends for each in parts)]),
         np.concatenate([np.empty(0), *(each.radii for each in parts)]),
@@ -102,8 +102,8 @@ def joined(parts: Sequence[Strands]) -> Strands:
     )
 
 
-def cover(strands: Strands) -> StrandSurface:
-    """A box around each segment that contains all points within its radius; an edge where the radius is 0."""
+def cover_strands(strands: Strands) -> StrandSurface:
+    """Cover each segment by a box that contains all points within its radius, or by an edge if the radius is 0."""
     lengths = np.linalg.norm(strands.ends[:, 1] - strands.ends[:, 0], axis=1)
     thick, thin = strands.radii > 0, (strands.radii <= 0) & (lengths > 0)
     corners = _boxes(strands.ends[thick], strands.radii[thick])
@@ -118,21 +118,21 @@ def cover(strands: Strands) -> StrandSurface:
 
 
 def _catmull_rom(nodes: Floats, numbers: Indices) -> Strands:
-    """Chords of spans: their four nodes with position and radius, (s, 4, 4)."""
+    """Chords of spans, from the positions and radii of their four nodes, (s, 4, 4)."""
     a, b, c, d = (nodes[:, k] for k in range(4))
     t = np.linspace(0.0, 1.0, SUBDIVISION + 1)[:, None, None]
     values = 0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3)
     second = np.maximum(
         np.linalg.norm(2 * a - 5 * b + 4 * c - d, axis=1), np.linalg.norm(4 * b - a - 5 * c + 2 * d, axis=1)
     )
-    bend = second / (8 * SUBDIVISION**2)  # the second derivative is linear, so its largest value is at an end
+    bend = second / (8 * SUBDIVISION**2)  # the second derivative is linear, so its maximum is at an end
     ends = np.stack([values[:-1, :, :3], values[1:, :, :3]], axis=2)
     radii = np.maximum(values[:-1, :, 3], values[1:, :, 3]) + bend
     return Strands(ends.reshape(-1, 2, 3), radii.ravel(), np.tile(numbers, SUBDIVISION))
 
 
 def _boxes(ends: Floats, radii: Floats) -> Floats:
-    """The corners of the boxes, (s, 8, 3)."""
+    """Corners of the boxes, (s, 8, 3)."""
     along = ends[:, 1] - ends[:, 0]
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     along = np.where(lengths > 0, along / np.where(lengths > 0, lengths, 1.0), (1.0, 0.0, 0.0))

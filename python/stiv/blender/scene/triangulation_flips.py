@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that Blender cuts into other triangles as they bend, and surfaces that hold more than one cut of them.
+"""Triangulation flips of bent faces, and surfaces with several triangulations of a face.
 
-Blender cuts a quad along its first diagonal unless the halves would face away from each other, and polygons as their
-shape wants it. A surface that is free in the cut of the start can therefore meet something in the one that Blender
-shows. Quads that are near that point keep both cuts free from the start; others get their second cut when it is seen.
+Blender splits a quad along its first diagonal unless the halves would face away from each other; polygons depend on
+their shape. A surface free of intersections in its first triangulation may therefore intersect in the one that Blender
+shows. Quads close to a flip keep both triangulations free from the start; others from the first flip on.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -15,97 +15,101 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.scene.arrays import Indices
-from stiv.blender.scene.assembly import Assembly, Element
-from stiv.blender.scene.evaluated_scene import Opened, VisibleMesh
+from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.elements import Element
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_triangles
+from stiv.blender.scene.open_evaluations import OpenEvaluations
 
-BENT = 0.7  # cosine of the angle between the halves of a quad from which both cuts are kept free
+BENT = 0.7  # cosine of the angle between the halves of a quad; below it both triangulations are kept free
 
 
 @dataclass(frozen=True)
-class Cut:
-    """More triangles of faces of one mesh.
+class FaceTriangles:
+    """Additional triangles of faces of one mesh.
 
     Attributes:
         mesh: number of the mesh in the assembly.
-        triangles: (f, 3) vertices of the mesh.
-        faces: the face that each cuts, (f,).
+        triangles: vertices of the mesh, (f, 3).
+        faces: face of each triangle, (f,).
     """
 
     mesh: int
     triangles: Indices
     faces: Indices
 
-    def limited_to(self, rows: NDArray[np.bool_]) -> "Cut":
+    def limited_to(self, rows: NDArray[np.bool_]) -> "FaceTriangles":
         """Some of the triangles, (f,)."""
-        return Cut(self.mesh, self.triangles[rows], self.faces[rows])
+        return FaceTriangles(self.mesh, self.triangles[rows], self.faces[rows])
 
 
 @dataclass(frozen=True)
-class PresentCut:
-    """Blender's present triangles of one mesh of an assembly, and those of them that the assembly does not hold."""
+class CurrentTriangulation:
+    """All present triangles of one mesh, and those that the assembly does not include."""
 
-    all: Cut
-    fresh: Cut
+    all: FaceTriangles
+    new: FaceTriangles
 
 
-def fresh_cuts(context: bpy.types.Context, assembly: Assembly, opened: Opened | None = None) -> tuple[PresentCut, ...]:
-    """Blender's present triangles of the meshes that show some which the assembly does not hold.
+def find_flips(
+    context: bpy.types.Context, assembly: Assembly, opened: OpenEvaluations | None = None
+) -> tuple[CurrentTriangulation, ...]:
+    """Find the meshes whose present triangulation has triangles that the assembly does not include.
 
-    opened: the evaluations that its meshes were read from; None: what is shown now.
+    opened: the evaluations from which the meshes were read; None for the one shown now.
 
-    Only deformable bodies change their shape, and so their cuts.
+    Only deformable bodies change their shape, and thus their triangulation.
     """
-    source = opened or Opened(context)
-    cuts = []
+    source = opened or OpenEvaluations(context)
+    flips = []
     for number, mesh in enumerate(assembly.meshes):
         if not _is_deformable(assembly, number):
             continue
-        with evaluated_mesh(source.evaluated(mesh.read_in, mesh.owner)) as evaluated:
+        with evaluated_mesh(source.evaluated(mesh.read_from, mesh.owner)) as evaluated:
             triangles, faces = read_triangles(evaluated)
-        cut = Cut(number, triangles, faces)
-        fresh = _fresh_rows(triangles, mesh.triangles)
-        if fresh.any():
-            cuts.append(PresentCut(cut, cut.limited_to(fresh)))
-    return tuple(cuts)
+        flip = FaceTriangles(number, triangles, faces)
+        new = _new_rows(triangles, mesh.triangles)
+        if new.any():
+            flips.append(CurrentTriangulation(flip, flip.limited_to(new)))
+    return tuple(flips)
 
 
-def as_shown(assembly: Assembly, cuts: Sequence[PresentCut]) -> Assembly:
-    """The assembly as Blender cuts it now; meshes without a cut of their own stay as they are."""
+def with_current_triangulation(assembly: Assembly, flips: Sequence[CurrentTriangulation]) -> Assembly:
+    """The assembly with Blender's present triangulation; meshes without one given are unchanged."""
     meshes = list(assembly.meshes)
-    for cut in cuts:
-        meshes[cut.all.mesh] = replace(meshes[cut.all.mesh], triangles=cut.all.triangles, faces=cut.all.faces)
-    return _recut(assembly, meshes, [])
+    for flip in flips:
+        meshes[flip.all.mesh] = replace(meshes[flip.all.mesh], triangles=flip.all.triangles, faces=flip.all.faces)
+    return _retriangulated(assembly, meshes, [])
 
 
-def with_cuts(assembly: Assembly, cuts: Sequence[Cut]) -> Assembly:
-    """The assembly with more triangles besides those it holds."""
+def add_triangles(assembly: Assembly, flips: Sequence[FaceTriangles]) -> Assembly:
+    """The assembly with additional triangles."""
     meshes, recut_faces = list(assembly.meshes), []
-    for cut in cuts:
-        meshes[cut.mesh] = _extended(meshes[cut.mesh], cut)
-        place = assembly.vertices(cut.mesh)
-        recut_faces += [np.unique(place[corners]).tolist() for corners in _corners(meshes[cut.mesh], cut)]
-    return _recut(assembly, meshes, recut_faces)
+    for flip in flips:
+        meshes[flip.mesh] = _extend(meshes[flip.mesh], flip)
+        place = assembly.vertices(flip.mesh)
+        recut_faces += [np.unique(place[corners]).tolist() for corners in _corners(meshes[flip.mesh], flip)]
+    return _retriangulated(assembly, meshes, recut_faces)
 
 
-def with_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
-    """The assembly with both cuts of the quads of deformable meshes that are bent far, where both are free now."""
-    cuts = [cut for number in range(len(assembly.meshes)) if (cut := _bent_quads(assembly, number)) is not None]
-    while cuts:
-        extended = with_cuts(assembly, cuts)
+def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
+    """Add the second triangulation of strongly bent quads of deformable meshes, if it is free of intersections now."""
+    flips = [flip for number in range(len(assembly.meshes)) if (flip := _bent_quads(assembly, number)) is not None]
+    while flips:
+        extended = add_triangles(assembly, flips)
         pairs = stiv.find_intersections(assembly.positions, extended.surface, threads=threads)
         if len(pairs) == 0:
             return extended
-        meeting = {each for pair in pairs for each in map(extended.face, pair.tolist())}
-        left = [cut for each in cuts if len((cut := _without(each, meeting, assembly)).faces)]
-        if sum(len(cut.faces) for cut in left) == sum(len(cut.faces) for cut in cuts):
-            return extended  # others meet, which is for the session to refuse
-        cuts = left
+        intersecting = {each for pair in pairs for each in map(extended.face, pair.tolist())}
+        left = [flip for each in flips if len((flip := _drop_intersecting(each, intersecting, assembly)).faces)]
+        if sum(len(flip.faces) for flip in left) == sum(len(flip.faces) for flip in flips):
+            return extended  # other faces intersect; the session reports them
+        flips = left
     return assembly
 
 
-def _bent_quads(assembly: Assembly, number: int) -> Cut | None:
-    """The other cut of each bent quad of a mesh."""
+def _bent_quads(assembly: Assembly, number: int) -> FaceTriangles | None:
+    """The second triangulation of each strongly bent quad of a mesh."""
     if not _is_deformable(assembly, number):
         return None
     mesh, q = assembly.meshes[number], assembly.positions[assembly.vertices(number)]
@@ -120,27 +124,31 @@ def _bent_quads(assembly: Assembly, number: int) -> Cut | None:
     if len(first) == 0:
         return None
     other = np.concatenate([_other_cut(mesh.triangles[row], mesh.triangles[row + 1]) for row in first])
-    return Cut(number, other, np.repeat(mesh.faces[first], 2))
+    return FaceTriangles(number, other, np.repeat(mesh.faces[first], 2))
 
 
 def _other_cut(one: Indices, two: Indices) -> Indices:
-    """The two triangles, (2, 3), of a quad that is cut into these two."""
+    """The two triangles, (2, 3), of a quad split along its other diagonal."""
     tip = next(k for k in range(3) if one[k] not in two)
     far = next(vertex for vertex in two if vertex not in one)
     a, b, c = np.roll(one, -tip)
     return np.array([[a, b, far], [a, far, c]], np.int32)
 
 
-def _without(cut: Cut, meeting: Collection[Element], assembly: Assembly) -> Cut:
-    mesh = assembly.meshes[cut.mesh]
-    return cut.limited_to(
-        np.array([Element(mesh.owner.name, "face", int(face), mesh.read_in) not in meeting for face in cut.faces])
+def _drop_intersecting(flip: FaceTriangles, intersecting: Collection[Element], assembly: Assembly) -> FaceTriangles:
+    mesh = assembly.meshes[flip.mesh]
+    return flip.limited_to(
+        np.array(
+            [Element(mesh.owner.name, "face", int(face), mesh.read_from) not in intersecting for face in flip.faces]
+        )
     )
 
 
-def _recut(assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Sequence[Sequence[int]]) -> Assembly:
+def _retriangulated(
+    assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Sequence[Sequence[int]]
+) -> Assembly:
     old = assembly.surface
-    triangles = assembly.shifted_triangles(meshes)
+    triangles = assembly.renumbered_triangles(meshes)
     ignored = [(int(a), int(b)) for a, b in old.ignored]
     surface = stiv.Surface(
         triangles, old.vertex_count, old.loose_edges, old.vertex_body, old.bodies, ignored,
@@ -149,16 +157,16 @@ def _recut(assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Seque
     return replace(assembly, meshes=tuple(meshes), surface=surface)
 
 
-def _extended(mesh: VisibleMesh, cut: Cut) -> VisibleMesh:
+def _extend(mesh: VisibleMesh, flip: FaceTriangles) -> VisibleMesh:
     return replace(
         mesh,
-        triangles=np.concatenate([mesh.triangles, cut.triangles]),
-        faces=np.concatenate([mesh.faces, cut.faces]),
+        triangles=np.concatenate([mesh.triangles, flip.triangles]),
+        faces=np.concatenate([mesh.faces, flip.faces]),
     )
 
 
-def _corners(mesh: VisibleMesh, cut: Cut) -> Iterator[Indices]:
-    for face in np.unique(cut.faces):
+def _corners(mesh: VisibleMesh, flip: FaceTriangles) -> Iterator[Indices]:
+    for face in np.unique(flip.faces):
         yield np.unique(mesh.triangles[mesh.faces == face])
 
 
@@ -167,10 +175,10 @@ def _is_deformable(assembly: Assembly, mesh: int) -> bool:
     return start < surface.vertex_count and surface.bodies[surface.vertex_body[start]].mobility == "deformable"
 
 
-def _fresh_rows(present: Indices, held: Indices) -> NDArray[np.bool_]:
-    """Which present triangles are not held. Those held begin with the start's, in the same order of faces."""
+def _new_rows(present: Indices, held: Indices) -> NDArray[np.bool_]:
+    """Flags of the present triangles that are new; known ones start with those of the first triangulation, in order."""
     start, added = held[: len(present)], held[len(present) :]
-    fresh = np.array((present != start).any(axis=1), np.bool_)
-    known = {tuple(row) for row in np.sort(np.concatenate([start[fresh], added])).tolist()}
-    fresh[fresh] = [tuple(row) not in known for row in np.sort(present[fresh]).tolist()]
-    return fresh
+    new = np.array((present != start).any(axis=1), np.bool_)
+    known = {tuple(row) for row in np.sort(np.concatenate([start[new], added])).tolist()}
+    new[new] = [tuple(row) not in known for row in np.sort(present[new]).tolist()]
+    return new

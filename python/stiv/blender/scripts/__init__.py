@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts and commands need: files, selections and edit scripts."""
+"""Files, selections, edit scripts and registration, for scripts and commands."""

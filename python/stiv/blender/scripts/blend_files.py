@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens, saves and renders .blend files; scripts in them are never run."""
+"""Opens, saves and renders .blend files; never runs scripts in them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from stiv import InputError
 
 
 def open_blend(path: Path) -> bpy.types.Context:
-    """Makes `path` the open file and returns Blender's context. Raises InputError if Blender cannot read it."""
+    """Open a file and return Blender's context. Raises InputError if Blender cannot read it."""
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
@@ -20,7 +20,7 @@ def open_blend(path: Path) -> bpy.types.Context:
 
 
 def save_blend(path: Path) -> None:
-    """Saves a copy of the open file, compressed. Raises InputError if Blender cannot write it."""
+    """Save a compressed copy of the open file. Raises InputError if Blender cannot write it."""
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(path.resolve()), compress=True, copy=True, check_existing=False)
     except RuntimeError as error:
@@ -28,7 +28,7 @@ def save_blend(path: Path) -> None:
 
 
 def render_picture(path: Path) -> None:
-    """Renders the open scene's current frame with the scene's own settings to a PNG file."""
+    """Render the current frame of the open scene, with its own settings, to a PNG file."""
     render = bpy.context.scene.render
     if bpy.context.scene.camera is None:
         raise InputError("the scene has no camera to render with")
@@ -43,5 +43,5 @@ def render_picture(path: Path) -> None:
 
 
 def _reason(error: RuntimeError) -> str:
-    """Blender's own words, without its prefix."""
+    """Blender's message without its prefix."""
     return str(error).strip().removeprefix("Error: ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's operators and settings in scripts of one's own, where no extension is installed."""
+"""Registers the add-on's operators and settings for scripts, where no extension is installed."""
 
 import atexit
 import importlib
@@ -13,8 +13,8 @@ from stiv import InputError
 def enable() -> None:
     """Register the operators `bpy.ops.stiv` and the settings, until the process ends.
 
-    Does nothing where they are registered, as in a Blender with the extension enabled. Raises InputError if the add-on
-    is neither installed as an extension nor with STIV's wheel.
+    Does nothing if they are registered, as in a Blender with the extension enabled. Raises InputError if the add-on is
+    installed neither as an extension nor with STIV's wheel.
     """
     if is_enabled():
         return
@@ -34,9 +34,9 @@ def is_enabled() -> bool:
 
 
 def _disable(addon: ModuleType) -> None:
-    """Blender as a Python module crashes (4.2) or hangs (4.5) at the end if classes are still registered.
+    """Unregister: Blender as a Python module crashes (4.2) or hangs (4.5) at exit if classes are registered.
 
-    Blender 4.2 also crashes if properties with callbacks remain anywhere: they keep the module `bpy` alive too long.
+    Blender 4.2 also crashes if properties with callbacks remain, because they keep the module `bpy` alive too long.
     """
     if not is_enabled():
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs an edit script on the open scene through the add-on's operators, which must be registered."""
+"""Replays an edit script on the open scene through the add-on's operators, which must be registered."""
 
 from __future__ import annotations
 
@@ -22,12 +22,11 @@ Report = dict[str, Any]
 def replay(
     script: EditScript, on_edit: Callable[[Report], None] = lambda report: None, check: bool = False
 ) -> list[Report]:
-    """Runs every edit of the script; `on_edit` is told of each one when it is done.
+    """Run every edit of the script; `on_edit` is called with the report of each.
 
-    Of each edit: `number`, `operator`, `milliseconds` of the whole operator call, what the operator says about it
-    (`status`, `rounds`, `events`, `patches`, ...), and with `check` the `intersections` that the exact test, made anew,
-    finds in what Blender shows afterwards. Raises InputError, naming the edit, for what cannot be selected and
-    for an edit that the operator refuses; the edits before it stay done. Ends in Object Mode.
+    A report has `number`, `operator`, `milliseconds` of the operator call, the operator's own account (`status`,
+    `rounds`, `events`, `patches`, ...), and with `check` the number of `intersections` that a new exact test finds.
+    Raises InputError naming the edit if its selection or the operator fails; earlier edits remain. Ends in Object Mode.
     """
     reports: list[Report] = []
     selected: EditStep | None = None
@@ -47,7 +46,7 @@ def replay(
 
 
 def prepare(step: EditStep, script: EditScript, number: int) -> None:
-    """Gives the settings of a step and selects what it names. Raises InputError naming the edit."""
+    """Apply the settings of a step and select its objects. Raises InputError naming the edit."""
     try:
         _apply_settings({**script.settings, **step.settings})
         select(step)
@@ -56,12 +55,12 @@ def prepare(step: EditStep, script: EditScript, number: int) -> None:
 
 
 def _apply_settings(settings: Mapping[str, Any]) -> None:
-    """Gives the add-on's settings these values; the pivot is the median, as the format of scripts says."""
+    """Set the add-on's settings; the pivot is the median point, as the format of scripts defines."""
     scene = bpy.context.scene
     scene.tool_settings.transform_pivot_point = "MEDIAN_POINT"
     for name, value in settings.items():
         if name not in OF_OBJECTS and name not in scene.stiv.bl_rna.properties:
-            raise InputError(f'setting "{name}": the add-on has none of this name')
+            raise InputError(f'setting "{name}": the add-on has no such setting')
         try:
             if name in OF_OBJECTS:
                 _apply_to_objects(name, value)
@@ -72,18 +71,18 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _apply_to_objects(setting: str, values: Mapping[str, Any]) -> None:
-    """Gives objects, by name, their role, or any of the add-on's settings of an object by name."""
+    """Set the roles of objects by name, or any settings of objects by name."""
     for name, value in values.items():
         if name not in bpy.context.scene.objects:
             raise InputError(f'setting "{setting}": there is no object "{name}" in the scene')
         chosen = bpy.context.scene.objects[name].stiv
-        for field, given in {"role": value}.items() if setting == "roles" else value.items():
+        for field, max_weights in {"role": value}.items() if setting == "roles" else value.items():
             if field not in chosen.bl_rna.properties:
                 raise InputError(f'setting "{setting}", object "{name}": the add-on has no "{field}" of objects')
             if field == "handles":
-                _apply_handles(chosen.handles, given)
+                _apply_handles(chosen.handles, max_weights)
             else:
-                setattr(chosen, field, given)
+                setattr(chosen, field, max_weights)
 
 
 def _apply_handles(rows: Any, groups: Sequence[str]) -> None:
@@ -93,15 +92,17 @@ def _apply_handles(rows: Any, groups: Sequence[str]) -> None:
 
 
 def run_edit(step: EditStep, number: int) -> Report:
-    """Calls the operator of a step on what is selected; its report. Raises InputError naming the edit."""
+    """Call the operator of a step on the selection; returns the report. Raises InputError naming the edit."""
     begin = time.perf_counter()
     try:
         outcome = getattr(bpy.ops.stiv, step.operator)("EXEC_DEFAULT", **step.values)
-    except RuntimeError as error:  # how an operator's error report arrives
+    except RuntimeError as error:  # an operator's error report
         reason = str(error).strip().removeprefix("Error: ")
         raise InputError(f"edit {number} ({step.operator}): {reason}") from error
     milliseconds = 1000 * (time.perf_counter() - begin)
-    if outcome != {"FINISHED"} and step.operator not in RESHAPES:  # those end so where nothing was left to do
+    if (
+        outcome != {"FINISHED"} and step.operator not in RESHAPES
+    ):  # reshaping operators also end so if nothing was left to do
         raise InputError(f"edit {number} ({step.operator}): the operator was cancelled")
     said = json.loads(bpy.context.window_manager.stiv_last_edit)
     return {"number": number, "operator": step.operator, "milliseconds": round(milliseconds, 3), **said}

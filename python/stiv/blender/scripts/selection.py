@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts the open scene into the mode and selection that a step of an edit script asks for."""
+"""Sets the mode and selection of a step of an edit script."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stiv.edit_scripts import EditStep
 
 
 def select(step: EditStep) -> None:
-    """Selects the step's objects, the first one active, and in Edit Mode its points. Raises InputError."""
+    """Select the step's objects, the first one active, and in Edit Mode its points. Raises InputError."""
     layer = bpy.context.view_layer
     missing = [name for name in step.objects if name not in layer.objects]
     if missing:
@@ -57,7 +57,7 @@ def _select_vertices(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
 
 @contextmanager
 def selected(context: bpy.types.Context, names: Collection[str]) -> Iterator[None]:
-    """Within, exactly these objects are selected, in Object Mode; then those before. Raises InputError."""
+    """Select exactly these objects, in Object Mode, inside the `with` statement. Raises InputError."""
     layer = context.view_layer
     missing = [name for name in names if name not in layer.objects]
     if missing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes every scene and object of an open file visible to a test. The file is not to be saved afterwards."""
+"""Makes every scene and object of an open file visible to a test. Do not save the file afterwards."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ALL = "all"
 
 
 def scene_names(name: str) -> list[str]:
-    """Names of the scenes that `name`, or "all", stands for, the open one first. Raises InputError."""
+    """Names of the scenes selected by `name` or "all", the open one first. Raises InputError."""
     names = [bpy.context.scene.name, *(scene.name for scene in bpy.data.scenes if scene != bpy.context.scene)]
     if name in names:
         return [name]
@@ -24,7 +24,7 @@ def scene_names(name: str) -> list[str]:
 
 
 def check_names(scene: str, objects: Collection[str]) -> None:
-    """Refuses names of objects that no scene has that `scene`, a name or "all", stands for. Raises InputError."""
+    """Refuse objects that none of the selected scenes contains. Raises InputError."""
     known = {ob.name for name in scene_names(scene) for ob in bpy.data.scenes[name].objects}
     unknown = sorted(set(objects) - known)
     if unknown:
@@ -34,9 +34,9 @@ def check_names(scene: str, objects: Collection[str]) -> None:
 
 @contextmanager
 def opened_scene(name: str) -> Iterator[bpy.types.Context]:
-    """Blender's context with a scene as the open one, for as long as the context lasts.
+    """Blender's context with another scene, inside the `with` statement.
 
-    The window keeps its scene: after another was set, Blender 4.2 crashes when the next file is opened.
+    The window keeps its scene: if it is changed, Blender 4.2 crashes when the next file is opened.
     """
     scene = bpy.data.scenes[name]
     if scene == bpy.context.scene:
@@ -47,7 +47,7 @@ def opened_scene(name: str) -> Iterator[bpy.types.Context]:
 
 
 def unhide_all(context: bpy.types.Context) -> None:
-    """Shows every object and collection of the open scene, in the viewport and for the render."""
+    """Show every object and collection of the open scene, in the viewport and in the render."""
     for collection in (context.scene.collection, *context.scene.collection.children_recursive):
         collection.hide_viewport = collection.hide_render = False
     waiting = [context.view_layer.layer_collection]

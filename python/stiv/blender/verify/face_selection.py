@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selects the faces of findings: in Edit Mode as its face selection, in Object Mode in the mesh, for later."""
+"""Selects intersecting faces in meshes."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Indices
+from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.evaluations import SHOWN
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_faces
-from stiv.blender.scene.modifier_stack import Subdivision, read_stack
-from stiv.blender.verify.verification import FacePair
+from stiv.blender.scene.modifier_stack import SubdivisionStage, read_stack
 
 
 def faces_of(pairs: Sequence[FacePair]) -> dict[str, set[int]]:
-    """Numbers of the evaluated faces that take part in pairs, by the name of the object."""
+    """Numbers of the evaluated faces in the pairs, by object name."""
     found: dict[str, set[int]] = {}
     for pair in pairs:
         for each in (pair.first, pair.second):
@@ -30,10 +30,11 @@ def faces_of(pairs: Sequence[FacePair]) -> dict[str, set[int]]:
 
 
 def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]]) -> dict[str, int]:
-    """Select exactly the faces below these evaluated ones, in every visible mesh; how many, by the name of the object.
+    """Select exactly the faces that generate these evaluated faces, in every visible mesh; returns counts by object
+    name.
 
-    Objects in Edit Mode show it at once, in the select mode for faces; others when they enter it. Left out are meshes
-    whose modifiers make faces that cannot be told apart by number, linked ones, and objects that are no meshes.
+    Objects in Edit Mode show the selection at once, in face select mode; others when they enter Edit Mode. Linked
+    meshes, other object types, and meshes whose modifiers renumber faces are left out.
     """
     graph = context.evaluated_depsgraph_get()
     counts = {}
@@ -57,14 +58,14 @@ def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]
 
 
 def _origins(ob: bpy.types.Object, scene: bpy.types.Scene, total: int) -> Indices | None:
-    """The polygon of the mesh below each evaluated face; None where that cannot be told."""
+    """The face of the mesh that generates each evaluated face; None if unknown."""
     _, starts = read_faces(ob.data)
     corners = np.diff(starts)
     try:
-        levels = [stage.levels for stage in read_stack(ob, scene) if isinstance(stage, Subdivision)]
+        levels = [stage.levels for stage in read_stack(ob, scene) if isinstance(stage, SubdivisionStage)]
     except InputError:
         return None
-    # A face of n corners is cut into n quads, these into four each; quads among faces are cut into four at once.
+    # A face of n corners becomes n quads; each further level splits these into four.
     made = corners * 4 ** (levels[0] - 1) if levels else np.ones(len(corners), np.int64)
     origins = np.repeat(np.arange(len(corners), dtype=np.int32), made)
     has_triangles = any(modifier.type == "TRIANGULATE" for modifier in ob.modifiers)
@@ -94,7 +95,7 @@ def _select(ob: bpy.types.Object, chosen: NDArray[np.bool_]) -> None:
     edges[sides[of_corners]] = True
     mesh.polygons.foreach_set("select", chosen)
     mesh.vertices.foreach_set("select", vertices)
-    # Blender 5.0.1 ends when this attribute is written as `from_pydata` leaves it: one value for all edges.
+    # Blender 5.0.1 crashes when this attribute is written after `from_pydata`, which stores a single value.
     if (attribute := mesh.attributes.get(".select_edge")) is not None:
         mesh.attributes.remove(attribute)
     mesh.edges.foreach_set("select", edges)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact test of a scene over frames, and of the ways between them: a pose may be free, and what leads to it not.
+"""The exact test of a scene at frames and between them.
 
-Between two frames each vertex is taken to move on a straight line, as motion blur and most simulations take it.
+Between two frames each vertex moves on a straight line, as motion blur and most simulations assume.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.assembly import Assembly, assemble, assemble_joined, mesh_seams, unjoined_triangles
-from stiv.blender.scene.assembly import Element as FoundElement
+from stiv.blender.scene.assembly import Assembly, assemble, assemble_with_seams, mesh_seams, unmerged_triangles
+from stiv.blender.scene.elements import Element as FoundElement
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
 from stiv.blender.scene.evaluations import RENDER, VIEWPORT
+from stiv.blender.scene.face_pairs import EventElements
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.event_elements import EventElements
-from stiv.blender.verify.left_out import find_left_out
-from stiv.blender.verify.scene_check import counted_names, find_pairs_and_seams
+from stiv.blender.verify.scene_check import find_pairs_and_seams, tested_names
+from stiv.blender.verify.untested import find_untested
 from stiv.checks.findings import CROSSING, Element, Finding, Look, SeamPairs, Shapes
 from stiv.seams import Seams, common_seams
 
@@ -35,48 +35,48 @@ def check_frames(
     threads: int = 0,
     evaluations: Sequence[str] = (VIEWPORT, RENDER),
 ) -> Iterator[Look]:
-    """Looks at the present pose, or with `frames` at each of them and at the way from each to the next.
+    """Test the present pose, or each of `frames` and the motion to the next.
 
-    objects: names to be limited to. Whole and fractional frames may be mixed; they must ascend. evaluations: each is
-    tested for itself; what is rendered as the viewport shows it is told once. The scene is left at the last frame.
-    Raises InputError for unknown names and coordinates that are not finite.
+    objects: names to test; empty for all. Frames ascend and may be fractional. evaluations: each is tested separately;
+    what the render shares with the viewport is reported once. The scene ends at the last frame. Raises InputError for
+    unknown names and coordinates that are not finite.
     """
     _check_names(context, objects)
     before: dict[str, Pose] = {}
     for number, frame in enumerate(frames or (None,)):
         if frame is not None:
-            go_to(context.scene, frame)
+            set_frame(context.scene, frame)
         present = _read(context, objects, evaluations, frame, threads)
         for evaluation in evaluations if before else ():
             if evaluation in before or evaluation in present:
                 start, end = (poses.get(evaluation, poses[evaluations[0]]) for poses in (before, present))
-                look = _between(start, end, evaluation, threads)
+                look = _test_motion(start, end, evaluation, threads)
                 yield look if evaluation == evaluations[0] else replace(look, notes=())
         tested = {name for pose in present.values() for name in pose.look.shapes.names}
-        left_out = find_left_out(context, tested, objects) if number == 0 else ()
+        untested = find_untested(context, tested, objects) if number == 0 else ()
         for pose in present.values():
-            yield replace(pose.look, untested=left_out)
+            yield replace(pose.look, untested=untested)
         before = present
 
 
-def go_to(scene: bpy.types.Scene, frame: float) -> None:
-    """Makes a whole or fractional frame the scene's present one."""
+def set_frame(scene: bpy.types.Scene, frame: float) -> None:
+    """Set the scene to a whole or fractional frame."""
     whole = math.floor(frame)
     scene.frame_set(whole, subframe=frame - whole)
 
 
 def scene_frames(context: bpy.types.Context) -> tuple[int, int]:
-    """The scene's own range of frames."""
+    """The scene's frame range."""
     return context.scene.frame_start, context.scene.frame_end
 
 
 def shapes_of(assembly: Assembly, positions: Floats) -> Shapes:
-    """The triangles of an assembly at positions of its surface, (N, 3), with the objects and faces they belong to."""
+    """Triangles of an assembly at surface positions, (N, 3), with their objects and faces."""
     names = tuple(dict.fromkeys(mesh.owner.name for mesh in assembly.meshes))
     owner = [np.full(len(mesh.triangles), names.index(mesh.owner.name), np.int32) for mesh in assembly.meshes]
     return Shapes(
         np.concatenate([np.empty((0, 3)), *(positions[assembly.vertices(k)] for k in range(len(assembly.meshes)))]),
-        unjoined_triangles(assembly.meshes),
+        unmerged_triangles(assembly.meshes),
         names,
         np.concatenate([np.empty(0, np.int32), *owner]),
         np.concatenate([np.empty(0, np.int32), *(mesh.faces for mesh in assembly.meshes)]),
@@ -91,7 +91,7 @@ def _check_names(context: bpy.types.Context, objects: Collection[str]) -> None:
 
 @dataclass(frozen=True)
 class Pose:
-    """What an evaluation shows at a frame, and what was found in it."""
+    """An evaluation at one frame, and the intersections in it."""
 
     assembly: Assembly
     look: Look
@@ -104,47 +104,50 @@ def _read(
     frame: float | None,
     threads: int,
 ) -> dict[str, Pose]:
-    """The poses by evaluation; only those that show something otherwise than the first one."""
-    is_counted = counted_names(context, EditSettings(), objects or None)
+    """Poses by evaluation; those like the first evaluation are left out."""
+    is_counted = tested_names(context, EditSettings(), objects or None)
     scene = read_scene(context, is_counted, evaluations=evaluations, strands=True)
     poses = {}
     for number, evaluation in enumerate(evaluations):
-        if number and all(mesh.exists_in >= set(evaluations) for mesh in scene.meshes):
+        if number and all(mesh.shown_in >= set(evaluations) for mesh in scene.meshes):
             continue
-        meshes = [mesh for mesh in scene.meshes if evaluation in mesh.exists_in]
-        assembly = assemble_joined(meshes)
-        look = _at_rest(assembly, evaluation, frame, threads)
+        meshes = [mesh for mesh in scene.meshes if evaluation in mesh.shown_in]
+        assembly = assemble_with_seams(meshes)
+        look = _test_pose(assembly, evaluation, frame, threads)
         poses[evaluation] = Pose(assembly, replace(look, seams=()) if number else look)
     return poses
 
 
-def _at_rest(assembly: Assembly, evaluation: str, frame: float | None, threads: int) -> Look:
+def _test_pose(assembly: Assembly, evaluation: str, frame: float | None, threads: int) -> Look:
     pairs, touching = find_pairs_and_seams(assembly, threads)
-    found = [Finding(plain(p.first), plain(p.second), frame=frame, triangle_pairs=p.triangle_pairs) for p in pairs]
+    found = [
+        Finding(to_report_element(p.first), to_report_element(p.second), frame=frame, triangle_pairs=p.triangle_pairs)
+        for p in pairs
+    ]
     seams = tuple(SeamPairs(name, "face", faces) for name, faces in touching if len(faces))
-    told = _told_once(found, assembly, evaluation)
-    return Look(shapes_of(assembly, assembly.positions), frame, None, told, seams=seams)
+    reported = _without_repeats(found, assembly, evaluation)
+    return Look(shapes_of(assembly, assembly.positions), frame, None, reported, seams=seams)
 
 
-def _told_once(found: Sequence[Finding], assembly: Assembly, evaluation: str) -> tuple[Finding, ...]:
-    """Of what is found in the render, only what involves an object that the viewport does not show so."""
+def _without_repeats(found: Sequence[Finding], assembly: Assembly, evaluation: str) -> tuple[Finding, ...]:
+    """Leave out findings in the render that the viewport shows alike."""
     if evaluation != RENDER:
         return tuple(found)
-    apart = {mesh.owner.name for mesh in assembly.meshes if VIEWPORT not in mesh.exists_in}
+    apart = {mesh.owner.name for mesh in assembly.meshes if VIEWPORT not in mesh.shown_in}
     return tuple(replace(each, rendered=True) for each in found if apart & {each.first.object, each.second.object})
 
 
-def _between(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
-    """The way from one frame to the next, of the meshes that both have.
+def _test_motion(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
+    """Test the motion from one frame to the next, of the meshes that both frames have.
 
-    Pairs of objects that meet at one of the two frames were found there, and are left out.
+    Pairs of objects that intersect at one of the two frames were reported there, and are left out.
     """
     assert start.look.frame is not None and end.look.frame is not None
     when = f"between frames {start.look.frame:g} and {end.look.frame:g}"
-    pairs, notes = _matched(start.assembly, end.assembly, when)
+    pairs, notes = _match_meshes(start.assembly, end.assembly, when)
     seams = [_seams_of_both(one, other) for one, other in pairs]
     moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs], seams=seams)
-    world = (moving.joined(place, other.world()) for place, (_, other) in enumerate(pairs))
+    world = (moving.merge_seams(place, other.world()) for place, (_, other) in enumerate(pairs))
     goal = np.concatenate([np.empty((0, 3)), *world])
     known = {finding.objects for look in (start.look, end.look) for finding in look.findings}
     found = [
@@ -154,48 +157,50 @@ def _between(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
     ]
     first = min((finding.time for finding in found if finding.time is not None), default=0.0)
     shapes = shapes_of(moving, moving.positions + first * (goal - moving.positions))
-    told = _told_once(found, moving, evaluation)
-    return Look(shapes, start.look.frame, end.look.frame, told, tuple(notes))
+    reported = _without_repeats(found, moving, evaluation)
+    return Look(shapes, start.look.frame, end.look.frame, reported, tuple(notes))
 
 
 def crossings(assembly: Assembly, goal: Floats, threads: int = 0) -> list[Finding]:
-    """What meets while all vertices move in straight lines to `goal`, (N, 3): each pair once, at its earliest time."""
+    """Find collisions while all vertices move in straight lines to `goal`, (N, 3): each pair at its earliest time."""
     if np.array_equal(assembly.positions, goal):
         return []
     events = stiv.Detector(assembly.surface, threads=threads).find(assembly.positions, goal)
     elements = EventElements(assembly, events)
     earliest: dict[tuple[Element, Element], float] = {}
     for number, time in enumerate(events.time.tolist()):
-        first, second = (plain(each) for each in elements.of(number))
+        first, second = (to_report_element(each) for each in elements.of(number))
         pair = (min(first, second), max(first, second))
         earliest[pair] = min(time, earliest.get(pair, math.inf))
     return [Finding(a, b, CROSSING, time=time) for (a, b), time in sorted(earliest.items())]
 
 
-def plain(element: FoundElement) -> Element:
-    """An element of a scene as checks name it."""
+def to_report_element(element: FoundElement) -> Element:
+    """An element as reports name it."""
     return Element(element.object, element.kind, element.number)
 
 
-def _matched(before: Assembly, after: Assembly, when: str) -> tuple[list[tuple[VisibleMesh, VisibleMesh]], list[str]]:
-    """Meshes that are there at both frames with the same vertices, and what was left out."""
+def _match_meshes(
+    before: Assembly, after: Assembly, when: str
+) -> tuple[list[tuple[VisibleMesh, VisibleMesh]], list[str]]:
+    """Meshes that both frames have with the same vertices, and notes about the others."""
     left = _by_name(after)
     pairs, notes = [], []
     for key, mesh in _by_name(before).items():
         other = left.pop(key, None)
         if other is None or len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
-            why = "comes or goes" if other is None else "changes its number of vertices or faces"
-            notes.append(f'{when}: object "{mesh.owner.name}" {why}, and was not followed')
+            why = "appears or disappears" if other is None else "changes its number of vertices or faces"
+            notes.append(f'{when}: object "{mesh.owner.name}" {why}, and was left out')
         elif mesh.strands is not None and not np.array_equal(mesh.local, other.local):
-            notes.append(f'{when}: hair or curves of object "{mesh.owner.name}" move, and were not followed')
+            notes.append(f'{when}: hair or curves of object "{mesh.owner.name}" move, and were left out')
         else:
             pairs.append((mesh, other))
-    notes += [f'{when}: object "{mesh.owner.name}" comes or goes, and was not followed' for mesh in left.values()]
+    notes += [f'{when}: object "{mesh.owner.name}" appears or disappears, and was left out' for mesh in left.values()]
     return pairs, notes
 
 
 def _by_name(assembly: Assembly) -> dict[tuple[int, str, bool, int], VisibleMesh]:
-    """Meshes by what keeps while frames change: owner, source, and the how-manieth of these."""
+    """Meshes by what frames have in common: owner, source, whether strands, and a running number."""
     found: dict[tuple[int, str, bool, int], VisibleMesh] = {}
     counts: dict[tuple[int, str, bool], int] = {}
     for mesh in assembly.meshes:
@@ -206,14 +211,14 @@ def _by_name(assembly: Assembly) -> dict[tuple[int, str, bool, int], VisibleMesh
 
 
 def _mobility(one: VisibleMesh, other: VisibleMesh) -> str:
-    """What keeps its shape cannot cross itself; its straight ways between frames would only make it seem to."""
+    """Undeformed meshes are rigid: straight motion of a rotating one only seems to intersect itself."""
     if one.strands is not None:
         return "fixed"
     return "rigid" if np.array_equal(one.local, other.local) else "deformable"
 
 
 def _seams_of_both(one: VisibleMesh, other: VisibleMesh) -> Seams | None:
-    """The seams of a mesh that stay closed from one frame to the next; what keeps its shape needs none."""
+    """Seams of a deforming mesh that stay closed from one frame to the next."""
     if _mobility(one, other) != "deformable":
         return None
     return common_seams(*(mesh_seams(mesh.local, mesh.triangles) for mesh in (one, other)))

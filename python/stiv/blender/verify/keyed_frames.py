@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The frames that are tested: every step of a range, and the keys between whole frames."""
+"""Adds keys between frames to the frames that are tested."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import bpy
 from stiv.blender.scene.animation_curves import channel_curves
 
 
-def with_subframe_keys(frames: Sequence[float]) -> list[float]:
-    """The frames, ascending, with all keys of the file's animations that lie between two of them, off whole frames.
+def add_subframe_keys(frames: Sequence[float]) -> list[float]:
+    """Ascending frames, with all fractional keys of the file's animations between the first and the last.
 
-    Between two keys of linear interpolation nothing turns, so that these poses and the straight ways between them
-    follow an animation whose keys lie between frames.
+    Between keys with linear interpolation nothing rotates. Straight motion between these frames therefore follows an
+    animation with fractional keys exactly.
     """
     if not frames:
         return []
@@ -49,7 +49,7 @@ def _times(action: bpy.types.Action) -> Iterator[float]:
 
 
 def _strip_times(strip: Any) -> Iterator[float]:
-    """Keys of a strip's action in the time of the scene, for each repetition."""
+    """Keys of a strip's action in scene time, for each repetition."""
     if strip.mute or strip.action is None:
         return
     first, last = strip.action_frame_start, strip.action_frame_end

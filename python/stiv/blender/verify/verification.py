@@ -1,199 +1,180 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's own evaluation after writing, read back and tested."""
+"""Reads Blender's evaluation back after a write, and tests it."""
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-import stiv
-from stiv.blender.controls.control_reading import tolerance
-from stiv.blender.scene.arrays import Floats, Indices
-from stiv.blender.scene.assembly import Assembly, Element
-from stiv.blender.scene.errors import SceneChangedError
-from stiv.blender.scene.evaluated_scene import Opened, Placed, open_evaluations, read_placed
+from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_tolerance, read_positions_of
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import Exclusions
-from stiv.blender.scene.triangulation_flips import Cut, PresentCut, as_shown, fresh_cuts
+from stiv.blender.scene.exclusions import find_excluded_triangles, without_excluded
+from stiv.blender.scene.face_pairs import find_face_pairs
+from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
+from stiv.blender.scene.references import SceneChangedError
+from stiv.blender.scene.triangulation_flips import (
+    CurrentTriangulation,
+    FaceTriangles,
+    find_flips,
+    with_current_triangulation,
+)
+from stiv.blender.settings import Exclusions
 
 StepTest = Callable[[Floats, Floats], bool]
 
 
 @dataclass(frozen=True)
-class FacePair:
-    """Two elements that meet, the second always a face, and how many pairs of their triangles do."""
-
-    first: Element
-    second: Element
-    triangle_pairs: int = field(default=1, compare=False)
-
-
-@dataclass(frozen=True)
 class Verification:
-    """Did what Blender shows pass? If not, `message` says why, with the pairs that meet.
+    """The result of a test of Blender's evaluation. If it failed, `message` gives the reason.
 
-    `cuts` are the triangles by which Blender's present cut of faces that bent makes them meet: with them in the
-    surface, an edit avoids it.
+    `flips` are triangles of Blender's present triangulation that intersect. An edit avoids them if they are part of the
+    surface.
     """
 
     passed: bool
     intersections: tuple[FacePair, ...] = ()
     message: str = ""
-    cuts: tuple[Cut, ...] = ()
+    flips: tuple[FaceTriangles, ...] = ()
 
 
 class Verifier:
-    """Tests what Blender evaluates against accepted surfaces of an `assembly`."""
+    """Tests Blender's evaluation against accepted surfaces of an `assembly`."""
 
     def __init__(
         self, assembly: Assembly, is_step_free: StepTest, threads: int = 0, excluded: Exclusions | None = None
     ) -> None:
-        """For the meshes of an assembly; threads 0 for all. Excluded pairs may meet, no more of them than at first.
+        """Test the meshes of an assembly; threads 0 uses all cores. No more excluded pairs may intersect than at the
+        start.
 
-        is_step_free: stiv.StepCheck.is_free of its surface, or the same of an EditSession.
+        is_step_free: stiv.StepCheck.is_free of its surface, or the method of an EditSession.
         """
         self.assembly = assembly
         self._threads = threads
         self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
-        self._most = len(self._excluded.triangles(assembly, assembly.positions, threads))
+        self._most = len(find_excluded_triangles(self._excluded, assembly, assembly.positions, threads))
 
     def verify(self, context: bpy.types.Context, accepted: Floats) -> Verification:
-        """Test what Blender evaluates now against the accepted surface, (N, 3), which is free of intersections.
+        """Test Blender's present evaluation against the accepted surface, (N, 3), which is free of intersections.
 
-        It must be where the accepted surface is, to within single precision; the way there must be free; and it must
-        be free of intersections, in the triangles of the assembly and in Blender's present ones, which follow the
-        shape. Raises SceneChangedError when other meshes are visible than at the start.
+        Both surfaces must agree up to single precision, with a free step between them. The evaluation must be free of
+        intersections in the assembly's triangulation and in Blender's present one, which depends on the shape. Raises
+        SceneChangedError if other meshes are visible than at the start.
         """
         with _opened(context, self.assembly) as opened:
             return self._verify(context, accepted, opened)
 
-    def _verify(self, context: bpy.types.Context, accepted: Floats, opened: Opened) -> Verification:
+    def _verify(self, context: bpy.types.Context, accepted: Floats, opened: OpenEvaluations) -> Verification:
         meshes = _read_meshes(self.assembly, opened)
-        shown = _joined(self.assembly, meshes)
-        message = _elsewhere(self.assembly, accepted, meshes)
+        shown = _merged(self.assembly, meshes)
+        message = _displacement_message(self.assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
         if self._most:
-            found = self._beside_excluded(shown)
+            found = self._verify_excluded(shown)
             if found is not None:
                 return found
         elif not self._is_step_free(accepted, shown):
-            return self._failure(named_pairs(self.assembly, shown, self._threads))
-        cuts = fresh_cuts(context, self.assembly, opened)
-        return self._verify_cuts(cuts, shown) if cuts else Verification(True)
+            return self._failure(find_face_pairs(self.assembly, shown, self._threads))
+        flips = find_flips(context, self.assembly, opened)
+        return self._verify_flips(flips, shown) if flips else Verification(True)
 
-    def _beside_excluded(self, shown: Floats) -> Verification | None:
-        """What is wrong where excluded pairs meet: others do, or more of them do. The step is not looked at, only its
-        end: it is no longer than the rounding of single precision.
+    def _verify_excluded(self, shown: Floats) -> Verification | None:
+        """Test a surface with excluded pairs: other pairs, or more excluded ones, may not intersect.
+
+        Only the end of the step is tested; the step is shorter than the rounding of single precision.
         """
-        pairs = self._excluded.others(named_pairs(self.assembly, shown, self._threads))
+        pairs = without_excluded(find_face_pairs(self.assembly, shown, self._threads), self._excluded)
         if pairs:
             return self._failure(pairs)
-        if len(self._excluded.triangles(self.assembly, shown, self._threads)) > self._most:
-            return Verification(False, (), "more of the excluded pairs would meet in what Blender shows")
+        if len(find_excluded_triangles(self._excluded, self.assembly, shown, self._threads)) > self._most:
+            return Verification(False, (), "more excluded pairs would intersect in Blender's evaluation")
         return None
 
-    def _verify_cuts(self, cuts: tuple[PresentCut, ...], shown: Floats) -> Verification:
-        pairs = self._excluded.others(named_pairs(as_shown(self.assembly, cuts), shown, self._threads))
+    def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
+        pairs = without_excluded(
+            find_face_pairs(with_current_triangulation(self.assembly, flips), shown, self._threads), self._excluded
+        )
         if not pairs:
             return Verification(True)
-        meeting = {each for pair in pairs for each in (pair.first, pair.second)}
-        return self._failure(pairs, tuple(self._that_meet(cut.fresh, meeting) for cut in cuts))
+        intersecting = {each for pair in pairs for each in (pair.first, pair.second)}
+        return self._failure(pairs, tuple(self._intersecting_triangles(flip.new, intersecting) for flip in flips))
 
-    def _that_meet(self, cut: Cut, meeting: set[Element]) -> Cut:
-        mesh = self.assembly.meshes[cut.mesh]
-        return cut.limited_to(
-            np.array([Element(mesh.owner.name, "face", int(face), mesh.read_in) in meeting for face in cut.faces])
+    def _intersecting_triangles(self, flip: FaceTriangles, intersecting: set[Element]) -> FaceTriangles:
+        mesh = self.assembly.meshes[flip.mesh]
+        return flip.limited_to(
+            np.array(
+                [Element(mesh.owner.name, "face", int(face), mesh.read_from) in intersecting for face in flip.faces]
+            )
         )
 
-    def _failure(self, pairs: tuple[FacePair, ...], cuts: tuple[Cut, ...] = ()) -> Verification:
+    def _failure(self, pairs: tuple[FacePair, ...], flips: tuple[FaceTriangles, ...] = ()) -> Verification:
         if not pairs:
-            return Verification(False, (), "what Blender shows comes too near; use a larger separation")
-        return Verification(False, pairs, _told(pairs), cuts)
+            return Verification(False, (), "surfaces come too close in Blender; use a larger minimum distance")
+        return Verification(False, pairs, _intersection_message(pairs), flips)
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
-    """World positions of the assembly's meshes as Blender evaluates them now, (N, 3)."""
+    """World positions of the assembly's meshes in Blender's present evaluation, (N, 3)."""
     with _opened(context, assembly) as opened:
-        return _joined(assembly, _read_meshes(assembly, opened))
+        return _merged(assembly, _read_meshes(assembly, opened))
 
 
-def _read_meshes(assembly: Assembly, opened: Opened) -> list[Floats]:
-    """World positions of each mesh as Blender evaluates it now, vertices of seams each by itself.
+def _read_meshes(assembly: Assembly, opened: OpenEvaluations) -> list[Floats]:
+    """World positions of each mesh in Blender's present evaluation, seams not merged.
 
-    Strands stay where they were read: edits leave out those that depend on what moves.
+    Strands are not read again: edits leave out those that depend on moving objects.
     """
-    placed: list[Placed] = []
+    placed: list[EvaluatedPositions] = []
     meshes = [mesh for mesh in assembly.meshes if mesh.strands is None]
-    for read_in in dict.fromkeys(mesh.read_in for mesh in meshes):
-        owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_in == read_in)
-        if read_in in opened.read_in:
-            placed += read_placed(owners, opened, read_in)
-    if [_shape(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in meshes]:
-        raise SceneChangedError("objects were shown, hidden or changed in size during the edit")
-    parts = iter(
-        each if mesh.near is None else each.limited_to(mesh.near.vertices)
+    for read_from in dict.fromkeys(mesh.read_from for mesh in meshes):
+        owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_from == read_from)
+        if read_from in opened.read_from:
+            placed += read_positions_of(owners, opened, read_from)
+    if [_identity(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in meshes]:
+        raise SceneChangedError("objects were shown, hidden or changed during the edit; begin again")
+    control_sets = iter(
+        each if mesh.cropped is None else each.limited_to(mesh.cropped.vertices)
         for each, mesh in zip(placed, meshes, strict=True)
     )
-    return [next(parts).world() if mesh.strands is None else mesh.world() for mesh in assembly.meshes]
+    return [next(control_sets).world() if mesh.strands is None else mesh.world() for mesh in assembly.meshes]
 
 
-def _joined(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
-    joined = (assembly.joined(number, points) for number, points in enumerate(meshes))
+def _merged(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
+    joined = (assembly.merge_seams(number, points) for number, points in enumerate(meshes))
     return np.concatenate([np.empty((0, 3)), *joined])
 
 
 @contextmanager
-def _opened(context: bpy.types.Context, assembly: Assembly) -> Iterator[Opened]:
-    """The evaluations that the meshes of an assembly were read from."""
-    if all(mesh.read_in == SHOWN for mesh in assembly.meshes):
-        yield Opened(context)
+def _opened(context: bpy.types.Context, assembly: Assembly) -> Iterator[OpenEvaluations]:
+    """The evaluations from which the meshes of an assembly were read."""
+    if all(mesh.read_from == SHOWN for mesh in assembly.meshes):
+        yield OpenEvaluations(context)
         return
-    with open_evaluations(context, frozenset().union(*(mesh.exists_in for mesh in assembly.meshes))) as opened:
+    with open_evaluations(context, frozenset().union(*(mesh.shown_in for mesh in assembly.meshes))) as opened:
         yield opened
 
 
-def named_pairs(
-    assembly: Assembly, q: Floats, threads: int = 0, meeting: Indices | None = None
-) -> tuple[FacePair, ...]:
-    """All pairs that meet at positions `q`, (N, 3), each once; loose edges and vertices included.
-
-    meeting: pairs of triangles that meet, (k, 2); None: all that do.
-    """
-    faces = stiv.find_intersections(q, assembly.surface, threads=threads) if meeting is None else meeting
-    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
-    counts = Counter(
-        [
-            *((assembly.face(a), assembly.face(b)) for a, b in faces.tolist()),
-            *((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
-            *((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
-        ]
-    )
-    for first, second in [pair for pair in counts if pair[0] != pair[1] and pair[::-1] in counts]:
-        if (first, second) in counts:  # triangles of one face may come after those of another, and before them
-            counts[first, second] += counts.pop((second, first))
-    return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
-
-
-def _shape(placed: Placed) -> tuple[int, int]:
+def _identity(placed: EvaluatedPositions) -> tuple[int, int]:
     return len(placed.local), placed.owner.session_uid
 
 
-def _elsewhere(assembly: Assembly, accepted: Floats, meshes: Sequence[Floats]) -> str:
+def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence[Floats]) -> str:
     for number, mesh in enumerate(assembly.meshes):
-        part = slice(assembly.starts[number], assembly.starts[number + 1])
-        whole = accepted[part] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
+        control_set = slice(assembly.starts[number], assembly.starts[number + 1])
+        whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
         difference = float(np.abs(meshes[number] - whole).max(initial=0.0))
-        if not difference <= tolerance(accepted[part]):
-            return f'object "{mesh.owner.name}": Blender shows it {difference:.3g} away from where it was to be'
+        if not difference <= evaluation_tolerance(accepted[control_set]):
+            return f'object "{mesh.owner.name}": Blender shows it {difference:.3g} away from the solved position'
     return ""
 
 
-def _told(pairs: tuple[FacePair, ...]) -> str:
+def _intersection_message(pairs: tuple[FacePair, ...]) -> str:
     first, second = pairs[0].first, pairs[0].second
     shown_in = {VIEWPORT: "what Object Mode shows", RENDER: "the render"}.get(second.evaluation, "what Blender shows")
     return (

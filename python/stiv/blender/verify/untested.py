@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of a scene that no test sees, each with the reason."""
+"""Lists objects that are not tested, with the reason."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from collections.abc import Collection, Iterator
 
 import bpy
 
-from stiv.blender.controls.loop_objects import cages_shown_by_others
-from stiv.blender.scene.evaluated_scene import SURFACE_TYPES
-from stiv.blender.scene.evaluations import RENDER, rendered_objects
+from stiv.blender.scene.evaluations import RENDER, SURFACE_TYPES, find_replaced_cages, rendered_objects
 from stiv.blender.scene.strand_reading import (
     STRAND_TYPES,
     hair_systems,
@@ -25,12 +23,12 @@ WITHOUT_SURFACE = {
 }
 
 
-def find_left_out(
+def find_untested(
     context: bpy.types.Context, tested: Collection[str], named: Collection[str] = ()
 ) -> tuple[Untested, ...]:
-    """What of the scene is not in a test of these objects, by name; each object once for a reason.
+    """Objects of the scene missing from a test of `tested`, by name, each with its reasons.
 
-    named: names that the test is limited to, if any. Objects that never have a surface, such as lights, do not come.
+    named: names to which the test is limited, if any. Objects without surfaces, such as lights, are not listed.
     """
     candidates = [ob for ob in context.scene.objects if ob.type in SURFACE_TYPES | {"VOLUME"} and ob.name not in tested]
     reasons = [
@@ -41,11 +39,11 @@ def find_left_out(
     return tuple(Untested(name, why) for name, why in dict.fromkeys(reasons))
 
 
-def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
-    """What edits that guard these evaluations pass through, though the viewport or the render shows it; "" for nothing.
+def unguarded_text(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
+    """Message about objects that are shown but not guarded by edits; "" if there are none.
 
-    That is what cannot be tested and, unless the render is guarded, what is hidden in the viewport and rendered.
-    carried: names of the objects whose strands move along with what is edited.
+    These are objects that cannot be tested and, unless the render is guarded, objects that only the render shows.
+    carried: names of the objects whose strands move with the edit.
     """
     reasons = [*_without_surface(context), *((name, "hair and curves that move along") for name in sorted(carried))]
     found = [Untested(name, why) for name, why in dict.fromkeys(reasons)]
@@ -55,8 +53,8 @@ def text_not_guarded(context: bpy.types.Context, evaluations: Collection[str], c
 
 
 def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:
-    """Why an object shows nothing that is tested; "" where its geometry says why."""
-    if ob.name in cages_shown_by_others(context):
+    """Why none of the object's meshes is tested; "" if its geometry decides."""
+    if ob.name in find_replaced_cages(context):
         return "cages shown by another object"
     if ob.name not in context.view_layer.objects:
         return "in an excluded collection"
@@ -64,7 +62,7 @@ def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:
 
 
 def _without_surface(context: bpy.types.Context) -> Iterator[tuple[str, str]]:
-    """What is shown, is no mesh and cannot be tested as strands: of objects of such a kind, and made by modifiers."""
+    """Visible geometry that cannot be tested as mesh or strands: the owner and the reason."""
     helpers = helper_curves(context)
     graph = context.evaluated_depsgraph_get()
     for instance in graph.object_instances:

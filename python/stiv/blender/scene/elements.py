@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Elements of evaluated meshes as messages and reports name them, and pairs of elements that intersect."""
+
+from dataclasses import dataclass, field
+
+from stiv.blender.scene.evaluations import SHOWN
+
+
+@dataclass(frozen=True)
+class Element:
+    """A face, edge or vertex of an object's evaluated mesh, or a strand; `kind` says which.
+
+    evaluation: "shown", or "viewport" (Object Mode) or "render" for elements that are not shown now.
+    """
+
+    object: str
+    kind: str
+    number: int
+    evaluation: str = SHOWN
+
+
+@dataclass(frozen=True)
+class FacePair:
+    """Two intersecting elements, the second a face, and the number of their intersecting triangles."""
+
+    first: Element
+    second: Element
+    triangle_pairs: int = field(default=1, compare=False)
