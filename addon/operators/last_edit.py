@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from .. import stiv_blender
 
@@ -35,7 +34,7 @@ def describe(result: stiv_blender.EditResult, report: stiv_blender.WriteReport) 
     )
 
 
-def numbers(result: stiv_blender.EditResult) -> dict[str, Any]:
+def numbers(result: stiv_blender.EditResult) -> dict[str, object]:
     """Counters and timings of a result, ready for JSON."""
     return {
         "rounds": int(result.rounds),

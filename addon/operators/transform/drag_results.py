@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +38,7 @@ class DragResult:
     result: stiv_blender.EditResult
     report: stiv_blender.WriteReport
     shown: bool = True
-    values: tuple[Any, ...] = ()
+    values: tuple[object, ...] = ()
 
 
 _results: OrderedDict[int, DragResult] = OrderedDict()

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import bpy
 import numpy as np
 from bpy.props import FloatVectorProperty
@@ -28,11 +26,11 @@ class STIV_OT_move(TransformOperator, bpy.types.Operator):
         """The transform of the properties."""
         return Translation(np.array(self.value))
 
-    def own_values(self) -> tuple[Any, ...]:
+    def own_values(self) -> tuple[object, ...]:
         """The properties, for comparison."""
         return tuple(self.value)
 
     @staticmethod
-    def arguments(transform: Translation) -> dict[str, Any]:
+    def arguments(transform: Translation) -> dict[str, object]:
         """The properties of a transform."""
         return {"value": transform.vector.tolist()}

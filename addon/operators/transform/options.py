@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
@@ -63,7 +61,7 @@ class TransformOptions:
         on = scene.stiv.interference if self.interference == OF_SCENE else self.interference == "ON"
         return Request(self.kind, responders, on)
 
-    def option_values(self) -> tuple[Any, ...]:
+    def option_values(self) -> tuple[object, ...]:
         """All options, for comparison."""
         settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
         return (self.responders, self.interference, *((self.proportional, *settings) if self.proportional else ()))
@@ -76,9 +74,9 @@ def make_influence(proportional: Proportional) -> stiv_blender.Influence | None:
     return stiv_blender.Influence(proportional.size, proportional.falloff, proportional.connected)
 
 
-def changed_options(request: Request, proportional: Proportional, scene: bpy.types.Scene) -> dict[str, Any]:
+def changed_options(request: Request, proportional: Proportional, scene: bpy.types.Scene) -> dict[str, object]:
     """The options at the end of a drag that differ from the defaults."""
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     if request.interference != scene.stiv.interference:
         found["interference"] = "ON" if request.interference else "OFF"
     if request.responders != scene.stiv.responders:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty
@@ -34,11 +32,11 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
             raise ValueError(translate("The rotation axis is (0, 0, 0): set a direction"))
         return Rotation(self.angle, axis / length)
 
-    def own_values(self) -> tuple[Any, ...]:
+    def own_values(self) -> tuple[object, ...]:
         """The properties, for comparison."""
         return (self.angle, *self.axis)
 
     @staticmethod
-    def arguments(transform: Rotation) -> dict[str, Any]:
+    def arguments(transform: Rotation) -> dict[str, object]:
         """The properties of a transform."""
         return {"angle": transform.angle, "axis": transform.axis.tolist()}

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatVectorProperty
@@ -39,12 +37,12 @@ class STIV_OT_scale(TransformOperator, bpy.types.Operator):
         axes = np.array(self.axes).reshape(3, 3) if dragged else active_axes(bpy.context)
         return Scaling(np.array(self.value), axes)
 
-    def own_values(self) -> tuple[Any, ...]:
+    def own_values(self) -> tuple[object, ...]:
         """The properties, for comparison."""
         return (*self.value, self.orientation, *self.axes)
 
     @staticmethod
-    def arguments(transform: Scaling) -> dict[str, Any]:
+    def arguments(transform: Scaling) -> dict[str, object]:
         """The properties of a transform."""
         if np.array_equal(transform.axes, np.eye(3)):
             return {"value": transform.factors.tolist(), "orientation": "GLOBAL"}

@@ -72,12 +72,12 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         """The transform of the properties."""
         raise NotImplementedError
 
-    def own_values(self) -> tuple[Any, ...]:
+    def own_values(self) -> tuple[object, ...]:
         """The properties of the transform, for comparison."""
         raise NotImplementedError
 
     @staticmethod
-    def arguments(transform: Any) -> dict[str, Any]:
+    def arguments(transform: Any) -> dict[str, object]:
         """The properties for a transform of the operator's kind."""
         raise NotImplementedError
 
@@ -97,7 +97,7 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         report = edit.write()
         return report.result or result, report
 
-    def _values(self) -> tuple[Any, ...]:
+    def _values(self) -> tuple[object, ...]:
         return (*self.own_values(), *self.option_values())
 
 
