@@ -112,7 +112,7 @@ def _is_after_history(guard: Guard) -> bool:
 
 
 def _wait_for_quiet(guard: Guard, seen: Observation) -> tuple[Guard, Action]:
-    """A dragged number field is no tool and adds its step at the end; a script adds none."""
+    """A dragged number field is not a tool and adds its step at the end; a script adds none."""
     if guard.quiet is None or guard.quiet[0] != seen.updates:
         return replace(guard, quiet=(seen.updates, seen.time)), Action.WAIT
     done = seen.time - guard.quiet[1] >= QUIET_TIME

@@ -24,7 +24,7 @@ SUPPORTED_ELEMENTS = frozenset({"INCREMENT", "GRID", *GEOMETRY})
 def read_snap(
     context: bpy.types.Context, moving: Callable[[], frozenset[str]], view: Callable[[], View | None]
 ) -> Snap:
-    """Snapping of a drag. `moving` names the moving objects, which are no targets; `view` is the current one."""
+    """Snapping of a drag. `moving` names the moving objects, which are not targets; `view` is the current one."""
     tools = context.scene.tool_settings
     kinds = {"move": tools.use_snap_translate, "rotate": tools.use_snap_rotate, "scale": tools.use_snap_scale}
     return Snap(

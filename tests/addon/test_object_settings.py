@@ -24,17 +24,17 @@ def bar() -> Any:
     ]
     data = bpy.data.meshes.new("Bar")
     data.from_pydata(points, [], [(3, 2, 1, 0), *sides, (28, 29, 30, 31)])
-    thing = bpy.data.objects.new("Bar", data)
-    bpy.context.collection.objects.link(thing)
+    obj = bpy.data.objects.new("Bar", data)
+    bpy.context.collection.objects.link(obj)
     for name, vertices in (("Left", range(4)), ("Right", range(28, 32))):
-        thing.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
-    thing.select_set(True)
-    bpy.context.view_layer.objects.active = thing
-    return thing
+        obj.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    return obj
 
 
-def local(thing: Any) -> np.ndarray:
-    return np.array([tuple(vertex.co) for vertex in thing.data.vertices], np.float32)
+def local(obj: Any) -> np.ndarray:
+    return np.array([tuple(vertex.co) for vertex in obj.data.vertices], np.float32)
 
 
 @pytest.mark.parametrize("kind", ["laplacian", "arap"])
@@ -52,7 +52,7 @@ def test_handles_of_the_panel_move_a_mesh_softly(bar: Any, kind: str) -> None:
     assert 0.2 < (after - before)[16:20, 2].mean() < 0.9
 
 
-def test_rows_without_a_group_are_no_handles(bar: Any) -> None:
+def test_rows_without_a_group_are_ignored(bar: Any) -> None:
     bar.stiv.deformation = "laplacian"
     for _ in range(2):
         bpy.ops.stiv.handle_add()

@@ -49,7 +49,7 @@ def prepare(folder: Path, release: str) -> None:
     print(f"its packages: {' '.join(names)} (about a minute)", flush=True)
     with system_mounts(folder):
         # A mirror that lags behind will do; signatures are checked all the same. Without the option, a list that could
-        # not be fetched is no error.
+        # not be fetched is not an error.
         options = ["-o", "Acquire::Check-Valid-Until=false", "-o", "APT::Update::Error-Mode=any"]
         run(folder, ["apt-get", "-qq", *options, "update"])
         check_known(folder, names)

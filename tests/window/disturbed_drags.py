@@ -23,7 +23,7 @@ def object_deleted(window: Window) -> Steps:
 
 
 def mode_changed(window: Window) -> Steps:
-    """Edit Mode is left during the drag: it ends and the cage is as it was."""
+    """Edit Mode is left during the drag: it ends and the cage is unchanged."""
     yield from prepared(window, scenes.add_cage, "Cage", "EDIT")
     before = scenes.evaluated_extent("Cage")
     yield from start(window)
@@ -52,7 +52,7 @@ def saved_during_drag(window: Window) -> Steps:
 
 
 def fault_within(window: Window) -> Steps:
-    """An exception in the middle of a drag: everything is put back, nothing stays behind."""
+    """An exception in the middle of a drag: everything is restored, nothing stays behind."""
     from stiv.blender import BlenderEdit
 
     yield from prepared(window, scenes.add_box, "Box")

@@ -40,7 +40,7 @@ def rigid_return(window: Window) -> Steps:
 
 
 def cancelled_by(button: str) -> object:
-    """A scenario: the button restores, bit by bit, and leaves no undo step."""
+    """A scenario: the button restores exactly, and leaves no undo step."""
 
     def scenario(window: Window) -> Steps:
         yield from prepared(window, scenes.add_box, "Box")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside Blender: plays the scenarios one after the other and writes results.json beside the pictures."""
+"""Runs inside Blender: plays the scenarios in sequence and writes results.json beside the pictures."""
 
 from __future__ import annotations
 

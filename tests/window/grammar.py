@@ -63,7 +63,7 @@ def typed_components(window: Window) -> Steps:
 
 
 def typed_expression(window: Window) -> Steps:
-    """An expression with units; what is no number cannot be confirmed."""
+    """An expression with units; an invalid number cannot be confirmed."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.type("=50cm + 2*")
@@ -131,7 +131,7 @@ def view_navigation(window: Window) -> Steps:
 
 
 def repeat_last(window: Window) -> Steps:
-    """Shift+R applies the same value again, from where things are now."""
+    """Shift+R applies the same value again, from where objects are now."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.type("0.5")

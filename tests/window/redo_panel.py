@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The redo panel after a drag: recomputed as it was, and with a value that is typed into it."""
+"""The redo panel after a drag: recomputed unchanged, and with a typed value."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ def clear() -> None:
     """Remove every object, in Object Mode, and give the scene its default settings back."""
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    for thing in list(bpy.data.objects):
-        bpy.data.objects.remove(thing)
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
     scene = bpy.context.scene
     scene.stiv.live_guard = False
     for name in ("separation", "responders", "object_response", "interference", "smoothness", "constraints"):
@@ -58,10 +58,10 @@ def add_mesh(name: str, build: Any, location: tuple = (0.0, 0.0, 0.0)) -> Any:
     build(content)
     content.to_mesh(mesh)
     content.free()
-    thing = bpy.data.objects.new(name, mesh)
-    thing.location = location
-    bpy.context.collection.objects.link(thing)
-    return thing
+    obj = bpy.data.objects.new(name, mesh)
+    obj.location = location
+    bpy.context.collection.objects.link(obj)
+    return obj
 
 
 def add_wall() -> Any:
@@ -128,20 +128,20 @@ def add_ball_in_lattice() -> tuple[Any, Any]:
     return ball, lattice
 
 
-def select_only(thing: Any) -> None:
+def select_only(obj: Any) -> None:
     """Select one object and make it active."""
     bpy.context.view_layer.update()  # it lists removed objects as None until then
     for other in bpy.context.view_layer.objects:
-        other.select_set(other == thing)
-    bpy.context.view_layer.objects.active = thing
+        other.select_set(other == obj)
+    bpy.context.view_layer.objects.active = obj
     bpy.context.view_layer.update()
 
 
 def evaluated_extent(name: str) -> float:
     """The largest x of an object as Blender evaluates it."""
     graph = bpy.context.evaluated_depsgraph_get()
-    thing = bpy.data.objects[name].evaluated_get(graph)
-    mesh = thing.to_mesh()
-    largest = max((thing.matrix_world @ vertex.co).x for vertex in mesh.vertices)
-    thing.to_mesh_clear()
+    obj = bpy.data.objects[name].evaluated_get(graph)
+    mesh = obj.to_mesh()
+    largest = max((obj.matrix_world @ vertex.co).x for vertex in mesh.vertices)
+    obj.to_mesh_clear()
     return largest

@@ -154,10 +154,10 @@ class Sequence:
         """Placements, and the shapes of deformed objects."""
         graph = bpy.context.evaluated_depsgraph_get()
         found: list[object] = []
-        for thing in sorted(bpy.data.objects, key=lambda each: each.name):
-            found.append((thing.name, [tuple(row) for row in thing.matrix_world]))
-            if thing.type == "MESH":
-                evaluated = thing.evaluated_get(graph)
+        for obj in sorted(bpy.data.objects, key=lambda each: each.name):
+            found.append((obj.name, [tuple(row) for row in obj.matrix_world]))
+            if obj.type == "MESH":
+                evaluated = obj.evaluated_get(graph)
                 mesh = evaluated.to_mesh()
                 found.append([tuple(vertex.co) for vertex in mesh.vertices])
                 evaluated.to_mesh_clear()

@@ -78,9 +78,9 @@ def individual_origins(window: Window) -> Steps:
     window.key("RET")
     yield from ended(window)
     for name, y in (("Upper", 1.0), ("Lower", -1.0)):
-        thing = bpy.data.objects[name]
-        expect_near(thing.location.y, y, 1e-6, f"y of {name}")
-        expect_near(thing.rotation_euler.z, math.radians(30.0), 1e-5, f"turn of {name}")
+        obj = bpy.data.objects[name]
+        expect_near(obj.location.y, y, 1e-6, f"y of {name}")
+        expect_near(obj.rotation_euler.z, math.radians(30.0), 1e-5, f"turn of {name}")
 
 
 _ALL = (

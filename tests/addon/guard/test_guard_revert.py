@@ -106,7 +106,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change:
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def test_a_rig_that_is_moved_is_no_reason_to_take_the_scene_for_clear() -> None:
+def test_a_scene_with_a_moved_rig_is_not_clear_without_a_test() -> None:
     """The object Rig has no surface: what it does to the box was not looked at."""
 
     def scale_by_rig() -> None:

@@ -251,7 +251,7 @@ def test_a_refusal_at_the_confirmation_keeps_what_was_accepted() -> None:
 
 
 @pytest.mark.parametrize("keys", [["EQUAL", "TWO", "NUMPAD_PLUS"], ["EQUAL", "A"]])
-def test_what_is_no_number_cannot_be_confirmed(keys: list[str]) -> None:
+def test_an_invalid_number_cannot_be_confirmed(keys: list[str]) -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     for key in keys:

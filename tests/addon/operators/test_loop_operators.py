@@ -22,9 +22,9 @@ def cage() -> Any:
     bpy.ops.mesh.primitive_plane_add(size=6.0, location=(0, 0, -1.5))
     bpy.context.active_object.name = "Floor"
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, radius=1.0)
-    thing = bpy.context.active_object
-    thing.name = "Cage"
-    return thing
+    obj = bpy.context.active_object
+    obj.name = "Cage"
+    return obj
 
 
 def shown(name: str = "Cage.loop") -> np.ndarray:

@@ -66,8 +66,8 @@ class RecordingEdit:
         return SimpleNamespace(status="corrected", blocking=(), events=SimpleNamespace(kind=[0, 1]), **numbers)
 
     def write(self) -> Any:
-        thing = bpy.data.objects[self.name]
-        thing.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
+        obj = bpy.data.objects[self.name]
+        obj.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
         return SimpleNamespace(passed=True, message="", result=None)
 
     def restore(self) -> None:

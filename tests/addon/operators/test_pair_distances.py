@@ -21,8 +21,8 @@ def scene() -> None:
 
 
 def choose(*names: str) -> None:
-    for thing in bpy.context.view_layer.objects:
-        thing.select_set(thing.name in names)
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj.name in names)
 
 
 def test_a_pair_is_kept_apart_after_saving_renaming_and_loading(tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ def test_without_a_shape_to_go_back_to_expand_says_so() -> None:
         bpy.ops.stiv.settle()
 
 
-def test_nothing_to_do_is_no_undo_step() -> None:
+def test_without_a_change_there_is_no_undo_step() -> None:
     add("Ball", icosphere(1).vertices, icosphere(1).faces)
     assert bpy.ops.stiv.repair() == {"CANCELLED"}
     assert last()["status"] == "already_free"

@@ -25,11 +25,11 @@ def wall() -> Any:
 
 def box(name: str, centre: tuple, half: tuple) -> Any:
     bpy.ops.mesh.primitive_cube_add(size=2.0, location=centre)
-    thing = bpy.context.active_object
-    thing.name = name
-    for vertex in thing.data.vertices:
+    obj = bpy.context.active_object
+    obj.name = name
+    for vertex in obj.data.vertices:
         vertex.co = [coordinate * extent for coordinate, extent in zip(vertex.co, half, strict=True)]
-    return thing
+    return obj
 
 
 def smooth_cage() -> Any:
@@ -69,10 +69,10 @@ def edit_right_half() -> None:
 
 def positions(name: str) -> np.ndarray:
     """World positions of an object as Blender evaluates it, (n, 3)."""
-    thing = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
-    mesh = thing.to_mesh()
-    result = np.array([thing.matrix_world @ vertex.co for vertex in mesh.vertices])
-    thing.to_mesh_clear()
+    obj = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = obj.to_mesh()
+    result = np.array([obj.matrix_world @ vertex.co for vertex in mesh.vertices])
+    obj.to_mesh_clear()
     return result
 
 
@@ -89,9 +89,9 @@ def test_a_box_moved_through_a_wall_ends_in_front_of_it() -> None:
 
 
 def test_a_clear_move_is_exact() -> None:
-    thing = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    obj = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.stiv.move(value=(0.25, -1.0, 3.0))
-    assert tuple(thing.location) == (0.25, -1.0, 3.0)
+    assert tuple(obj.location) == (0.25, -1.0, 3.0)
 
 
 def test_a_typed_rotation_and_scaling_leave_no_intersection() -> None:
@@ -156,11 +156,11 @@ def test_one_undo_takes_the_edit_back() -> None:
 
 
 def test_a_start_that_intersects_is_refused_and_nothing_changes() -> None:
-    thing = box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
-    before = thing.matrix_world.copy()
+    obj = box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
+    before = obj.matrix_world.copy()
     with pytest.raises(RuntimeError, match="intersect"):
         bpy.ops.stiv.move(value=(-1.0, 0.0, 0.0))
-    assert thing.matrix_world == before
+    assert obj.matrix_world == before
 
 
 def test_nothing_selected_is_refused() -> None:
@@ -171,16 +171,16 @@ def test_nothing_selected_is_refused() -> None:
 
 def test_the_role_of_an_object_counts(wall: Any) -> None:
     wall.stiv.role = "ignored"
-    thing = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    obj = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.stiv.move(value=(5.0, 0.0, 0.0))
-    assert tuple(thing.location) == (5.0, 0.0, 0.0)
+    assert tuple(obj.location) == (5.0, 0.0, 0.0)
 
 
 def test_the_check_finds_and_selects_what_intersects() -> None:
     box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
     box("Far", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     assert bpy.ops.stiv.check() == {"FINISHED"}
-    assert {thing.name for thing in bpy.context.selected_objects} == {"Wall", "Box"}
+    assert {obj.name for obj in bpy.context.selected_objects} == {"Wall", "Box"}
     summary = bpy.context.window_manager.stiv_check.summary
     assert "4 intersecting face pairs" in summary and "Wall" in summary and "Far" not in summary
 

@@ -26,7 +26,7 @@ def test_nothing_is_nothing() -> None:
     assert full()
 
 
-def test_switches_leave_things_out() -> None:
+def test_switches_hide_lines_and_texts() -> None:
     assert set(lines_of(full(), ALL, 1.0)) == {"contact", "blocked", "clearance"}
     assert lines_of(full(), NONE, 1.0) == {}
     assert texts_of(full(), NONE, str) == []

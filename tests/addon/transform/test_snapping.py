@@ -114,7 +114,7 @@ def test_a_target_is_the_closest_corner_within_reach(view: View, pixel: tuple) -
     ("source", "of_selection"),
     [("CLOSEST", (0, 0, 0)), ("CENTER", (0, 0, 0)), ("MEDIAN", (0.5, 0, 0)), ("ACTIVE", (0, 5, 0))],
 )
-def test_the_chosen_point_of_the_selection_comes_to_lie_on_the_target(source: str, of_selection: tuple) -> None:
+def test_the_chosen_point_of_the_selection_moves_onto_the_target(source: str, of_selection: tuple) -> None:
     points, active = np.array([[1.0, 0, 0], [0, 0, 0]]), np.array([0.0, 5, 0])
     snap = Snap(frozenset({"VERTEX"}), source=source, points=points, active=active, cast=lambda at: seen_at((2, 2, 1)))
     vector = moved(VIEW.project(CORNERS[2]), snap)

@@ -10,7 +10,7 @@ SIZE = (800, 600)
 
 
 def typed(*texts: str) -> TypedValues:
-    """Numbers typed one after the other, as with Tab."""
+    """Numbers typed in sequence, as with Tab."""
     numbers = [TypedNumber(text.lstrip("-"), text.startswith("-")) for text in texts]
     return TypedValues((*numbers, *[TypedNumber()] * (3 - len(numbers))), len(numbers) - 1)
 
