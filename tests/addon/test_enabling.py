@@ -13,7 +13,7 @@ from stiv.blender import enable  # noqa: E402
 from stiv.blender.scripts.enabling import is_enabled  # noqa: E402
 
 
-def test_a_missing_addon_is_said_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_addon_is_reported_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not is_enabled()
     monkeypatch.setitem(sys.modules, "stiv_addon", None)
     with pytest.raises(stiv.InputError, match="enable the extension, or install STIV's wheel with pip"):
@@ -21,7 +21,7 @@ def test_a_missing_addon_is_said_with_the_way_out(monkeypatch: pytest.MonkeyPatc
     assert not is_enabled()
 
 
-def test_nothing_is_done_where_the_operators_are_registered(registered: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_enabling_a_registered_addon_does_nothing(registered: None, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "stiv_addon", None)
     enable()
     assert is_enabled()

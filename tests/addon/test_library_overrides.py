@@ -85,7 +85,7 @@ def test_an_override_yields_to_an_object_pushed_into_it(linked_set: Any) -> None
     assert bpy.context.object.location.x == pytest.approx(1.5)
 
 
-def test_what_blender_does_not_let_be_placed_is_refused_by_name(linked_set: Any) -> None:
+def test_an_object_that_blender_does_not_let_move_is_rejected_by_name(linked_set: Any) -> None:
     (prop,) = linked_set.objects
     only(prop)
     with pytest.raises(RuntimeError, match='object "Prop": it is linked; make a library override of it'):

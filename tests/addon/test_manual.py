@@ -19,11 +19,11 @@ def anchors(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", [operator.bl_idname for operator in CLASSES])
-def test_each_operator_has_its_place_in_the_guide(name: str) -> None:
+def test_each_operator_has_an_entry_in_the_guide(name: str) -> None:
     assert anchors(GUIDE.read_text()).count(name) == 1
 
 
-def test_no_place_is_of_an_operator_that_is_not_there() -> None:
+def test_every_entry_of_the_guide_is_that_of_an_operator() -> None:
     assert set(anchors(GUIDE.read_text())) <= {operator.bl_idname for operator in CLASSES}
 
 

@@ -121,7 +121,7 @@ def test_the_minimum_distance_is_automatic_until_one_is_chosen() -> None:
     assert settings.separation == 0.0
 
 
-def test_the_panel_draws_what_there_is(bar: Any) -> None:
+def test_the_panel_of_deformation_draws_handles_and_weights(bar: Any) -> None:
     """Drawn into a stand-in: Blender reports a wrong property only in a window."""
     from stiv_addon.panels.objects import STIV_PT_deformation
 

@@ -45,7 +45,7 @@ def test_the_pie_has_its_eight_places_filled() -> None:
     assert layout.put[:4] == ["stiv.move", "stiv.rotate", "stiv.scale", "stiv.check"]
 
 
-def test_every_key_is_known_as_ours_in_every_mode_and_none_stays() -> None:
+def test_every_key_belongs_to_the_extension_and_none_stays() -> None:
     assert len(our_keys()) == len(keymap.KEYMAPS) * (len(keymap.KEYS) + 1)
     stiv_addon.unregister()
     try:

@@ -43,7 +43,7 @@ def test_a_translation_is_another_text_that_ends_like_the_original(name: str) ->
         assert re.findall(r"\d+\.?\d*", english) == re.findall(r"\d+\.?\d*", text) or "ten" in english, english
 
 
-def test_what_blender_registered_is_what_the_sources_say() -> None:
+def test_registered_texts_are_those_of_the_sources() -> None:
     known = interface_messages.messages()
     for cls in CLASSES:
         assert getattr(cls, "bl_label", None) in known | {None}

@@ -113,7 +113,7 @@ def test_changed_topology_is_accepted_if_clear_and_reported_if_not() -> None:
     assert watcher.problem() is None
 
 
-def test_what_our_own_operators_write_is_not_corrected_again() -> None:
+def test_results_of_the_own_operators_are_not_corrected() -> None:
     bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(7.0, 0, 0))
     shown = tuple(box().location)
     steps = names_of_steps()

@@ -24,7 +24,7 @@ def test_a_running_tool_is_left_alone() -> None:
     assert action(guard, MOVED) is Action.REPLACE
 
 
-def test_nothing_changed_is_nothing_to_do_and_the_step_is_remembered() -> None:
+def test_without_a_change_nothing_is_done_and_the_step_is_stored() -> None:
     guard, what = decide(WATCHING, replace(MOVED, changed=False))  # a selection made a step
     assert what is Action.REST
     assert guard.step == AFTER
@@ -42,19 +42,19 @@ def test_without_an_accepted_state_the_scene_is_tested_and_not_written(guard: Gu
     assert action(guard, seen) is Action.ACCEPT
 
 
-def test_a_step_that_lies_where_the_last_one_was_is_new_after_history_went_elsewhere() -> None:
+def test_a_step_at_a_reused_address_is_new_after_history() -> None:
     """The redo panel takes the tool's step back and makes another, which may get the same address."""
     other = (2, "0x3", "start")
     assert action(WATCHING.after_history(other), replace(MOVED, step=BEFORE)) is Action.REPLACE
     assert action(WATCHING.after_history(None), replace(MOVED, step=BEFORE)) is Action.WAIT
 
 
-def test_what_undo_restored_is_written_only_if_it_fails() -> None:
+def test_a_state_restored_by_undo_is_written_only_if_it_intersects() -> None:
     guard = WATCHING.after_history(AFTER)
     assert action(guard, MOVED) is Action.WRITE
 
 
-def test_what_the_redo_panel_made_again_is_a_tools_result() -> None:
+def test_a_step_of_the_redo_panel_is_the_result_of_a_tool() -> None:
     guard = WATCHING.after_history(BEFORE)
     assert action(guard, MOVED) is Action.REPLACE
 
@@ -63,7 +63,7 @@ def test_a_sculpt_stroke_leaves_the_undo_stack_alone() -> None:
     assert action(WATCHING, replace(MOVED, sculpting=True)) is Action.WRITE
 
 
-def test_a_change_without_an_undo_step_waits_until_it_is_still() -> None:
+def test_a_change_without_an_undo_step_is_corrected_when_it_ends() -> None:
     seen = replace(MOVED, step=BEFORE)
     guard, what = decide(WATCHING, seen)
     assert what is Action.WAIT
@@ -79,13 +79,13 @@ def test_a_dragged_number_field_is_corrected_at_its_end_in_its_own_step() -> Non
     assert action(guard, replace(MOVED, updates=6)) is Action.REPLACE  # released: the step is there
 
 
-def test_without_knowledge_of_the_undo_stack_a_step_is_added() -> None:
+def test_without_access_to_the_undo_stack_a_step_is_added() -> None:
     seen = replace(MOVED, step=None)
     guard, what = decide(replace(WATCHING, step=None), seen)
     assert what is Action.WAIT
     assert action(guard, replace(seen, time=10.0 + QUIET_TIME)) is Action.PUSH
 
 
-def test_settling_forgets_what_led_there() -> None:
+def test_settling_clears_the_history() -> None:
     guard = WATCHING.after_history(AFTER).settled(AFTER, True)
     assert guard == Guard(True, AFTER)

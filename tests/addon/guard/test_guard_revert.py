@@ -69,7 +69,7 @@ def shown_in_status_bar() -> tuple[list[str], list[str], bool]:
 
 
 @pytest.mark.parametrize(("change", "modifier"), [(mirror_box, "Mirror"), (rig_box, "Armature")])
-def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_taken_back(change: Any, modifier: str) -> None:
+def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored(change: Any, modifier: str) -> None:
     watched_again(change)
     bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
     bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
@@ -124,7 +124,7 @@ def test_a_scene_with_a_moved_rig_is_not_clear_without_a_test() -> None:
     assert watcher.problem() is None and bpy.data.objects["Rig"].location.x == 0.0
 
 
-def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
+def test_a_pose_and_a_placement_are_restored_in_one_step() -> None:
     watched_again(lambda: rig_box(in_edit_mode=False))
     bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0
     bpy.ops.ed.undo_push(message="pose")
@@ -139,7 +139,7 @@ def test_a_pose_and_a_placement_are_taken_back_at_once() -> None:
     assert bpy.data.objects["Rig"].pose.bones["Bone"].location.x == 0.0 and box().location.y == 0.0
 
 
-def test_the_frame_of_the_clear_state_comes_back_with_it() -> None:
+def test_the_frame_of_the_clear_state_is_restored() -> None:
     box().keyframe_insert("location", frame=1)
     box().location.x = 2.5
     box().keyframe_insert("location", frame=20)
@@ -170,7 +170,7 @@ def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_nam
         bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True)
 
 
-def test_a_stroke_is_taken_back_in_sculpt_mode_and_undo_does_not_spoil_the_mesh() -> None:
+def test_a_stroke_is_restored_in_sculpt_mode_and_undo_preserves_the_mesh() -> None:
     watched_again(mirror_box)
     bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
     look()

@@ -43,7 +43,7 @@ def test_a_script_is_corrected_in_a_step_of_its_own() -> None:
     assert box().location.x == 0.0
 
 
-def test_what_undo_restores_from_a_raw_state_is_corrected_and_the_stack_left_alone() -> None:
+def test_an_uncorrected_state_restored_by_undo_is_corrected_without_an_undo_step() -> None:
     watcher._watch.working = True  # as while the guard is off, with its switch on
     move(2.4)
     move(1.0)

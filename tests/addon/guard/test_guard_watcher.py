@@ -53,7 +53,7 @@ def test_a_scene_that_intersects_is_named_and_watched_again_once_it_is_free() ->
     assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
 
 
-def test_looking_again_does_nothing() -> None:
+def test_a_second_observation_does_nothing() -> None:
     move(7.0)
     look()
     shown, steps = tuple(box().location), names_of_steps()
@@ -65,7 +65,7 @@ def test_looking_again_does_nothing() -> None:
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_its_own_reading_gives_it_nothing_to_look_at(mode: str) -> None:
+def test_its_own_reading_is_not_a_change(mode: str) -> None:
     """Blender marks a mesh that was read in Edit Mode as changed: the guard looked at it once a second, for ever."""
     bpy.ops.object.mode_set(mode=mode)
     for _ in range(2):
@@ -76,7 +76,7 @@ def test_its_own_reading_gives_it_nothing_to_look_at(mode: str) -> None:
         move(0.1)
 
 
-def test_a_file_that_is_loaded_is_watched_over_if_it_says_so(tmp_path: Any) -> None:
+def test_a_loaded_file_is_watched_if_its_guard_is_on(tmp_path: Any) -> None:
     path = str(tmp_path / "guarded scene.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.context.scene.stiv.live_guard = False

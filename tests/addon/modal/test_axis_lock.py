@@ -9,7 +9,7 @@ from stiv_addon.modal.axis_lock import AxisLock
 LOCKS = [AxisLock(axis, plane) for axis in range(3) for plane in (False, True)]
 
 
-def test_free_leaves_every_axis() -> None:
+def test_without_a_lock_every_axis_is_free() -> None:
     assert AxisLock().axes == (0, 1, 2)
     assert AxisLock().label == ""
 
@@ -27,7 +27,7 @@ def test_another_lock_replaces(before: AxisLock, wanted: AxisLock) -> None:
 
 
 @pytest.mark.parametrize("lock", LOCKS)
-def test_the_same_lock_takes_other_axes_and_then_lets_go(lock: AxisLock) -> None:
+def test_the_same_key_switches_to_other_axes_and_then_unlocks(lock: AxisLock) -> None:
     again = lock.toggled(lock.axis, plane=lock.plane)
     assert again == replace(lock, second=True) and again.axes == lock.axes
     assert again.toggled(lock.axis, plane=lock.plane) == AxisLock()

@@ -48,7 +48,7 @@ def test_confirming_solves_for_the_last_goal_settles_and_writes() -> None:
     assert edit.shown == drag.transform == 0.3
 
 
-def test_confirm_without_a_motion_touches_nothing() -> None:
+def test_confirming_without_a_motion_changes_nothing() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(Event("RET"))
@@ -89,7 +89,7 @@ def test_a_used_up_budget_is_continued_at_the_next_tick() -> None:
     assert edit.calls == ["drag", "write", "drag", "write"]
 
 
-def test_a_budget_that_ended_before_anything_was_accepted_writes_nothing() -> None:
+def test_a_budget_used_up_before_the_first_accepted_state_writes_nothing() -> None:
     edit = FakeEdit(statuses=["budget"], furthest=0.0)
     drag = new_drag(edit)
     drag.handle(move_to(50))
@@ -100,7 +100,7 @@ def test_a_budget_that_ended_before_anything_was_accepted_writes_nothing() -> No
     assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5
 
 
-def test_a_goal_is_not_given_up_for_a_newer_one_before_anything_was_accepted() -> None:
+def test_a_goal_is_continued_until_a_state_is_accepted() -> None:
     edit = FakeEdit(statuses=["budget"] * 3, furthest=0.0)
     drag = new_drag(edit)
     for x in (50, 60, 70):
@@ -114,7 +114,7 @@ def test_a_goal_is_not_given_up_for_a_newer_one_before_anything_was_accepted() -
     assert (edit.shown, drag.transform, drag.at_rest) == (0.7, 0.7, True)
 
 
-def test_what_a_tick_has_no_time_to_show_is_shown_by_the_next_before_anything_is_solved(
+def test_a_state_that_a_tick_has_no_time_to_write_is_written_by_the_next(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     answers = iter([False, True, False, True])
@@ -128,7 +128,7 @@ def test_what_a_tick_has_no_time_to_show_is_shown_by_the_next_before_anything_is
     assert edit.goals == [0.5, 0.7] and not drag.at_rest
 
 
-def test_a_goal_in_hand_is_left_for_where_the_mouse_was_let_go() -> None:
+def test_the_confirmation_ends_an_unfinished_goal() -> None:
     edit = FakeEdit(statuses=["budget"], furthest=0.0)
     drag = new_drag(edit)
     drag.handle(move_to(50))
@@ -140,7 +140,7 @@ def test_a_goal_in_hand_is_left_for_where_the_mouse_was_let_go() -> None:
 
 
 @pytest.mark.parametrize("key", ["I", "W", "R"])
-def test_a_goal_in_hand_is_left_for_another_request(key: str) -> None:
+def test_another_request_ends_an_unfinished_goal(key: str) -> None:
     edit = FakeEdit(statuses=["budget"], furthest=0.0)
     drag = new_drag(edit)
     drag.handle(move_to(50))
@@ -159,7 +159,7 @@ def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> No
     assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle", "write"]
 
 
-def test_what_never_ends_is_confirmed_all_the_same() -> None:
+def test_an_endless_solve_can_be_confirmed() -> None:
     edit = FakeEdit(statuses=["budget"] * 1000)
     drag = new_drag(edit)
     drag.handle(move_to(50))
@@ -239,7 +239,7 @@ def test_a_request_and_a_confirmation_at_once_end_in_the_new_kind() -> None:
     assert edit.requests[-1].kind == drag.state.kind == "scale" and edit.shown == 0.7
 
 
-def test_a_refusal_at_the_confirmation_keeps_what_was_accepted() -> None:
+def test_a_rejection_at_the_confirmation_preserves_the_accepted_state() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(70))
@@ -264,7 +264,7 @@ def test_an_invalid_number_cannot_be_confirmed(keys: list[str]) -> None:
     assert drag.progress is Progress.CANCELLED and drag.error is None
 
 
-def test_interference_is_switched_without_beginning_again() -> None:
+def test_collisions_are_switched_within_the_edit() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(70))
@@ -277,7 +277,7 @@ def test_interference_is_switched_without_beginning_again() -> None:
     assert edit.interference and len(edit.requests) == 1
 
 
-def test_another_view_solves_for_the_pointer_in_it() -> None:
+def test_a_changed_view_solves_for_the_pointer_in_it() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(30))
@@ -312,7 +312,7 @@ def test_every_sequence_ends_shown_as_accepted_or_restored(
     assert edit.calls == before
 
 
-def test_a_goal_that_one_solve_does_not_get_near_is_solved_for_until_the_mouse_has_rested_for_long_enough() -> None:
+def test_a_far_goal_is_solved_for_repeatedly_while_the_mouse_rests() -> None:
     edit = FakeEdit(statuses=["corrected"] * 30, furthest=0.3)
     drag = new_drag(edit)
     drag.handle(move_to(500))  # far beyond the wall at 1
@@ -322,7 +322,7 @@ def test_a_goal_that_one_solve_does_not_get_near_is_solved_for_until_the_mouse_h
     assert edit.goals == [5.0] * 5  # the last one gained nothing
 
 
-def test_no_more_is_solved_for_a_goal_that_is_reached_or_blocked() -> None:
+def test_a_reached_or_blocked_goal_is_not_solved_for_again() -> None:
     for status in ("reached", "blocked", "cancelled"):
         edit = FakeEdit(statuses=[status])
         drag = new_drag(edit)

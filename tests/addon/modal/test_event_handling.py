@@ -104,7 +104,7 @@ def test_in_an_expression_keys_are_characters(key: str) -> None:
 
 
 @pytest.mark.parametrize("key", ["RET", "ESC", "LEFTMOUSE", "RIGHTMOUSE"])
-def test_an_expression_ends_like_everything_else(key: str) -> None:
+def test_an_expression_can_be_confirmed_and_cancelled(key: str) -> None:
     assert step(after(Event("EQUAL", text="=")), Event(key))[0].phase is not Phase.DRAGGING
 
 
@@ -126,7 +126,7 @@ def test_the_wheel_changes_the_size_of_proportional_editing() -> None:
     assert step(start(), Event("O")) == (start(), Effect.NONE)
 
 
-def test_ctrl_held_and_shift_tab_turn_snapping_round() -> None:
+def test_ctrl_and_shift_tab_invert_snapping() -> None:
     held, effect = step(start(), Event("LEFT_CTRL", modifiers=frozenset({"ctrl"})))
     assert held.snapping and effect is Effect.UPDATE
     assert step(held, Event("LEFT_CTRL", "RELEASE")) == (start(), Effect.UPDATE)
@@ -137,7 +137,7 @@ def test_ctrl_held_and_shift_tab_turn_snapping_round() -> None:
     assert step(start(), Event("LEFT_SHIFT"))[1] is Effect.NONE
 
 
-def test_keys_ask_for_who_responds_and_whether_anything_does() -> None:
+def test_keys_change_the_responders_and_collisions() -> None:
     assert after(Event("I")).request == Request(interference=False)
     assert after(Event("I"), Event("I")).request == Request()
     found = [after(*[Event("W")] * times).request.responders for times in range(4)]

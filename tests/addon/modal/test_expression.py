@@ -57,7 +57,7 @@ def test_expressions_have_their_value(text: str, expected: float) -> None:
         "2 m m",
     ],
 )
-def test_everything_else_is_refused(text: str) -> None:
+def test_invalid_expressions_are_rejected(text: str) -> None:
     with pytest.raises(ValueError):
         value(text)
 

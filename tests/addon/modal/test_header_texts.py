@@ -19,11 +19,11 @@ def shout(text: str) -> str:
     return text.upper()
 
 
-def test_a_plain_header_is_the_value_and_what_became_of_it() -> None:
+def test_a_plain_header_is_the_value_and_the_status() -> None:
     assert header_text(PLAIN, "Move X 1", "clear") == "Move X 1  |  clear"
 
 
-def test_the_header_names_what_is_not_as_usual() -> None:
+def test_the_header_names_modes_that_differ_from_the_defaults() -> None:
     proportional = Proportional(available=True, on=True, size=1.5, falloff="INVERSE_SQUARE", connected=True)
     state = replace(
         PLAIN, request=Request("move", "all"), precise=True, snap=True, proportional=proportional,

@@ -11,7 +11,7 @@ PIXELS = st.tuples(st.integers(-4000, 4000), st.integers(-4000, 4000))
 
 
 @given(st.lists(PIXELS, min_size=1, max_size=30), PIXELS)
-def test_without_precision_only_the_last_place_counts(path: list, start: tuple) -> None:
+def test_without_precision_only_the_last_position_matters(path: list, start: tuple) -> None:
     pointer = Pointer.at(start)
     for mouse in path:
         pointer = pointer.moved(mouse)
@@ -19,7 +19,7 @@ def test_without_precision_only_the_last_place_counts(path: list, start: tuple) 
     assert pointer.start == start
 
 
-def test_precision_counts_a_tenth_from_where_it_began() -> None:
+def test_precision_scales_the_motion_by_a_tenth() -> None:
     pointer = Pointer.at((0.0, 0.0)).moved((100.0, 0.0)).moved((200.0, 50.0), precise=True)
     assert pointer.effective == pytest.approx((100.0 + 100.0 * PRECISION, 50.0 * PRECISION))
     assert pointer.moved((210.0, 50.0)).effective == pytest.approx((120.0, 5.0))

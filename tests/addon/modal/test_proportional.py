@@ -4,12 +4,12 @@ import pytest
 from stiv_addon.modal.proportional import FALLOFFS, Proportional
 
 
-def test_there_is_none_where_it_is_not_available() -> None:
+def test_proportional_editing_is_off_where_it_is_not_available() -> None:
     assert not Proportional(False, True).active and not Proportional(False).toggled().on
     assert Proportional(True).toggled().active and not Proportional(True, True).toggled().active
 
 
-def test_falloffs_come_round() -> None:
+def test_falloffs_are_cyclic() -> None:
     proportional, seen = Proportional(True, True), []
     for _ in FALLOFFS:
         seen.append(proportional.falloff)

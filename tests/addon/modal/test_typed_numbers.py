@@ -47,14 +47,14 @@ def test_keys_give_the_number(keys: str, value: float | None, text: str) -> None
 
 
 @given(st.text("0123456789.-\b", max_size=40))
-def test_any_keys_leave_a_number_that_python_reads_alike(keys: str) -> None:
+def test_any_keys_give_a_number_that_python_reads(keys: str) -> None:
     typed = number(keys)
     assert len(typed.digits) <= MAX_DIGITS
     assert typed.value() is None or typed.value() == float(typed.text)
 
 
 @given(st.text("0123456789.-/\b", max_size=40))
-def test_backspace_deletes_everything_in_the_end(keys: str) -> None:
+def test_repeated_backspace_deletes_everything(keys: str) -> None:
     assert not number(keys + "\b" * (MAX_DIGITS + 1)).active
 
 
@@ -94,16 +94,16 @@ def test_events_type_characters(event: Event, character: str) -> None:
         (Event("C", text="c", modifiers=frozenset({"ctrl"})), ""),
     ],
 )
-def test_expressions_take_what_can_be_printed(event: Event, character: str) -> None:
+def test_expressions_accept_printable_characters(event: Event, character: str) -> None:
     assert expression_character(event) == character
 
 
-def test_a_number_becomes_an_expression_as_it_is_shown() -> None:
+def test_a_number_becomes_the_expression_that_is_shown() -> None:
     assert number("4-/").as_expression() == TypedNumber("-1/4", expression=True)
     assert TypedNumber("-1/4", expression=True).typed("-").digits == "-1/4-"
 
 
-def test_what_reads_the_number_decides_its_value() -> None:
+def test_the_reader_decides_the_value_of_a_number() -> None:
     assert number("4-/").value(lambda text: 10.0 * float(text)) == -1.0 / 40.0
     with pytest.raises(ValueError, match="1/0"):
         number("0/").value()

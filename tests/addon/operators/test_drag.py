@@ -147,7 +147,7 @@ def test_a_fault_of_the_interface_ends_the_drag_too(
     expect_clean(context)
 
 
-def test_what_cannot_be_restored_is_said(started: Any, edit: FakeEdit) -> None:
+def test_a_failure_to_restore_is_reported(started: Any, edit: FakeEdit) -> None:
     operator, context = started
     edit.failing = {"drag": RuntimeError("broken"), "restore": RuntimeError("the box is gone")}
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
@@ -156,7 +156,7 @@ def test_what_cannot_be_restored_is_said(started: Any, edit: FakeEdit) -> None:
     expect_clean(context)
 
 
-def test_what_turns_the_view_is_left_to_blender(started: Any) -> None:
+def test_navigation_is_left_to_blender(started: Any) -> None:
     operator, context = started
     assert operator.modal(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
     assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}

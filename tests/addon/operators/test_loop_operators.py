@@ -55,7 +55,7 @@ def test_added_refreshed_removed(cage: Any) -> None:
     assert bpy.ops.stiv.loop_add.poll()
 
 
-def test_edits_press_the_surface_on_the_floor_and_one_undo_takes_both_back(cage: Any) -> None:
+def test_edits_press_the_surface_on_the_floor_and_one_undo_restores_both(cage: Any) -> None:
     bpy.ops.stiv.loop_add()
     bpy.context.scene.stiv.object_response = "deform"
     before = shown()
@@ -69,7 +69,7 @@ def test_edits_press_the_surface_on_the_floor_and_one_undo_takes_both_back(cage:
     np.testing.assert_array_equal(shown(), before)
 
 
-def test_blenders_own_tools_are_followed(cage: Any) -> None:
+def test_results_of_blenders_tools_are_refined(cage: Any) -> None:
     bpy.ops.stiv.loop_add()
     cage.data.vertices[0].co.z -= 0.3
     cage.data.update()
@@ -94,7 +94,7 @@ def test_a_cage_with_another_face_is_refused_and_says_which(cage: Any) -> None:
     assert bpy.data.objects["Floor"].stiv.loop.object is None
 
 
-def test_a_copy_of_the_cage_does_not_claim_the_object_of_the_first(cage: Any) -> None:
+def test_a_copy_of_a_cage_has_no_surface_of_its_own(cage: Any) -> None:
     bpy.ops.stiv.loop_add()
     copy = cage.copy()
     copy.data = cage.data.copy()
@@ -109,7 +109,7 @@ def test_a_copy_of_the_cage_does_not_claim_the_object_of_the_first(cage: Any) ->
     assert tuple(copy.location) == (5, 0, 0.5)
 
 
-def test_undo_in_edit_mode_takes_the_object_back_too(cage: Any) -> None:
+def test_undo_in_edit_mode_restores_the_object_too(cage: Any) -> None:
     bpy.ops.stiv.loop_add()
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")

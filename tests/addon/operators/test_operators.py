@@ -96,7 +96,7 @@ def test_move_takes_world_values(scene: Any) -> None:
     assert RecordingEdit.begun.kind == "move"
 
 
-def test_what_an_edit_did_can_be_read_by_scripts() -> None:
+def test_scripts_can_read_the_last_edit() -> None:
     bpy.ops.stiv.move(value=(0.5, 0.0, -1.0))
     said = json.loads(bpy.context.window_manager.stiv_last_edit)
     assert (said["status"], said["rounds"], said["events"], said["patches"]) == ("corrected", 3, 2, 1)
@@ -159,7 +159,7 @@ def test_choices_of_a_drag_are_properties() -> None:
         bpy.ops.stiv.move(falloff="ODD")
 
 
-def test_the_outcome_of_a_drag_is_taken_up_again_from_the_same_start(scene: Any) -> None:
+def test_the_result_of_a_drag_is_reused_from_the_same_start(scene: Any) -> None:
     ended = np.eye(4)
     ended[:3, 3] = 0.0, 7.0, 0.0
     result = SimpleNamespace(status="blocked", blocking=(), rounds=1, patches=0, energy=0.0, timings={}, counters={})
@@ -178,7 +178,7 @@ def test_the_outcome_of_a_drag_is_taken_up_again_from_the_same_start(scene: Any)
     np.testing.assert_array_equal(scene.location, (1.0, 19.0, 3.0))
 
 
-def test_old_outcomes_are_forgotten() -> None:
+def test_old_results_are_deleted() -> None:
     numbers = [
         drag_results.store(drag_results.DragResult(str(i), None, None, None)) for i in range(drag_results.CAPACITY + 3)
     ]
@@ -213,7 +213,7 @@ def test_without_the_native_module_operators_say_why(monkeypatch: pytest.MonkeyP
         bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
 
 
-def test_the_panel_says_why_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_panel_gives_the_reason_too(monkeypatch: pytest.MonkeyPatch) -> None:
     lines: list[str] = []
 
     class Layout:

@@ -40,7 +40,7 @@ def test_a_pair_is_kept_apart_after_saving_renaming_and_loading(tmp_path: Path) 
     assert len(bpy.context.scene.stiv.pair_separations) == 0
 
 
-def test_what_is_not_one_pair_is_refused() -> None:
+def test_other_numbers_of_objects_are_rejected() -> None:
     choose("Box", "Floor", "Far")
     with pytest.raises(RuntimeError, match=r"\(3 selected\)"):
         bpy.ops.stiv.separation_add()

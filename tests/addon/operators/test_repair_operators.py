@@ -66,7 +66,7 @@ def test_repair_is_one_undo_step_and_reports() -> None:
     assert np.array_equal(positions(bpy.data.objects["Tube"]), before)
 
 
-def test_what_is_refused_raises_with_the_pairs_named() -> None:
+def test_a_rejected_repair_raises_and_names_the_pairs() -> None:
     ball = icosphere(1)
     one, two = add("One", ball.vertices, ball.faces), add("Two", ball.vertices, ball.faces)
     with pytest.raises(RuntimeError, match=r'exactly on others.*pairs intersect: "One" face 0 and "Two" face 0'):
@@ -75,7 +75,7 @@ def test_what_is_refused_raises_with_the_pairs_named() -> None:
     assert last()["status"] == "refused" and last()["pairs"][0] == [["One", "face", 0], ["Two", "face", 0]]
 
 
-def test_contract_expand_and_settle_have_values() -> None:
+def test_contract_expand_and_settle_use_their_properties() -> None:
     tube = add_tube()
     before = positions(tube)
     assert bpy.ops.stiv.contract(steps=12, until_free=True) == {"FINISHED"}
@@ -91,7 +91,7 @@ def test_contract_expand_and_settle_have_values() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_without_a_shape_to_go_back_to_expand_says_so() -> None:
+def test_without_a_rest_shape_expand_reports_it() -> None:
     add("Ball", icosphere(1).vertices, icosphere(1).faces)
     with pytest.raises(RuntimeError, match='object "Ball": it has no rest shape'):
         bpy.ops.stiv.expand()
@@ -133,7 +133,7 @@ def test_check_selects_the_faces_that_meet(levels: int, mode: str) -> None:
     assert any(line.startswith("Grid, Spike: ") for line in lines)
 
 
-def test_a_worker_solves_beside_blender_and_brings_errors_back() -> None:
+def test_a_worker_solves_in_a_thread_and_returns_errors() -> None:
     class Task:
         def solve(self, cancel: Any, progress: Any) -> None:
             progress("rounds", 0.5)
@@ -214,7 +214,7 @@ def test_in_a_window_a_thread_solves_and_timers_wait_for_it() -> None:
     assert operator.reported[-1][0] == {"INFO"}
 
 
-def test_esc_puts_everything_back() -> None:
+def test_esc_restores_everything() -> None:
     tube = add_tube()
     before = positions(tube)
     operator, context = InWindow(), Context()
@@ -226,7 +226,7 @@ def test_esc_puts_everything_back() -> None:
     assert "cancelled" in operator.reported[-1][1]
 
 
-def test_blender_may_end_it_and_an_object_may_be_gone() -> None:
+def test_blender_may_end_a_repair_and_an_object_may_be_deleted() -> None:
     tube = add_tube()
     before = positions(tube)
     operator, context = InWindow(), Context()

@@ -133,7 +133,7 @@ def test_a_lattice_responds_with_its_points_in_object_mode_on_request() -> None:
 
 
 @pytest.mark.parametrize("value", [(5.0, 0.0, 0.0), (0.3, 1.0, 0.2)])
-def test_the_same_value_gives_the_same_bits_again(value: tuple) -> None:
+def test_the_same_value_reproduces_the_bits(value: tuple) -> None:
     smooth_cage()
     edit_right_half()
     bpy.ops.ed.undo_push(message="start")
@@ -145,7 +145,7 @@ def test_the_same_value_gives_the_same_bits_again(value: tuple) -> None:
     np.testing.assert_array_equal(*results)
 
 
-def test_one_undo_takes_the_edit_back() -> None:
+def test_one_undo_restores_the_state_before() -> None:
     box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.ed.undo_push(message="start")
     bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(5.0, 0.0, 0.0))
@@ -169,7 +169,7 @@ def test_nothing_selected_is_refused() -> None:
         bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
 
 
-def test_the_role_of_an_object_counts(wall: Any) -> None:
+def test_the_role_of_an_object_is_respected(wall: Any) -> None:
     wall.stiv.role = "ignored"
     obj = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.stiv.move(value=(5.0, 0.0, 0.0))
@@ -223,7 +223,7 @@ def test_restoring_works_in_another_mode_too(build: Any, name: str) -> None:
     np.testing.assert_array_equal(positions(name), before)
 
 
-def test_what_is_only_rendered_is_named_unless_the_render_is_guarded(wall: Any) -> None:
+def test_objects_in_the_render_alone_are_named_unless_the_render_is_guarded(wall: Any) -> None:
     hidden = bpy.data.objects.new("Hidden", wall.data)
     hidden.location, hidden.hide_viewport = (-3.0, 0.0, 0.0), True
     bpy.context.collection.objects.link(hidden)
@@ -238,7 +238,7 @@ def test_what_is_only_rendered_is_named_unless_the_render_is_guarded(wall: Any) 
     assert bpy.context.window_manager.stiv_check.left_out == ""
 
 
-def test_what_has_no_surface_is_named_by_the_operator_and_kept_for_the_panel(wall: Any, capfd: Any) -> None:
+def test_an_object_without_a_surface_is_reported_and_shown_in_the_panel(wall: Any, capfd: Any) -> None:
     bpy.context.collection.objects.link(bpy.data.objects.new("Dust", bpy.data.pointclouds.new("Dust")))
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     assert bpy.ops.stiv.move(value=(1, 0, 0)) == {"FINISHED"}

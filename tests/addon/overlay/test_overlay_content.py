@@ -19,7 +19,7 @@ def full() -> Content:
     return content
 
 
-def test_nothing_is_nothing() -> None:
+def test_empty_content_is_false() -> None:
     assert not Content()
     assert lines_of(Content(), ALL, 1.0) == {}
     assert texts_of(Content(), ALL, str) == []

@@ -19,11 +19,11 @@ ACTIVE = np.array([1.0, 0.0, 0.0])
         ("ACTIVE_ELEMENT", (1.0, 0.0, 0.0)),
     ],
 )
-def test_the_choice_of_the_scene_counts(choice: str, expected: tuple) -> None:
+def test_the_choice_of_the_scene_is_the_pivot(choice: str, expected: tuple) -> None:
     np.testing.assert_allclose(pivot_of(POINTS, choice, cursor=CURSOR, active=ACTIVE), expected)
 
 
-def test_without_an_active_element_the_median_counts() -> None:
+def test_without_an_active_element_the_pivot_is_the_median() -> None:
     pivot = pivot_of(POINTS, "ACTIVE_ELEMENT", cursor=CURSOR, active=None)
     np.testing.assert_allclose(pivot, POINTS.mean(axis=0))
 

@@ -27,13 +27,13 @@ def test_the_factor_is_the_ratio_of_distances() -> None:
     assert factor((500.0, 300.0), (500.0, 300.0)) == 1.0
 
 
-def test_the_pointer_alone_neither_collapses_nor_explodes() -> None:
+def test_the_pointer_alone_cannot_collapse_or_mirror() -> None:
     assert factor((500.0, 300.0), CENTRE) == LEAST_FACTOR
     assert factor(CENTRE, (410.0, 300.0)) == 10.0
 
 
 @pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.label)
-def test_only_the_axes_left_are_scaled(lock: AxisLock) -> None:
+def test_only_the_free_axes_are_scaled(lock: AxisLock) -> None:
     state = State(Pointer.at((500.0, 300.0), CENTRE), Request("scale"), lock, typed("3"))
     frame = Frame(PIVOT, TILTED)
     matrix = requested_scaling(state, frame).matrix(frame)
@@ -49,7 +49,7 @@ def test_typed_factors(typed_values: TypedValues, expected: float) -> None:
     assert requested_scaling(State(Pointer.at((0.0, 0.0)), typed=typed_values), Frame(PIVOT)).factors[0] == expected
 
 
-def test_several_typed_factors_count_for_their_axes() -> None:
+def test_typed_factors_apply_to_their_axes() -> None:
     state = State(Pointer.at((0.0, 0.0)), Request("scale"), typed=typed("2", "", "4"))
     np.testing.assert_array_equal(requested_scaling(state, Frame(PIVOT)).factors, [2.0, 1.0, 4.0])
 
@@ -62,5 +62,5 @@ def test_axes_of_scaled_mirrored_and_sheared_objects_are_made_orthonormal(scale:
 
 
 @pytest.mark.parametrize("collapsed", [np.zeros((3, 3)), np.ones((3, 3)), np.diag([1.0, 0.0, 0.0])])
-def test_collapsed_axes_give_those_of_the_world(collapsed: np.ndarray) -> None:
+def test_degenerate_axes_give_those_of_the_world(collapsed: np.ndarray) -> None:
     np.testing.assert_array_equal(orthonormal(collapsed), np.eye(3))

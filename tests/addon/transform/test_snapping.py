@@ -35,7 +35,7 @@ def moved(end: tuple, snap: Snap, **chosen: object) -> np.ndarray:
 
 
 @given(PIXELS, st.sampled_from([AxisLock(), AxisLock(0), AxisLock(1, plane=True)]), st.booleans())
-def test_moves_go_in_whole_steps_along_the_axes_left(end: tuple, lock: AxisLock, fine: bool) -> None:
+def test_moves_snap_to_increments_along_the_free_axes(end: tuple, lock: AxisLock, fine: bool) -> None:
     vector = moved(end, Snap(), axis_lock=lock, precise=fine)
     steps = vector / (0.1 if fine else 1.0)
     np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
@@ -44,14 +44,14 @@ def test_moves_go_in_whole_steps_along_the_axes_left(end: tuple, lock: AxisLock,
 
 
 @given(PIXELS)
-def test_on_the_grid_it_is_the_pivot_that_snaps(end: tuple) -> None:
+def test_on_the_grid_the_pivot_snaps(end: tuple) -> None:
     frame = Frame(np.array([0.3, -0.2, 0.7]), view=VIEW)
     state = State(Pointer.at((400.0, 300.0)).moved(end), snap=True)
     place = frame.pivot + requested_translation(state, frame, snap=Snap(frozenset({"GRID"}))).vector
     np.testing.assert_allclose(place, np.round(place), atol=1e-9)
 
 
-def test_turns_and_factors_go_in_whole_steps() -> None:
+def test_turns_and_factors_snap_to_increments() -> None:
     pointer = Pointer.at((500.0, 300.0), (400.0, 300.0)).moved((513.0, 327.0))
     for fine, degrees, factor in [(False, 5, 0.1), (True, 1, 0.01)]:
         state = State(pointer, Request("rotate"), ctrl=True, precise=fine)
@@ -72,7 +72,7 @@ def test_turns_and_factors_go_in_whole_steps() -> None:
         (True, False, "rotate", False),
     ],
 )
-def test_ctrl_turns_snapping_round(snap: bool, ctrl: bool, kind: str, expected: bool) -> None:
+def test_ctrl_inverts_snapping(snap: bool, ctrl: bool, kind: str, expected: bool) -> None:
     assert Snap().applies(State(Pointer.at((0.0, 0.0)), Request(kind), snap=snap, ctrl=ctrl)) is expected
 
 
@@ -124,7 +124,7 @@ def test_the_chosen_point_of_the_selection_moves_onto_the_target(source: str, of
     assert locked[2] == 0.0
 
 
-def test_an_outline_is_found_from_beside() -> None:
+def test_an_outline_is_a_target_from_outside() -> None:
     def look(pixel: tuple) -> Hit | None:
         return seen_at((1.99, 1.0, 1.0)) if pixel[0] < VIEW.project(CORNERS[1])[0] else None
 

@@ -44,7 +44,7 @@ def test_a_locked_drag_stays_on_its_axes(view: View, lock: AxisLock, start: tupl
 @pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.label)
 @pytest.mark.parametrize("view", [VIEWS["corner parallel"], VIEWS["corner perspective"]])
 @given(amount=st.tuples(*[st.floats(-0.5, 0.5)] * 3))
-def test_pointing_at_where_the_pivot_should_go_takes_it_there(view: View, lock: AxisLock, amount: tuple) -> None:
+def test_the_pivot_moves_to_the_pointed_position(view: View, lock: AxisLock, amount: tuple) -> None:
     wanted = sum(TILTED[:, axis] * amount[axis] for axis in lock.axes)
     vector = dragged(view.project(PIVOT), view.project(PIVOT + wanted), lock, Frame(PIVOT, TILTED, view))
     np.testing.assert_allclose(vector, wanted, atol=1e-5)
@@ -73,14 +73,14 @@ def test_beyond_the_horizon_the_motion_stays_in_proportion() -> None:
 
 
 @pytest.mark.parametrize("lock", [AxisLock(), *LOCKS], ids=lambda lock: lock.label)
-def test_a_typed_number_counts_along_the_first_axis_left(lock: AxisLock) -> None:
+def test_a_typed_number_applies_to_the_first_free_axis(lock: AxisLock) -> None:
     state = State(Pointer.at((0.0, 0.0)).moved((50.0, 50.0)), axis_lock=lock, typed=typed("-2.5"))
     vector = requested_translation(state, Frame(PIVOT, TILTED, VIEWS["top"])).vector
     np.testing.assert_allclose(vector, -2.5 * TILTED[:, lock.axes[0]])
 
 
 @pytest.mark.parametrize("lock", [AxisLock(), AxisLock(0, plane=True), AxisLock(1, plane=True)])
-def test_typed_numbers_fill_the_axes_left_in_order(lock: AxisLock) -> None:
+def test_typed_numbers_apply_to_the_free_axes_in_order(lock: AxisLock) -> None:
     state = State(Pointer.at((0.0, 0.0)), axis_lock=lock, typed=typed("1", "", "3").limited(len(lock.axes)))
     vector = requested_translation(state, Frame(PIVOT, TILTED)).vector
     expected = TILTED[:, list(lock.axes)] @ [1.0, 0.0, 3.0][: len(lock.axes)]

@@ -22,11 +22,11 @@ def test_the_target_is_seen_in_the_middle() -> None:
         assert view.project(np.ones(3)) == pytest.approx((SIZE[0] / 2, SIZE[1] / 2))
 
 
-def test_what_is_behind_the_viewer_has_no_pixel() -> None:
+def test_a_position_behind_the_viewer_has_no_pixel() -> None:
     assert looking((0, 0, 10)).project(np.array([0.0, 0.0, 11.0])) is None
 
 
 @pytest.mark.parametrize("eye", [(0, 0, 10), (6, -5, 4), (-3, 1, -2)])
-def test_the_viewer_is_where_it_is(eye: tuple) -> None:
+def test_the_direction_to_the_viewer_is_that_of_the_eye(eye: tuple) -> None:
     expected = (np.array(eye) - POINT) / np.linalg.norm(np.array(eye) - POINT)
     np.testing.assert_allclose(looking(eye).toward_viewer(POINT), expected, atol=1e-9)
