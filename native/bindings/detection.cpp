@@ -57,16 +57,17 @@ class GuardedDetector {
   GuardedDetector(std::shared_ptr<Surface> surface, BroadPhase broad_phase, NarrowPhase narrow_phase, int threads)
       : detector_(std::move(surface), {broad_phase, narrow_phase}), threads_(threads) {}
 
-  Events find(const PositionsView& start, const PositionsView& end, double separation, double keep) {
+  Events find(const PositionsView& start, const PositionsView& end, double separation, double min_clearance_ratio) {
     const Use use(busy_);
     Execution execution(threads_);
-    return detector_.find(start, end, {separation, keep}, execution);
+    return detector_.find(start, end, {separation, min_clearance_ratio}, execution);
   }
 
-  double earliest_time(const PositionsView& start, const PositionsView& end, double separation, double keep) {
+  double earliest_time(const PositionsView& start, const PositionsView& end, double separation,
+                       double min_clearance_ratio) {
     const Use use(busy_);
     Execution execution(threads_);
-    return detector_.earliest_time(start, end, {separation, keep}, execution);
+    return detector_.earliest_time(start, end, {separation, min_clearance_ratio}, execution);
   }
 
  private:
@@ -119,22 +120,22 @@ void bind_detection(py::module_& module) {
       .finalize();
   module.def("times_of_impact", &times_of_impact, py::arg("kind"), py::arg("start"), py::arg("end"),
              py::arg("separation"), py::arg("threads"), Release());
-  const py::arg start("start"), end("end"), separation("separation"), keep("keep");
+  const py::arg start("start"), end("end"), separation("separation"), min_clearance_ratio("min_clearance_ratio");
   py::class_<GuardedDetector>(module, "Detector")
       .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>(), py::arg("surface"),
            py::arg("broad_phase"), py::arg("narrow_phase"), py::arg("threads"))
       .def(
           "find",
           [](GuardedDetector& detector, const PositionsView& start, const PositionsView& end, double separation,
-             double keep) {
+             double min_clearance_ratio) {
             const Events events = [&] {
               const py::gil_scoped_release release;
-              return detector.find(start, end, separation, keep);
+              return detector.find(start, end, separation, min_clearance_ratio);
             }();
             return arrays_of(events);
           },
-          start, end, separation, keep)
-      .def("earliest_time", &GuardedDetector::earliest_time, start, end, separation, keep, Release());
+          start, end, separation, min_clearance_ratio)
+      .def("earliest_time", &GuardedDetector::earliest_time, start, end, separation, min_clearance_ratio, Release());
 }
 
 }  // namespace stiv::bindings

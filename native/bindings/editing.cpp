@@ -88,7 +88,7 @@ class Session {
     if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
       throw InputError("time_budget must be a positive number of seconds");
     return call(cancel, progress, [&](Execution& execution) {
-      if (time_budget) execution.set_time_budget(*time_budget, true);
+      if (time_budget) execution.set_time_budget(*time_budget, BudgetEnd::after_checkpoint);
       return session_.drag(to, execution);
     });
   }
@@ -141,7 +141,7 @@ class Session {
   py::dict call(const CancelToken* cancel, const py::object& progress, const Work& work) {
     const InUse in_use(in_use_);
     Execution execution(threads_);
-    if (cancel != nullptr) execution.watch(&cancel->cancelled);
+    if (cancel != nullptr) execution.cancel_when([cancel] { return cancel->cancelled.load(); });
     const ProgressCall progress_call(progress, execution);
     EditResult result;
     {
@@ -189,8 +189,8 @@ void bind_options(py::module_& module) {
       .def(py::init<>())
       .def_readwrite("separation", &EditOptions::separation)
       .def_readwrite("pair_separations", &EditOptions::pair_separations)
-      .def_readwrite("keep", &EditOptions::keep)
-      .def_readwrite("keep_between", &EditOptions::keep_between)
+      .def_readwrite("min_clearance_ratio", &EditOptions::min_clearance_ratio)
+      .def_readwrite("min_clearance_ratio_between", &EditOptions::min_clearance_ratio_between)
       .def_readwrite("smoothness", &EditOptions::smoothness)
       .def_readwrite("weights", &EditOptions::weights)
       .def_readwrite("weight_axes", &EditOptions::weight_axes)

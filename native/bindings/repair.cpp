@@ -87,7 +87,7 @@ py::dict dict_of(const RepairResult& result) {
 template <class Work>
 auto call(int threads, const CancelToken* cancel, const py::object& progress, const Work& work) {
   Execution execution(threads);
-  if (cancel != nullptr) execution.watch(&cancel->cancelled);
+  if (cancel != nullptr) execution.cancel_when([cancel] { return cancel->cancelled.load(); });
   const ProgressCall progress_call(progress, execution);
   auto result = [&] {
     const py::gil_scoped_release unlocked;

@@ -147,7 +147,8 @@ void require_no_trace_of_cancelled(fuzz::Input& input, EditSession& session, con
   const Controls before = session.controls();
   const Positions surface = session.surface();
   Execution execution(1);
-  execution.cancel_after_checks(input.byte());
+  int left = input.byte();
+  execution.cancel_when([&] { return --left < 0; });
   const EditResult result = call(input, session, goal, execution);
   if (result.status != EditStatus::cancelled) return;
   fuzz::require(session.controls() == before && session.surface() == surface, "a cancelled call leaves no trace");

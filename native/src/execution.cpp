@@ -43,18 +43,17 @@ void write_control(std::uint32_t) {}
 Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()) {}
 Execution::~Execution() = default;
 
-void Execution::set_time_budget(double seconds, bool after_gain) {
+void Execution::set_time_budget(double seconds, BudgetEnd end) {
   using Clock = std::chrono::steady_clock;
   deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  waits_for_gain_ = after_gain;
+  awaits_checkpoint_ = end == BudgetEnd::after_checkpoint;
 }
 
 bool Execution::budget_used_up() const {
-  return deadline_ && !waits_for_gain_ && std::chrono::steady_clock::now() >= *deadline_;
+  return deadline_ && !awaits_checkpoint_ && std::chrono::steady_clock::now() >= *deadline_;
 }
 
 void Execution::check() const {
-  if (checks_left_.fetch_sub(1, std::memory_order_relaxed) <= 0) throw Interrupted("cancelled");
   if (cancel_requested()) throw Interrupted("cancelled");
   if (budget_used_up()) throw Interrupted("time budget used up");
 }
@@ -75,7 +74,7 @@ void Execution::for_chunks(Index count, Index chunk_size, const std::function<vo
         check();
         work(chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size), chunk);
       } catch (...) {
-        failures[static_cast<std::size_t>(chunk)] = std::current_exception();
+        failures[chunk] = std::current_exception();
         failed.store(true, std::memory_order_relaxed);
       }
     }

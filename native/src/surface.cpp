@@ -24,13 +24,12 @@ void check_corners(const SurfaceDefinition& definition, const Corners& corners, 
               << definition.vertex_count - 1;
       throw InputError(message.str());
     }
-    const auto body = [&](Index k) { return definition.vertex_body[static_cast<std::size_t>(corners(row, k))]; };
+    const auto body = [&](Index k) { return definition.vertex_body[corners(row, k)]; };
     for (Index k = 1; k < corners.cols(); ++k) {
       if (body(k) == body(0)) continue;
       std::ostringstream message;
-      message << what << " " << row << " joins two objects, \""
-              << definition.bodies[static_cast<std::size_t>(body(0))].name << "\" and \""
-              << definition.bodies[static_cast<std::size_t>(body(k))].name << "\"; give each object its own vertices";
+      message << what << " " << row << " joins two objects, \"" << definition.bodies[body(0)].name << "\" and \""
+              << definition.bodies[body(k)].name << "\"; give each object its own vertices";
       throw InputError(message.str());
     }
   }
@@ -78,15 +77,15 @@ void for_each_side(const SurfaceDefinition& definition, const Work& work) {
 /// Sorted. Few sides begin at a vertex, so that they are counted into place and sorted vertex by vertex.
 Edges unique_edges(const SurfaceDefinition& definition) {
   std::vector<std::size_t> start(static_cast<std::size_t>(definition.vertex_count) + 1, 0);
-  for_each_side(definition, [&](Index a, Index) { ++start[static_cast<std::size_t>(a)]; });
+  for_each_side(definition, [&](Index a, Index) { ++start[a]; });
   std::size_t sum = 0;
   for (std::size_t& count : start) count = sum += count;
   std::vector<Index> ends(sum);
-  for_each_side(definition, [&](Index a, Index b) { ends[--start[static_cast<std::size_t>(a)]] = b; });
+  for_each_side(definition, [&](Index a, Index b) { ends[--start[a]] = b; });
   Edges edges(static_cast<Index>(sum), 2);
   Index row = 0;
   for (Index vertex = 0; vertex < definition.vertex_count; ++vertex) {
-    const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(vertex)]);
+    const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(start[vertex]);
     const auto end = ends.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(vertex) + 1]);
     std::sort(begin, end);
     std::for_each(begin, std::unique(begin, end), [&](Index other) { edges.row(row++) << vertex, other; });
@@ -119,9 +118,7 @@ void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, 
   for (std::size_t vertex = 0; vertex + 1 < start.size(); ++vertex) start[vertex + 1] += start[vertex];
   neighbours.resize(static_cast<std::size_t>(2 * edges.rows()));
   std::vector<Index> cursor(start.begin(), start.end() - 1);
-  const auto add = [&](Index from, Index to) {
-    neighbours[static_cast<std::size_t>(cursor[static_cast<std::size_t>(from)]++)] = to;
-  };
+  const auto add = [&](Index from, Index to) { neighbours[cursor[from]++] = to; };
   // Edges come sorted, so the smaller neighbours of a vertex must be entered before its larger ones.
   for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 1), edges(edge, 0));
   for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
@@ -137,7 +134,7 @@ std::vector<std::vector<Index>> recut_faces_of_vertices(const SurfaceDefinition&
       if (vertex < 0 || vertex >= definition.vertex_count)
         throw InputError("recut face " + std::to_string(face) + ": vertex index " + std::to_string(vertex) +
                          " is out of range 0.." + std::to_string(definition.vertex_count - 1));
-      std::vector<Index>& own = faces[static_cast<std::size_t>(vertex)];
+      std::vector<Index>& own = faces[vertex];
       if (own.empty() || own.back() != static_cast<Index>(face)) own.push_back(static_cast<Index>(face));
     }
   return faces;
@@ -145,10 +142,9 @@ std::vector<std::vector<Index>> recut_faces_of_vertices(const SurfaceDefinition&
 
 /// Name of the body of `vertex`, and the place of `vertex` among the vertices of that body.
 std::pair<std::string, Index> place_in_body(const SurfaceDefinition& definition, Index vertex) {
-  const Index body = definition.vertex_body[static_cast<std::size_t>(vertex)];
+  const Index body = definition.vertex_body[vertex];
   const auto begin = definition.vertex_body.begin();
-  return {definition.bodies[static_cast<std::size_t>(body)].name,
-          static_cast<Index>(std::count(begin, begin + vertex, body))};
+  return {definition.bodies[body].name, static_cast<Index>(std::count(begin, begin + vertex, body))};
 }
 
 }  // namespace
@@ -166,9 +162,7 @@ Surface::Surface(SurfaceDefinition definition) : definition_(std::move(definitio
 }
 
 bool Surface::in_one_recut_face(const Index* vertices, std::size_t count) const {
-  const auto faces_of = [&](Index vertex) -> const std::vector<Index>& {
-    return recut_[static_cast<std::size_t>(vertex)];
-  };
+  const auto faces_of = [&](Index vertex) -> const std::vector<Index>& { return recut_[vertex]; };
   for (const Index face : faces_of(vertices[0])) {
     const bool in_all = std::all_of(vertices + 1, vertices + count, [&](Index vertex) {
       return std::binary_search(faces_of(vertex).begin(), faces_of(vertex).end(), face);
@@ -197,7 +191,7 @@ std::string Surface::describe_triangle(Index triangle) const {
   const Index body = body_of(triangles()(triangle, 0));
   Index place = 0;
   for (Index other = 0; other < triangle; ++other) place += body_of(triangles()(other, 0)) == body;
-  return "object \"" + bodies()[static_cast<std::size_t>(body)].name + "\", face " + std::to_string(place);
+  return "object \"" + bodies()[body].name + "\", face " + std::to_string(place);
 }
 
 void Surface::check_positions(const PositionsView& q) const {

@@ -52,13 +52,13 @@ TEST_CASE("execution: cancelling and a used up budget interrupt") {
   late.set_time_budget(0);
   CHECK_THROWS_AS(late.check(), Interrupted);
   Execution gaining(1);
-  gaining.set_time_budget(0, true);
+  gaining.set_time_budget(0, BudgetEnd::after_checkpoint);
   CHECK_NOTHROW(gaining.check());
-  gaining.note_gain();
+  gaining.checkpoint();
   CHECK_THROWS_AS(gaining.check(), Interrupted);
   std::atomic<bool> flag{false};
   Execution watching(1);
-  watching.watch(&flag);
+  watching.cancel_when([&] { return flag.load(); });
   CHECK_NOTHROW(watching.check());
   flag = true;
   CHECK_THROWS_AS(watching.check(), Interrupted);

@@ -156,14 +156,14 @@ class Detector:
         start: Annotated[NDArray[float64], "[m, 3]"],
         end: Annotated[NDArray[float64], "[m, 3]"],
         separation: float,
-        keep: float,
+        min_clearance_ratio: float,
     ) -> float: ...
     def find(
         self,
         start: Annotated[NDArray[float64], "[m, 3]"],
         end: Annotated[NDArray[float64], "[m, 3]"],
         separation: float,
-        keep: float,
+        min_clearance_ratio: float,
     ) -> tuple[Any, ...]: ...
 
 class IntersectionTest:
@@ -212,8 +212,8 @@ class EditOptions:
     volumes: VolumeKind
     accumulated_rounds: int
     exclude: Sequence[tuple[int, int]]
-    keep: float
-    keep_between: float
+    min_clearance_ratio: float
+    min_clearance_ratio_between: float
     max_rounds: int
     max_sub_edits: int
     pair_separations: Sequence[BodyPairSeparation]

@@ -100,21 +100,25 @@ class Detector:
         self._surface = surface if isinstance(surface, Surface) else as_indices(surface, "triangles", (None, 3))
         self._native: _native.Detector | None = None
 
-    def find(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> Events:
+    def find(
+        self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, min_clearance_ratio: float = 0.5
+    ) -> Events:
         """Return all events of the step from `start` to `end`, (N, 3) each.
 
-        A pair that starts at distance d0 interferes when it comes within the separation; within keep d0
-        where it starts nearer than that.
+        A pair interferes when it comes within the separation. A pair that starts nearer than that, at
+        distance d0, interferes within min_clearance_ratio d0.
         """
         first, last = self._positions(start, end)
         with _naming_rows(first, last):
-            return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, keep)))
+            return Events(*self._ready(len(first)).find(first, last, *_proximity(separation, min_clearance_ratio)))
 
-    def earliest_time(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, keep: float = 0.5) -> float:
+    def earliest_time(
+        self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, min_clearance_ratio: float = 0.5
+    ) -> float:
         """Return the time of the earliest event, inf if there is none; cheaper than `find`."""
         first, last = self._positions(start, end)
         with _naming_rows(first, last):
-            return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, keep))
+            return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, min_clearance_ratio))
 
     def _positions(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
         rows = self._surface.vertex_count if isinstance(self._surface, Surface) else None
@@ -141,8 +145,8 @@ def _naming_rows(start: Floats, end: Floats) -> Iterator[None]:
         raise
 
 
-def _proximity(separation: float, keep: float) -> tuple[float, float]:
-    return as_number(separation, "separation", 0), as_number(keep, "keep", 0)
+def _proximity(separation: float, min_clearance_ratio: float) -> tuple[float, float]:
+    return as_number(separation, "separation", 0), as_number(min_clearance_ratio, "min_clearance_ratio", 0)
 
 
 def find_interference(

@@ -231,7 +231,7 @@ SHAPE = np.zeros((4, 3))
         ),
         (lambda: stiv.Detector([[0, 1, 2]], narrow_phase="cubic"), "'cubic' is none of 'conservative', 'polynomial'"),
         (lambda: stiv.Detector([[0, 1, 2]], threads=-1), "threads: expected a non-negative integer"),
-        (lambda: stiv.Detector([[0, 1, 2]]).find(SHAPE, SHAPE, 0, 1), "kept fraction"),
+        (lambda: stiv.Detector([[0, 1, 2]]).find(SHAPE, SHAPE, 0, 1), "min_clearance_ratio"),
         (lambda: stiv.Detector(stiv.Surface([[0, 1, 2]], 3)).find(SHAPE, SHAPE), "start: shape is"),
         (lambda: stiv.Surface([[0, 1, 2]], vertex_body=[0, 0, 1]), "vertex_body, row 2: index 1 is out of range"),
         (lambda: stiv.Surface([[0, 1, 2]], bodies=[stiv.Body("a", "soft")]), 'not "soft"'),

@@ -11,7 +11,8 @@ from blend_fixtures.scenes.primitives import box, grid, icosphere, triangulated
 from blend_fixtures.scenes.shape import joined
 from tests.oracles.distances import near_pairs
 
-KEEP, KEEP_BETWEEN = stiv.EditOptions().keep, stiv.EditOptions().keep_between
+OPTIONS = stiv.EditOptions()
+RATIO, RATIO_BETWEEN = OPTIONS.min_clearance_ratio, OPTIONS.min_clearance_ratio_between
 SIZES = {("box", "sheet"): 0.05, ("ball", "sheet"): 0.11, ("ball", "box"): 0.02}
 
 
@@ -49,7 +50,7 @@ def check_distances(surface: stiv.Surface, table: np.ndarray, begin: np.ndarray,
         if start >= h:
             assert distance >= h * (1 - 1e-6), (pair, start, distance, h)
         else:
-            share = KEEP if body[pair[1]] == body[pair[4]] else KEEP_BETWEEN
+            share = RATIO if body[pair[1]] == body[pair[4]] else RATIO_BETWEEN
             assert distance >= start * share * (1 - 1e-6), (pair, start, distance)
 
 

@@ -111,7 +111,7 @@ def test_a_start_that_intersects_is_refused_with_its_pairs(edit: families.Edit) 
     [
         ({"separation": 1e-12}, "the least that can be kept"),
         ({"separation": -1.0}, "the least that can be kept"),
-        ({"keep": 1.0}, "keep"),
+        ({"min_clearance_ratio": 1.0}, "min_clearance_ratio"),
         ({"smoothness": 0.0}, "smoothness"),
         ({"weights": [1.0, 2.0]}, "weights has 2 entries"),
         ({"weights": np.ones((4, 2))}, r"weights: shape is \(4, 2\), expected \(m,\) or \(m, 3\)"),

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "stiv/types.hpp"
 
@@ -36,6 +36,12 @@ struct Timings {
   double total = 0;
 };
 
+/// Where the end of a time budget may interrupt the work.
+enum class BudgetEnd {
+  anywhere,
+  after_checkpoint  ///< not before the first checkpoint: calls that resume each other progress however short their time
+};
+
 /// How a piece of work is carried out and observed: threads, progress, cancellation, counters, timings.
 /// One object a call; only `request_cancel` may be called from another thread.
 class Execution {
@@ -47,26 +53,20 @@ class Execution {
 
   int threads() const { return threads_; }
 
-  /// Ask the work to stop; it does so within milliseconds by throwing Interrupted.
+  /// Asks the work to stop; within milliseconds it throws Interrupted.
   void request_cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancel_requested() const noexcept {
-    const bool watched = external_flag_ != nullptr && external_flag_->load(std::memory_order_relaxed);
-    return watched || cancelled_.load(std::memory_order_relaxed);
+  /// Lets a predicate cancel the work as well. It is called often, from several threads at once.
+  void cancel_when(std::function<bool()> is_cancelled) { is_cancelled_ = std::move(is_cancelled); }
+  bool cancel_requested() const {
+    return cancelled_.load(std::memory_order_relaxed) || (is_cancelled_ && is_cancelled_());
   }
 
-  /// Let another object's flag (set from another thread, alive during the call) cancel the work as well.
-  void watch(const std::atomic<bool>* flag) { external_flag_ = flag; }
-
-  /// Stop after so many seconds from now, as if cancelled; with `after_gain` not before `note_gain` was called, so
-  /// that calls that take up where the last one ended get on however short their time is.
-  void set_time_budget(double seconds, bool after_gain = false);
+  /// Stops the work after so many seconds from now, as if cancelled.
+  void set_time_budget(double seconds, BudgetEnd end = BudgetEnd::anywhere);
   bool has_time_budget() const { return deadline_.has_value(); }
-  /// Something was done that the end of the budget does not lose. From the calling thread, outside for_chunks.
-  void note_gain() noexcept { waits_for_gain_ = false; }
+  /// The work so far survives the end of the budget. Called outside of for_chunks.
+  void checkpoint() noexcept { awaits_checkpoint_ = false; }
   bool budget_used_up() const;
-
-  /// Stop at the check after so many, as if cancelled there: with one thread the same place each time.
-  void cancel_after_checks(std::int64_t count) { checks_left_ = count; }
 
   /// @throws Interrupted when cancelled or over the time budget. Called between iterations and between chunks.
   void check() const;
@@ -89,10 +89,9 @@ class Execution {
  private:
   int threads_;
   std::atomic<bool> cancelled_{false};
-  const std::atomic<bool>* external_flag_ = nullptr;
-  mutable std::atomic<std::int64_t> checks_left_{std::numeric_limits<std::int64_t>::max()};
+  std::function<bool()> is_cancelled_;
   std::optional<std::chrono::steady_clock::time_point> deadline_;
-  bool waits_for_gain_ = false;
+  bool awaits_checkpoint_ = false;
   std::function<void(const char*, double)> progress_;
   mutable std::atomic<bool> in_loop_{false};
   mutable std::unique_ptr<ThreadPool> helpers_;

@@ -50,7 +50,7 @@ class Surface {
   const Edges& edges() const { return edges_; }
 
   const std::vector<Body>& bodies() const { return definition_.bodies; }
-  Index body_of(Index vertex) const { return definition_.vertex_body[at(vertex)]; }
+  Index body_of(Index vertex) const { return definition_.vertex_body[vertex]; }
 
   /// May primitives of these two bodies interfere?
   bool bodies_meet(Index a, Index b) const {
@@ -65,7 +65,7 @@ class Surface {
   }
 
   /// Neighbours of a vertex along edges, ascending.
-  const Index* neighbours_begin(Index vertex) const { return neighbours_.data() + neighbour_start_[at(vertex)]; }
+  const Index* neighbours_begin(Index vertex) const { return neighbours_.data() + neighbour_start_[vertex]; }
   const Index* neighbours_end(Index vertex) const {
     return neighbours_.data() + neighbour_start_[static_cast<std::size_t>(vertex) + 1];
   }

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include "detection/broad_phase/common_motion.hpp"
 #include "detection/broad_phase/relevance.hpp"
+#include "detection/broad_phase/step.hpp"
 #include "detection/close_pairs.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/error.hpp"
@@ -97,11 +97,11 @@ void CandidateCache::replace(ClosePairs pairs) {
   std::vector<unsigned char> listed(static_cast<std::size_t>(surface.vertex_count()), 0);
   for (std::size_t kind = 0; kind < pairs.size(); ++kind)
     for (const Candidate& pair : pairs[kind])
-      for (const Index vertex : vertices_of(surface, kinds[kind], pair)) listed[static_cast<std::size_t>(vertex)] = 1;
+      for (const Index vertex : vertices_of(surface, kinds[kind], pair)) listed[vertex] = 1;
   pairs_ = std::move(pairs);
   vertices_.clear();
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
-    if (listed[static_cast<std::size_t>(vertex)] != 0) vertices_.push_back(vertex);
+    if (listed[vertex] != 0) vertices_.push_back(vertex);
 }
 
 void CandidateCache::take_rows(const Rows& rows) {
@@ -110,7 +110,7 @@ void CandidateCache::take_rows(const Rows& rows) {
       throw InputError("the cached candidates have " + std::to_string(vertices_.size()) + " vertices, not " +
                        std::to_string(positions->rows()));
     for (Index row = 0; row < positions->rows(); ++row)
-      search_.surface().check_position(vertices_[static_cast<std::size_t>(row)], positions->row(row));
+      search_.surface().check_position(vertices_[row], positions->row(row));
   }
   steps_.update_rows(rows.start, rows.end, vertices_, search_.surface().vertex_count());
 }

@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "detection/broad_phase/relevance.hpp"
-#include "detection/filters/box_filter.hpp"
-#include "detection/filters/hull_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 
 namespace stiv {
 
@@ -35,7 +34,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
   CandidateBlock all, near;
   PairFlags apart;
   const auto append_near = [&] {
-    find_hulls_apart(kind, near.pairs, vertices, same_step, apart);
+    find_apart_by_hulls(kind, near.pairs, vertices, same_step, apart);
     for (std::size_t k = 0; k < near.pairs.count; ++k)
       if (apart[k] == 0) close.push_back(near.candidates[k]);
     near.pairs.count = 0;
@@ -46,7 +45,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
          candidates.subspan(begin, std::min(PairBlock::capacity, candidates.size() - begin)))
       all.add(candidate, vertices_of(surface, kind, candidate));
     PairFlags boxes_apart;
-    find_boxes_apart(kind, all.pairs, vertices, farthest_boxes, boxes_apart);
+    find_apart_by_boxes(kind, all.pairs, vertices, farthest_boxes, boxes_apart);
     for (std::size_t k = 0; k < all.pairs.count; ++k) {
       if (boxes_apart[k] != 0) continue;
       near.add(all.candidates[k], all.pairs.vertices_of(k));

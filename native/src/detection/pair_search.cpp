@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/step.hpp"
 #include "detection/close_pairs.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/error.hpp"
@@ -58,9 +58,9 @@ constexpr auto append_event = [](const PairTest& test, EventKind kind) {
 void check_proximity(const Proximity& proximity) {
   if (!(proximity.separation >= 0) || !std::isfinite(proximity.separation))
     throw InputError("separation must be finite and not negative, not " + std::to_string(proximity.separation));
-  if (!(proximity.keep > 0 && proximity.keep < 1))
-    throw InputError("the kept fraction of a start distance must lie between 0 and 1, not " +
-                     std::to_string(proximity.keep));
+  if (!(proximity.min_clearance_ratio > 0 && proximity.min_clearance_ratio < 1))
+    throw InputError("min_clearance_ratio must lie between 0 and 1, not " +
+                     std::to_string(proximity.min_clearance_ratio));
 }
 
 std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surface& surface) {
@@ -108,14 +108,14 @@ Events PairSearch::find_among(const ClosePairs& pairs, const VertexSteps& steps,
     return Execution::chunk_count(static_cast<Index>(pairs[kind].size()), size);
   };
   const ChunkRange chunks{chunk_count(0), chunk_count(0) + chunk_count(1)};
-  std::vector<ChunkResult> results(at(chunks.all));
+  std::vector<ChunkResult> results(chunks.all);
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
     const EventKind kind = chunks.kind(chunk);
     const std::vector<Candidate>& of_kind = pairs[static_cast<std::size_t>(kind)];
     const Index begin = chunks.within_kind(chunk) * size,
                 end = std::min(begin + size, static_cast<Index>(of_kind.size()));
     std::vector<Candidate> some(of_kind.begin() + begin, of_kind.begin() + end);
-    decide_all(test, kind, some, append_event(test, kind), results[at(chunk)]);
+    decide_all(test, kind, some, append_event(test, kind), results[chunk]);
   });
   count(results, execution.counters);
   return collect(results, execution);
@@ -124,17 +124,17 @@ Events PairSearch::find_among(const ClosePairs& pairs, const VertexSteps& steps,
 ClosePairs PairSearch::take_close_pairs(const Execution& execution) {
   if (!last_) return {};
   const ChunkRange chunks = chunks_of(*source_);
-  std::vector<std::vector<Candidate>> found(at(chunks.all));
+  std::vector<std::vector<Candidate>> found(chunks.all);
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
     const EventKind kind = chunks.kind(chunk);
     const auto append_some = [&](std::span<Candidate> some) {
-      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motion, last_->separation, found[at(chunk)]);
+      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motion, last_->separation, found[chunk]);
     };
     source_->visit(kind, chunks.within_kind(chunk), std::ref(append_some));
   });
   last_.reset();
   const std::span<const std::vector<Candidate>> all(found);
-  return {concatenate(all.first(at(chunks.faces))), concatenate(all.subspan(at(chunks.faces)))};
+  return {concatenate(all.first(chunks.faces)), concatenate(all.subspan(chunks.faces))};
 }
 
 // The coordinates are checked by the source.
@@ -157,9 +157,9 @@ std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Ste
   if (limit == PairLimit::respected && !source_->is_within_pair_limit()) return std::nullopt;
   const PairTest test(*surface_, source_->vertex_steps(), step.proximity, narrow_phase_);
   const ChunkRange chunks = chunks_of(*source_);
-  std::vector<ChunkResult> results(at(chunks.all));
+  std::vector<ChunkResult> results(chunks.all);
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
-    ChunkResult& result = results[at(chunk)];
+    ChunkResult& result = results[chunk];
     const EventKind kind = chunks.kind(chunk);
     const auto decide_pair = decide(test, kind);
     const auto decide_some = [&](std::span<Candidate> some) { decide_all(test, kind, some, decide_pair, result); };

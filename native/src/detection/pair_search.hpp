@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
 #include "detection/narrow_phase/pair_test.hpp"
 #include "stiv/detection/detector.hpp"
 

@@ -9,6 +9,12 @@
 
 namespace stiv {
 
+/// Indices of two primitives.
+struct PrimitivePair {
+  Index first = 0;
+  Index second = 0;
+};
+
 /// Two indices, not negative, as one number that sorts as the pair does.
 inline std::uint64_t pair_key(Index first, Index second) {
   return static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint64_t>(second);
@@ -36,7 +42,7 @@ class VertexIncidence {
     for (std::size_t k = 2; k < start_.size(); ++k) start_[k] += start_[k - 1];
     primitives_.resize(entries);
     for (std::size_t k = 0; k < entries; ++k)
-      primitives_[static_cast<std::size_t>(start_[static_cast<std::size_t>(primitives[k]) + 1]++)] =
+      primitives_[start_[static_cast<std::size_t>(primitives[k]) + 1]++] =
           static_cast<Index>(k / static_cast<std::size_t>(size));
   }
 
@@ -44,7 +50,7 @@ class VertexIncidence {
   std::span<const Index> primitives_with(std::span<const Index> vertices) {
     found_.clear();
     for (const Index vertex : vertices) {
-      const auto begin = start_[static_cast<std::size_t>(vertex)], end = start_[static_cast<std::size_t>(vertex) + 1];
+      const auto begin = start_[vertex], end = start_[static_cast<std::size_t>(vertex) + 1];
       found_.insert(found_.end(), primitives_.begin() + begin, primitives_.begin() + end);
     }
     return found_;

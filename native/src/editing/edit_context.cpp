@@ -69,7 +69,8 @@ void EditContext::set_proximity(const Positions& start, const Controls& controls
   const bool may_touch = options_.volumes != VolumeKind::relative && options_.separation == 0 && pairs.empty();
   options_.separation =
       may_touch ? least_separation_ : effective_separation(options_.separation, extent, least_separation_);
-  proximity_ = {options_.separation, options_.keep, nullptr, &reference_, options_.keep_between};
+  proximity_ = {options_.separation, options_.min_clearance_ratio, nullptr, &reference_,
+                options_.min_clearance_ratio_between};
   if (!pairs.empty()) {
     body_separations_ = body_separations(*surface_, pairs, options_.separation, extent, least_separation_);
     proximity_.separation = body_separations_->largest();

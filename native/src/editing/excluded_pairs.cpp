@@ -34,7 +34,7 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
   const Triangles& triangles = surface_->triangles();
   for (Index triangle = 0; triangle < static_cast<Index>(triangles.rows()); ++triangle)
     for (int corner = 0; corner < 3; ++corner) {
-      std::vector<Index>& around = around_[static_cast<std::size_t>(triangles(triangle, corner))];
+      std::vector<Index>& around = around_[triangles(triangle, corner)];
       if (around.empty() || around.back() != triangle) around.push_back(triangle);  // once, however degenerate
     }
 }

@@ -75,7 +75,7 @@ bool RoundLoop::search() {
     outcome_.too_far = !events;
     if (outcome_.too_far) return false;
     progress_.events = std::move(events);
-    call_.execution.note_gain();
+    call_.execution.checkpoint();
   }
   outcome_.clear = progress_.events->empty();
   return !outcome_.clear;
@@ -121,7 +121,7 @@ void RoundLoop::project() {
   progress_.events_are_constrained = false;
   outcome_.events = std::move(*progress_.events);
   progress_.events.reset();
-  call_.execution.note_gain();
+  call_.execution.checkpoint();
 }
 
 /// Events among the cached candidates or, if there are none, among all pairs. The candidate's surface is up to date at
@@ -157,7 +157,7 @@ RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Proje
     RoundOutcome outcome = run(PairLimit::respected);
     if (!outcome.too_far) return outcome;
     progress_toward(call, goal_at(fraction / 2), projection);
-    call.execution.note_gain();  // a call that ends here is resumed with the half
+    call.execution.checkpoint();  // a call that ends here is resumed with the half
   }
   return run(PairLimit::ignored);
 }

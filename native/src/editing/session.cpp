@@ -132,7 +132,8 @@ class EditSession::Implementation {
     {
       const ScopedTimer timer(execution.timings.total);
       const double time_budget = context_.options().time_budget;
-      if (time_budget > 0 && !execution.has_time_budget()) execution.set_time_budget(time_budget, true);
+      if (time_budget > 0 && !execution.has_time_budget())
+        execution.set_time_budget(time_budget, BudgetEnd::after_checkpoint);
       EditCall call{context_, queries_, accepted_, progress_, report, execution};
       status = solve(call, target, followed, work);
     }

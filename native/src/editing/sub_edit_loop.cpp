@@ -126,7 +126,7 @@ void SubEditLoop::run() {
     report(outcome, acceptance);
     if (acceptance.fraction == 0) return;
     call_.accepted = std::move(acceptance.state);
-    call_.execution.note_gain();
+    call_.execution.checkpoint();
     edit.path.push_back(call_.accepted.controls);
     const double energy_after = energy_of(call_.accepted);
     if (fraction_ == 1 && !edit.blocked) return;

@@ -50,8 +50,10 @@ void check_fit(const Surface& surface, const Deformation& deformation) {
 }
 
 void check_options(const EditOptions& options, Index control_count) {
-  require(options.keep > 0 && options.keep < 1, "keep must lie between 0 and 1");
-  require(options.keep_between > 0 && options.keep_between < 1, "keep_between must lie between 0 and 1");
+  require(options.min_clearance_ratio > 0 && options.min_clearance_ratio < 1,
+          "min_clearance_ratio must lie between 0 and 1");
+  require(options.min_clearance_ratio_between > 0 && options.min_clearance_ratio_between < 1,
+          "min_clearance_ratio_between must lie between 0 and 1");
   require(std::isfinite(options.smoothness) && options.smoothness > 0, "smoothness must be positive");
   require(options.max_sub_edits >= 1 && options.max_rounds >= 1 && options.accumulated_rounds >= 0,
           "max_sub_edits and max_rounds must be at least 1, accumulated_rounds at least 0");

@@ -35,7 +35,7 @@ bool is_vertex_face(const Event& event) { return event.kind == EventKind::vertex
 /// The time at which n . sum_k w_k x_k is the distance that the two keep, or the less from which they start.
 double contact_time(const Event& event, const Positions& start, double approach) {
   if (approach == 0) return event.time;
-  const double distance = std::min(event.keeping.threshold, event.start_distance);
+  const double distance = std::min(event.clearance.threshold, event.start_distance);
   return std::clamp((distance - event.normal.dot(weighted_sum(event, start))) / approach, 0.0, 1.0);
 }
 

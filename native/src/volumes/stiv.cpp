@@ -22,7 +22,7 @@ constexpr double ease_of_depth = 0.1, ease_of_size = 0.02, ease_of_threshold = 2
 
 /// The distance that the response aims for: that at the start, up to twice the threshold, if it is more.
 double target_distance(const Event& event, double at_end, double area) {
-  const auto& [threshold, most] = event.keeping;
+  const auto& [threshold, most] = event.clearance;
   const double ease =
       std::max({ease_of_depth * (threshold - at_end), ease_of_size * std::sqrt(area), ease_of_threshold * threshold});
   return std::max(std::min(event.start_distance, 2 * threshold), threshold + std::min(ease, most));

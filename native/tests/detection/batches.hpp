@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "detection/filters/plane_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 #include "detection/motions.hpp"
 #include "detection/reference.hpp"
 #include "vector_targets.hpp"

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "detection/candidate_cache.hpp"
 #include "detection/event_bits.hpp"
@@ -223,7 +224,8 @@ TEST_CASE("rounds: what was cancelled at any point leaves no trace") {
       const Index first = cancelled % 2 == 0 ? 0 : 1800;
       for (Index vertex = first; vertex < end.rows(); ++vertex) end(vertex, 2) += noise(random);
       Execution hurried(threads);
-      hurried.cancel_after_checks(checks);
+      std::atomic<int> left{checks};
+      hurried.cancel_when([&] { return left.fetch_sub(1) <= 0; });
       try {
         detector.find(start, end, proximity, hurried);
         done = true;

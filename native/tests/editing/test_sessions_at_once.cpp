@@ -50,7 +50,7 @@ TEST_CASE("sessions: cancelled from another thread at any moment, nothing is lef
   for (int waits = 1; waits <= 1 << 14; waits *= 4) {
     std::atomic<bool> flag{false};
     Execution execution(2);
-    execution.watch(&flag);
+    execution.cancel_when([&] { return flag.load(); });
     std::thread other([&] {
       for (int k = 0; k < waits; ++k) std::this_thread::yield();
       flag = true;

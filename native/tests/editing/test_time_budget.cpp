@@ -19,7 +19,7 @@ HurriedDrag drag_hurried(EditSession& session, const Controls& goal) {
   HurriedDrag drag;
   do {
     Execution execution(1);
-    execution.set_time_budget(1e-9, true);
+    execution.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
     drag.result = session.drag(goal, execution);
   } while (++drag.calls < 200 && drag.result.status == EditStatus::budget && drag.result.path.empty());
   return drag;
@@ -53,7 +53,7 @@ TEST_CASE("session: a drag whose time ended before anything was accepted leaves 
   const Controls first = moved(scene.controls, upper_sheet, Vector3(0.01, 0, -0.6));
   session.drag(first, execution);
   other.drag(first, execution);
-  hurry.set_time_budget(1e-9, true);
+  hurry.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
   const EditResult ended = session.drag(moved(scene.controls, upper_sheet, Vector3(0.02, 0, -0.9)), hurry);
   REQUIRE(ended.status == EditStatus::budget);
   REQUIRE(ended.path.empty());
@@ -88,7 +88,7 @@ TEST_CASE("session: hurried drags accept something on the way into contact, and 
   EditResult result;
   for (int call = 0; call < 500 && (call == 0 || result.status != EditStatus::reached); ++call) {
     Execution execution(1);
-    execution.set_time_budget(1e-9, true);
+    execution.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
     result = session.drag(scene.controls, execution);
   }
   CHECK(result.status == EditStatus::reached);

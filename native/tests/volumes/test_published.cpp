@@ -37,7 +37,7 @@ struct MovingPair {
                  contact->weights,
                  contact->normal,
                  contact->start_distance,
-                 contact->keeping};
+                 contact->clearance};
   }
 
   /// The sum over both sides of A_i (1 - t) n . Dr_i. [P4, Eq. 3]

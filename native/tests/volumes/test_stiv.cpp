@@ -44,7 +44,7 @@ Event solve_event(const FallingVertex& scene, const Positions& end, double dista
   const Vector3 bary = corners.inverse() * foot;
   event.weights = {1, -bary[0], -bary[1], -bary[2]};
   event.start_distance = event.normal.dot(gap);
-  event.keeping = {scene.separation, scene.separation / 2};
+  event.clearance = {scene.separation, scene.separation / 2};
   return event;
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("stiv: a pair that starts nearer than the separation is not pushed off
   Events events{solve_event(scene, scene.end, scene.separation)};
   const auto volume = [&](double start_distance) {
     events[0].start_distance = start_distance;
-    events[0].keeping = Proximity{scene.separation, 0.5}.keeping(start_distance);
+    events[0].clearance = Proximity{scene.separation, 0.5}.clearance(start_distance);
     return interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Ones(4))[0].volume;
   };
   CHECK(volume(1) - volume(0.005) == doctest::Approx(0.005 - 0.02));
@@ -137,7 +137,7 @@ TEST_CASE("stiv: a separation large beside mesh and motion throws nothing back")
   const double at_end = events[0].normal.dot(weighted_sum(events[0], scene.end));
   const auto target = [&](double separation, double area) {
     events[0].start_distance = separation;
-    events[0].keeping = Proximity{separation, 0.5}.keeping(separation);
+    events[0].clearance = Proximity{separation, 0.5}.clearance(separation);
     return at_end -
            interference_volumes(events, {{0, 0}}, {0}, scene.end, Eigen::VectorXd::Constant(4, area))[0].volume / area;
   };

@@ -25,7 +25,7 @@ struct Event {
   std::array<double, 4> weights{};   ///< VF (1, -a, -b, -c); EE (1-s, s, -(1-u), -u)
   Vector3 normal = Vector3::Zero();  ///< unit; normal . (relative displacement) <= 0; zero when none can be told
   double start_distance = 0;         ///< distance of the two primitives at the start of the step
-  Keeping keeping;                   ///< what the two keep
+  PairClearance clearance;           ///< of the pair
 };
 
 using Events = std::vector<Event>;
@@ -39,7 +39,7 @@ inline constexpr int first_side_size(EventKind kind) { return kind == EventKind:
 template <class Field>
 Vector3 weighted_sum(const Event& event, const Field& d) {
   Vector3 sum = Vector3::Zero();
-  for (int k = 0; k < 4; ++k) sum += event.weights[at(k)] * d.row(event.vertices[at(k)]).transpose();
+  for (int k = 0; k < 4; ++k) sum += event.weights[k] * d.row(event.vertices[k]).transpose();
   return sum;
 }
 

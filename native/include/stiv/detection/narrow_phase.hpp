@@ -22,10 +22,10 @@ struct Contact {
   std::array<double, 4> weights{};
   Vector3 normal = Vector3::Zero();
   double start_distance = 0;
-  Keeping keeping;
+  PairClearance clearance;
 };
 
-/// The first time at which the pair is within `proximity.keeping(d).threshold`, d its distance at the reference, or
+/// The first time at which the pair is within `proximity.clearance(d).threshold`, d its distance at the reference, or
 /// nothing if it never is. A pair that starts nearer than that comes no nearer. Conservative: a contact is never missed
 /// and the time is never later than the true one; a report is at most 10 % of the threshold too wide. Distances are
 /// those of the clamped primitives (edges and vertices of a triangle included).

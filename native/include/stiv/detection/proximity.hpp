@@ -26,39 +26,39 @@ class BodySeparations {
   std::vector<double> values_;  // (bodies, bodies)
 };
 
-/// What a pair of primitives keeps.
-struct Keeping {
-  double threshold = 0;  ///< h_eff, the distance that it may not come within
-  double ease = 0;       ///< how far beyond that it may be pushed, so that what rounding takes is no new contact
+/// Distances of a pair of primitives.
+struct PairClearance {
+  double threshold = 0;  ///< h_eff: the pair may come no nearer
+  double margin = 0;     ///< how far beyond that it may be pushed, so that rounding causes no new contact
 };
 
-/// From when on two primitives count as interfering. (mathematics.md, "Separation")
+/// When two primitives interfere. (mathematics.md, "Separation")
 struct Proximity {
-  double separation = 0;  ///< h >= 0, in the units of the positions; the largest one where they differ by bodies
-  double keep = 0.5;      ///< in (0, 1): pairs nearer than h at the reference keep this fraction of that distance;
-                          ///< those within a body, where keep_between is set
+  double separation = 0;  ///< h >= 0, in the units of the positions; the largest one where bodies differ
+  /// In (0, 1). A pair nearer than h at the reference keeps this fraction of that distance.
+  double min_clearance_ratio = 0.5;
   const BodySeparations* by_bodies = nullptr;  ///< null: h for all
-  /// Where pairs are measured that may be nearer than h, (N, 3), such as where a session began; it must outlive the
-  /// step. Null: at the start of the step.
+  /// Positions, (N, 3), at which distances of pairs nearer than h are measured, such as the start of a session. Must
+  /// outlive the step. Null: the start of the step.
   const Positions* reference = nullptr;
-  double keep_between = 0;  ///< the fraction for pairs of different bodies; 0: the same
+  double min_clearance_ratio_between = 0;  ///< the ratio for pairs of different bodies; 0: the same
 
-  /// That of a pair of these bodies.
+  /// The proximity of a pair of these bodies.
   Proximity between(Index a, Index b) const {
     Proximity pair = *this;
     if (by_bodies != nullptr) pair.separation = by_bodies->between(a, b);
-    if (a != b && keep_between > 0) pair.keep = keep_between;
+    if (a != b && min_clearance_ratio_between > 0) pair.min_clearance_ratio = min_clearance_ratio_between;
     return pair;
   }
 
-  /// That of a pair at this distance at the reference: h, but if it is nearer there a fraction of that distance. It is
-  /// pushed no farther than it was, so that none jumps.
-  Keeping keeping(double reference_distance) const {
+  /// The clearance of a pair at this distance at the reference: h, or a fraction of that distance if it is nearer. It
+  /// is pushed no farther than it was, so that no pair jumps.
+  PairClearance clearance(double reference_distance) const {
     if (is_apart(reference_distance)) return {separation, separation / 2};
-    return {keep * reference_distance, (1 - keep) * reference_distance};
+    return {min_clearance_ratio * reference_distance, (1 - min_clearance_ratio) * reference_distance};
   }
 
-  /// What has come as near as h keeps it, even where rounding has taken a little.
+  /// Pairs at h, within rounding, count as apart.
   bool is_apart(double distance) const { return distance >= (1 - 0x1p-24) * separation; }
 };
 

@@ -28,9 +28,9 @@ struct BodyPairSeparation {
 struct EditOptions {
   double separation = 0;  ///< h that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
   std::vector<BodyPairSeparation> pair_separations;  ///< of bodies, instead of h
-  /// Fraction of its distance that a pair of primitives keeps which begins the session nearer than h: within a body,
-  /// where it is also what compression leaves of a mesh finer than h, and between bodies.
-  double keep = 0.5, keep_between = 0.9;
+  /// In (0, 1). A pair of primitives nearer than h at the start of the session keeps this fraction of its distance,
+  /// within a body and between bodies. Within a body, this bounds the compression of a mesh finer than h.
+  double min_clearance_ratio = 0.5, min_clearance_ratio_between = 0.9;
   double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
   /// Response of each control, (m), or of each of its coordinates, (3 m): 0 pins. Empty: all 1. As in MetricOptions.
   Eigen::VectorXd weights;

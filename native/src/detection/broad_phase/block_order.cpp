@@ -19,7 +19,7 @@ void order_spatially(std::span<NumberedPoint> items, std::size_t run) {
   if (items.size() <= run) return;
   std::size_t half = run;
   while (2 * half < items.size()) half *= 2;
-  halve(items, half);
+  split_at_median(items, half);
   order_spatially(items.first(half), run);
   order_spatially(items.subspan(half), run);
 }
@@ -28,7 +28,7 @@ void order_spatially(std::span<Index> numbers, const Points& centres, std::size_
   std::vector<NumberedPoint> items;
   items.reserve(numbers.size());
   for (const Index number : numbers) {
-    const Eigen::Vector3f& centre = centres[at(number)];
+    const Eigen::Vector3f& centre = centres[number];
     items.push_back({{centre[0], centre[1], centre[2]}, number});
   }
   order_spatially(items, run);
@@ -39,14 +39,14 @@ void order_spatially(std::span<Index> numbers, const Points& centres, std::size_
 std::vector<Index> by_group(std::size_t count, const std::vector<Index>& groups) {
   std::vector<Index> items(count);
   std::iota(items.begin(), items.end(), 0);
-  const auto before = [&](Index a, Index b) { return groups[at(a)] < groups[at(b)]; };
+  const auto before = [&](Index a, Index b) { return groups[a] < groups[b]; };
   if (!std::is_sorted(groups.begin(), groups.end())) std::stable_sort(items.begin(), items.end(), before);
   return items;
 }
 
 /// Boxes of each group in spatial order, one group after the other, each filled up to whole blocks.
 std::vector<Index> order_in_groups(const Points& centres, const std::vector<Index>& groups, std::size_t block) {
-  const auto group = [&](Index item) { return groups.empty() ? 0 : groups[at(item)]; };
+  const auto group = [&](Index item) { return groups.empty() ? 0 : groups[item]; };
   std::vector<Index> items = by_group(centres.size(), groups);
   std::vector<Index> places;
   for (auto begin = items.begin(); begin != items.end();) {
@@ -65,7 +65,7 @@ Points centres_of_blocks(const std::vector<Index>& places, const Points& centres
   for (std::size_t first = 0; first < places.size(); first += block) {
     Eigen::AlignedBox3f box;
     for (std::size_t place = first; place < first + block; ++place)
-      if (places[place] >= 0) box.extend(centres[at(places[place])]);
+      if (places[place] >= 0) box.extend(centres[places[place]]);
     result.push_back(box.center());
   }
   return result;
@@ -74,11 +74,11 @@ Points centres_of_blocks(const std::vector<Index>& places, const Points& centres
 }  // namespace
 
 std::vector<Index> block_order(const Points& centres, const std::vector<Index>& groups, Index block) {
-  const std::vector<Index> places = order_in_groups(centres, groups, at(block));
-  const Points block_centres = centres_of_blocks(places, centres, at(block));
+  const std::vector<Index> places = order_in_groups(centres, groups, block);
+  const Points block_centres = centres_of_blocks(places, centres, block);
   std::vector<Index> blocks(block_centres.size());
   std::iota(blocks.begin(), blocks.end(), 0);
-  order_spatially(blocks, block_centres, at(block));
+  order_spatially(blocks, block_centres, block);
   std::vector<Index> order;
   order.reserve(places.size());
   for (const Index first : blocks)

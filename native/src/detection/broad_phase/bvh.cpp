@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "detection/broad_phase/block_order.hpp"
-#include "detection/broad_phase/bvh_traversal.hpp"
 
 namespace stiv {
 
@@ -33,10 +32,10 @@ class TaskList {
 
  private:
   void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
-    const Bvh::Level &a = a_.levels()[at(task.level)], &b = b_.levels()[at(task.other_level)];
-    const Index group = a.groups[at(task.node)], other = b.groups[at(task.other_node)];
+    const Bvh::Level &a = a_.levels()[task.level], &b = b_.levels()[task.other_level];
+    const Index group = a.groups[task.node], other = b.groups[task.other_node];
     if (group != Bvh::mixed && other != Bvh::mixed && !groups_.meet(group, other)) return;
-    if (may_meet(a.boxes[at(task.node)], b.boxes[at(task.other_node)])) tasks.push_back(task);
+    if (may_meet(a.boxes[task.node], b.boxes[task.other_node])) tasks.push_back(task);
   }
 
   /// Both subtrees give way to their children, or the higher one does. False if they are blocks.
@@ -58,7 +57,7 @@ class TaskList {
 
   static std::pair<Index, Index> children(const Bvh& tree, Index level, Index node, Index down_to) {
     if (level == down_to) return {node, node + 1};
-    const auto count = static_cast<Index>(tree.levels()[at(down_to)].nodes.size());
+    const auto count = static_cast<Index>(tree.levels()[down_to].nodes.size());
     return {node * Bvh::width, std::min(count, (node + 1) * Bvh::width)};
   }
 
@@ -81,7 +80,7 @@ std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
 Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners)
     : size_(static_cast<Index>(centres.size())), order_(block_order(centres, groups, width)), places_(centres.size()) {
   for (std::size_t place = 0; place < order_.size(); ++place)
-    if (order_[place] >= 0) places_[at(order_[place])] = static_cast<Index>(place);
+    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
   reserve_levels(groups);
   set_corners(corners, Execution(1));
 }
@@ -98,7 +97,7 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
   }
   if (groups.empty()) return;
   for (std::size_t block = 0; block < order_.size() / width; ++block)
-    levels_[0].groups[block] = groups[at(order_[block * width])];
+    levels_[0].groups[block] = groups[order_[block * width]];
   for (std::size_t level = 1; level < levels_.size(); ++level)
     for (std::size_t child = 0; child < levels_[level - 1].groups.size(); ++child) {
       Index& group = levels_[level].groups[child / width];
@@ -110,21 +109,21 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
 void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
   constexpr Index chunk_size = 8192;
   corner_size_ = corners.size;
-  const std::size_t size = at(corners.size);
+  const std::size_t size = corners.size;
   corners_.resize(order_.size() * size);
   execution.for_chunks(static_cast<Index>(order_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    for (std::size_t place = at(begin); place < at(end); ++place) {
+    for (Index place = begin; place < end; ++place) {
       const Index primitive = order_[place];
       for (std::size_t k = 0; k < size; ++k)
         corners_[(place / width * size + k) * width + place % width] =
-            primitive >= 0 ? corners.rows[at(primitive) * size + k] : -1;
+            primitive >= 0 ? corners.rows[primitive * size + k] : -1;
     }
   });
 }
 
 void Bvh::refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active) {
   const auto box_of = [&](Index primitive) {
-    return PackedBox::of(boxes[at(primitive)], active.empty() || active[at(primitive)] != 0);
+    return PackedBox::of(boxes[primitive], active.empty() || active[primitive] != 0);
   };
   refit(box_of, Execution(1));
 }
@@ -145,15 +144,11 @@ std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupTable& groups, st
   return TaskList(*this, other, groups).make(about);
 }
 
-void Bvh::overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const {
-  traverse(task, *this, other, groups, found);
-}
-
 std::vector<std::pair<Index, Index>> Bvh::overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution) {
   const std::vector<Task> tasks = a.tasks(b, {});
   std::vector<PairBuffer> found(tasks.size());
   execution.for_chunks(static_cast<Index>(tasks.size()), 1,
-                       [&](Index task, Index, Index) { a.overlaps(tasks[at(task)], b, {}, found[at(task)]); });
+                       [&](Index task, Index, Index) { a.overlaps(tasks[task], b, {}, found[task]); });
   std::vector<std::pair<Index, Index>> pairs;
   for (const PairBuffer& buffer : found)
     for (std::size_t k = 0; k < buffer.count; ++k) pairs.emplace_back(buffer.first[k], buffer.second[k]);

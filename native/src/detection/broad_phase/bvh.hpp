@@ -9,16 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "detection/broad_phase/packed_box.hpp"
+#include "detection/broad_phase/bounds.hpp"
+#include "detection/primitive_pair.hpp"
 #include "stiv/execution.hpp"
 
 namespace stiv {
-
-/// Numbers of two primitives.
-struct PrimitivePair {
-  Index first = 0;
-  Index second = 0;
-};
 
 /// Which groups of primitives can form a pair that matters. Symmetric; empty: all.
 class GroupTable {
@@ -175,7 +170,7 @@ void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
   // harmless.
   touched_.clear();
   for (const Index primitive : primitives) {
-    const Index block = places_[static_cast<std::size_t>(primitive)] / width;
+    const Index block = places_[primitive] / width;
     if (touched_.empty() || touched_.back() != block) touched_.push_back(block);
   }
   std::sort(touched_.begin(), touched_.end());

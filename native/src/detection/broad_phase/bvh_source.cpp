@@ -5,11 +5,11 @@
 #include <numeric>
 #include <utility>
 
-#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
 #include "detection/broad_phase/primitive_tree.hpp"
 #include "detection/broad_phase/relevance.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
-#include "detection/filters/hull_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 
 namespace stiv {
 
@@ -35,7 +35,7 @@ class BvhSource final : public CandidateSource {
       : surface_(surface),
         bodies_(table_of_bodies(surface)),
         swept_(surface),
-        numbers_(at(surface.vertex_count())),
+        numbers_(surface.vertex_count()),
         vertices_(surface, numbers_.data(), surface.vertex_count()),
         edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows())),
         faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows())) {
@@ -69,7 +69,7 @@ class BvhSource final : public CandidateSource {
 
   void visit(EventKind kind, Index chunk, const Sink& sink) const override {
     if (collected_) {
-      const std::vector<Candidate>& near = of(kind).near[at(of(kind).fruitful[at(chunk)])];
+      const std::vector<Candidate>& near = of(kind).near[of(kind).fruitful[chunk]];
       std::vector<Candidate> batch;
       for (std::size_t begin = 0; begin < near.size(); begin += batch_size) {
         batch.assign(near.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -131,7 +131,7 @@ class BvhSource final : public CandidateSource {
   }
 
   void collect(EventKind kind, Index task) {
-    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[at(task)];
+    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[task];
     near.clear();
     if (!few_enough()) return;
     traverse(kind, task, [&](const PairBuffer& found) {
@@ -155,7 +155,7 @@ class BvhSource final : public CandidateSource {
       some.count = 0;
       return more;
     };
-    first_tree(kind).overlaps(of(kind).tasks[at(task)], second_tree(kind), bodies_, found);
+    first_tree(kind).overlaps(of(kind).tasks[task], second_tree(kind), bodies_, found);
     if (found.count > 0) take(found);
   }
 
@@ -169,7 +169,7 @@ class BvhSource final : public CandidateSource {
       block.count = 0;
       const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
       for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
-      find_hulls_apart(kind, block, swept_.steps(), steps, apart);
+      find_apart_by_hulls(kind, block, swept_.steps(), steps, apart);
       std::size_t count = 0;
       for (std::size_t k = begin; k < end; ++k) {
         some[count] = found[k];

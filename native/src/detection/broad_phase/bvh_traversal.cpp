@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detection/broad_phase/bvh_traversal.hpp"
+#include "detection/broad_phase/bvh.hpp"
 
 #include <array>
 #include <bit>
@@ -39,8 +39,8 @@ struct Traversal {
 
   bool groups_meet(const Bvh::Task& pair) const {
     if (meets == nullptr) return true;
-    const Index group = a.groups[static_cast<std::size_t>(pair.level)][pair.node];
-    const Index other = b.groups[static_cast<std::size_t>(pair.other_level)][pair.other_node];
+    const Index group = a.groups[pair.level][pair.node];
+    const Index other = b.groups[pair.other_level][pair.other_node];
     return group == Bvh::mixed || other == Bvh::mixed || meets->meet(group, other);
   }
 
@@ -213,8 +213,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void traverse(const Bvh::Task& task, const Bvh& a, const Bvh& b, const GroupTable& groups, PairBuffer& found) {
-  const Traversal traversal{TreeView(a), TreeView(b), &a == &b, groups.empty() ? nullptr : &groups, &found};
+void Bvh::overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const {
+  const Traversal traversal{TreeView(*this), TreeView(other), this == &other, groups.empty() ? nullptr : &groups,
+                            &found};
   STIV_FOR_VECTOR_TARGET(traverse_trees)(traversal, task);
 }
 

@@ -75,16 +75,14 @@ Cells fitting_cells(const std::vector<Bounds>& boxes, const std::vector<Bounds>&
 CellLists::CellLists(const Cells& cells, const std::vector<Bounds>& boxes)
     : start_(std::bit_ceil(boxes.size() + 1) + 1, 0) {
   for (const Bounds& box : boxes)
-    for_cells_of(cells, box,
-                 [&](const Cell& cell, const Cell&) { ++start_[static_cast<std::size_t>(number_of(cell))]; });
+    for_cells_of(cells, box, [&](const Cell& cell, const Cell&) { ++start_[number_of(cell)]; });
   std::size_t sum = 0;
   for (std::size_t& count : start_) count = sum += count;
   entries_.resize(sum);
   // From the last to the first, so that each start ends at the first entry of its bucket, and entries are in order.
   for (std::size_t primitive = boxes.size(); primitive-- > 0;)
     for_cells_of(cells, boxes[primitive], [&](const Cell& cell, const Cell& first) {
-      entries_[--start_[static_cast<std::size_t>(number_of(cell))]] = {cell, first, static_cast<Index>(primitive),
-                                                                       boxes[primitive]};
+      entries_[--start_[number_of(cell)]] = {cell, first, static_cast<Index>(primitive), boxes[primitive]};
     });
 }
 

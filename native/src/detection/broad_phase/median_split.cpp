@@ -90,7 +90,7 @@ void select(std::span<NumberedPoint> points, std::size_t rank) {
 
 }  // namespace
 
-void halve(std::span<NumberedPoint> points, std::size_t half) {
+void split_at_median(std::span<NumberedPoint> points, std::size_t half) {
   constexpr std::array along{select<0>, select<1>, select<2>};
   along[longest_axis(points)](points, half);
 }

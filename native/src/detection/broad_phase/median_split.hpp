@@ -16,6 +16,6 @@ struct alignas(16) NumberedPoint {
 
 /// Moves the `half` first along the longest axis to the front. Equal positions are told apart by number, so that which
 /// ones these are depends on the points alone. The order within both parts depends on the order before.
-void halve(std::span<NumberedPoint> points, std::size_t half);
+void split_at_median(std::span<NumberedPoint> points, std::size_t half);
 
 }  // namespace stiv

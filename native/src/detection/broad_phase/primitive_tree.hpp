@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/bvh.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
 #include "detection/primitive_pair.hpp"
 
@@ -46,14 +47,14 @@ class PrimitiveTree {
 
   /// Sorted by where things are at the start: a first step may take them anywhere.
   void build(const PositionsView& start) {
-    std::vector<Eigen::Vector3f> centres(at(count_));
-    std::vector<Index> bodies(at(count_));
+    std::vector<Eigen::Vector3f> centres(count_);
+    std::vector<Index> bodies(count_);
     for (Index primitive = 0; primitive < count_; ++primitive) {
       Vector3 sum = Vector3::Zero();
       for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
       const Eigen::Vector3f centre = sum.cast<float>();
-      centres[at(primitive)] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
-      bodies[at(primitive)] = surface_.body_of(row(primitive)[0]);
+      centres[primitive] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
+      bodies[primitive] = surface_.body_of(row(primitive)[0]);
     }
     tree_.emplace(centres, bodies, CornerRows{rows_, size});
     // Needed once few vertices move; made here all the same, so that a long session's memory does not grow by it late.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "detection/broad_phase/candidates.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
 
 namespace stiv {
 

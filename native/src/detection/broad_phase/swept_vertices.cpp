@@ -21,7 +21,7 @@ const double* row(const PositionsView& positions, Index vertex) {
 }
 
 bool same_bits(const PositionsView& a, const PositionsView& b, Index vertex, Index count) {
-  return std::memcmp(row(a, vertex), row(b, vertex), 3 * sizeof(double) * at(count)) == 0;
+  return std::memcmp(row(a, vertex), row(b, vertex), 3 * sizeof(double) * count) == 0;
 }
 
 /// A float not above `value`, or the least one. Conversion errs by at most half a unit in the last place, which |f|
@@ -61,7 +61,7 @@ double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42
 /// Vertices whose step is not the one of their box, ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
-  std::vector<std::vector<Index>> parts(at(Execution::chunk_count(count, chunk_size)));
+  std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
     const auto same = [&](Index first, Index number) {
@@ -71,7 +71,7 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
       const Index last = std::min(end, some + run);
       if (same(some, last - some)) continue;
       for (Index vertex = some; vertex < last; ++vertex)
-        if (!same(vertex, 1)) parts[at(chunk)].push_back(vertex);
+        if (!same(vertex, 1)) parts[chunk].push_back(vertex);
     }
   });
   return concatenate<Index>(parts);
@@ -80,11 +80,11 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
 /// @throws InputError if a number is not finite or out of range
 SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& execution) const {
   const auto count = static_cast<Index>(changed_.size());
-  std::vector<Survey> parts(at(Execution::chunk_count(count, chunk_size)));
+  std::vector<Survey> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     Survey part;
-    for (Index k = begin; k < end; ++k) part.include(row(step.start, changed_[at(k)]), row(step.end, changed_[at(k)]));
-    parts[at(chunk)] = part;
+    for (Index k = begin; k < end; ++k) part.include(row(step.start, changed_[k]), row(step.end, changed_[k]));
+    parts[chunk] = part;
   });
   Survey whole;
   for (const Survey& part : parts) whole.include(part);
@@ -146,7 +146,7 @@ bool SweptVertices::near_segment(const Step& step, Index vertex) const {
   const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
   const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - step.motion;
   const double length2 = motion.squaredNorm();
-  const bool may_move = boxes_[at(vertex)].active() || start == end;
+  const bool may_move = boxes_[vertex].active() || start == end;
   if (!(length2 > 0) || !may_move) return false;
   const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
   const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
@@ -157,8 +157,8 @@ bool SweptVertices::near_segment(const Step& step, Index vertex) const {
 void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
   execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end; ++k) {
-      const Index vertex = vertices[at(k)];
-      boxes_[at(vertex)] = box(step, vertex);
+      const Index vertex = vertices[k];
+      boxes_[vertex] = box(step, vertex);
       start_.row(vertex) = step.start.row(vertex);
       end_.row(vertex) = step.end.row(vertex);
     }
@@ -173,7 +173,7 @@ bool SweptVertices::holds(const Step& step, const Execution& execution) const {
   std::atomic<bool> near{true};
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end && near.load(std::memory_order_relaxed); ++k)
-      if (!near_segment(step, all ? k : changed_[at(k)])) near.store(false, std::memory_order_relaxed);
+      if (!near_segment(step, all ? k : changed_[k])) near.store(false, std::memory_order_relaxed);
   });
   return near;
 }
@@ -182,13 +182,13 @@ bool SweptVertices::holds(const Step& step, const Execution& execution) const {
 void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   if (!complete_) {
     steps_.update(step.start, step.end, execution);
-    strayed_.clear();
+    outdated_.clear();
     return;
   }
-  steps_.update(step.start, step.end, strayed_, execution);
-  strayed_.insert(strayed_.end(), changed_.begin(), changed_.end());
+  steps_.update(step.start, step.end, outdated_, execution);
+  outdated_.insert(outdated_.end(), changed_.begin(), changed_.end());
   steps_.update(step.start, step.end, changed_, execution);
-  strayed_ = changed_;
+  outdated_ = changed_;
 }
 
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
@@ -204,16 +204,16 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
   complete_ = false;  // until all is done: it may be cancelled half way
   frame_ = frame;
   if (all) {
-    boxes_.resize(at(count));
+    boxes_.resize(count);
     start_.resize(count, 3);
     end_.resize(count, 3);
-    changed_.resize(at(count));
+    changed_.resize(count);
     std::iota(changed_.begin(), changed_.end(), 0);
   }
   sweep(step, changed_, execution);
-  strayed_.clear();
+  outdated_.clear();
   complete_ = true;
-  return all || changed_.size() > at(count) / 2 ? Change::all : Change::some;
+  return all || static_cast<Index>(changed_.size()) > count / 2 ? Change::all : Change::some;
 }
 
 }  // namespace stiv

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "detection/broad_phase/candidates.hpp"
-#include "detection/broad_phase/packed_box.hpp"
+#include "detection/broad_phase/bounds.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
 
 namespace stiv {
 
@@ -42,9 +42,8 @@ class SweptVertices {
   /// Union of the boxes of some vertices.
   template <class Vertices>
   PackedBox box_of(const Vertices& vertices) const {
-    PackedBox box = boxes_[static_cast<std::size_t>(vertices[0])];
-    for (std::size_t k = 1; k < static_cast<std::size_t>(vertices.size()); ++k)
-      box.include(boxes_[static_cast<std::size_t>(vertices[k])]);
+    PackedBox box = boxes_[vertices[0]];
+    for (std::size_t k = 1; k < static_cast<std::size_t>(vertices.size()); ++k) box.include(boxes_[vertices[k]]);
     return box;
   }
 
@@ -76,8 +75,8 @@ class SweptVertices {
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
   VertexSteps steps_;
-  std::vector<Index> strayed_;  // vertices whose step in `steps_` may differ from that of their box
-  bool complete_ = false;       // there is a box for each vertex, all seen from the frame
+  std::vector<Index> outdated_;  // vertices whose step in `steps_` may differ from that of their box
+  bool complete_ = false;        // there is a box for each vertex, all seen from the frame
 };
 
 }  // namespace stiv

@@ -12,7 +12,7 @@ constexpr Index chunk_size = 8192;
 void VertexSteps::take(const PositionsView& start, const PositionsView& end, Index row, Index vertex) {
   const double* const from = start.data() + 3 * static_cast<std::ptrdiff_t>(row);
   const double* const to = end.data() + 3 * static_cast<std::ptrdiff_t>(row);
-  rows_[static_cast<std::size_t>(vertex)] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
+  rows_[vertex] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
 }
 
 void VertexSteps::update(const PositionsView& start, const PositionsView& end, const Execution& execution) {
@@ -27,7 +27,7 @@ void VertexSteps::update(const PositionsView& start, const PositionsView& end, c
                          const Execution& execution) {
   execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index first, Index last, Index) {
     for (Index k = first; k < last; ++k) {
-      const Index vertex = vertices[static_cast<std::size_t>(k)];
+      const Index vertex = vertices[k];
       take(start, end, vertex, vertex);
     }
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detection/filters/hull_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detection/filters/hull_filter.cpp"
@@ -64,7 +64,7 @@ HWY_INLINE Mask separates(Point normal, const PairHulls& hulls, Lanes clearance)
 /// other steps have somewhat larger coordinates than this one, so that what is dropped here, the plane filter would
 /// drop.
 template <EventKind kind>
-HWY_INLINE Mask hulls_apart(const PairHulls& hulls, const NearbySteps& steps) {
+HWY_INLINE Mask are_hulls_apart(const PairHulls& hulls, const NearbySteps& steps) {
   Lanes reach = all(0), magnitude = all(0);
   for (std::size_t k = 0; k < 4; ++k) {
     reach = hn::Max(reach, largest_component(hulls.end[k] - hulls.start[k]));
@@ -83,25 +83,25 @@ HWY_INLINE Mask hulls_apart(const PairHulls& hulls, const NearbySteps& steps) {
 }
 
 template <EventKind kind>
-void find_hulls_apart_of_kind(const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
-                              unsigned char* result) {
+void find_apart_by_hulls_of_kind(const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+                                 unsigned char* result) {
   const Doubles d;
   const double* const m = steps.motion.data();
   const Point motion{all(m[0]), all(m[1]), all(m[2])};
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < pairs.count; first += hn::Lanes(d)) {
-    const Mask mask = hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps);
+    const Mask mask = are_hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps);
     hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) result[first + lane] = flags[lane] != 0;
   }
 }
 
-void find_hulls_apart(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
-                      unsigned char* result) {
+void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+                         unsigned char* result) {
   if (kind == EventKind::vertex_face)
-    find_hulls_apart_of_kind<EventKind::vertex_face>(pairs, vertices, steps, result);
+    find_apart_by_hulls_of_kind<EventKind::vertex_face>(pairs, vertices, steps, result);
   else
-    find_hulls_apart_of_kind<EventKind::edge_edge>(pairs, vertices, steps, result);
+    find_apart_by_hulls_of_kind<EventKind::edge_edge>(pairs, vertices, steps, result);
 }
 
 }  // namespace stiv::HWY_NAMESPACE
@@ -110,9 +110,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_hulls_apart(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
-                      PairFlags& apart) {
-  STIV_FOR_VECTOR_TARGET(find_hulls_apart)(kind, pairs, vertices.data(), steps, apart.data());
+void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
+                         PairFlags& apart) {
+  STIV_FOR_VECTOR_TARGET(find_apart_by_hulls)(kind, pairs, vertices.data(), steps, apart.data());
 }
 
 }  // namespace stiv

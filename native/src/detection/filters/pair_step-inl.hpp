@@ -9,7 +9,7 @@
 #define STIV_PAIR_STEP_INL
 #endif
 
-#include "detection/filters/plane_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 #include "vector/points-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

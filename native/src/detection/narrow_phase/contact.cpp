@@ -37,10 +37,11 @@ Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>&
   return contact;
 }
 
-Keeping keeping_of(EventKind kind, const PairMotion& motion, const Proximity& proximity, double start_distance) {
-  if (!motion.reference || *motion.reference == motion.start) return proximity.keeping(start_distance);
+PairClearance pair_clearance(EventKind kind, const PairMotion& motion, const Proximity& proximity,
+                             double start_distance) {
+  if (!motion.reference || *motion.reference == motion.start) return proximity.clearance(start_distance);
   const PairMotion at_reference{*motion.reference, *motion.reference};
-  return proximity.keeping(witness(kind, RelativeMotion<double>(kind, at_reference).start).distance);
+  return proximity.clearance(witness(kind, RelativeMotion<double>(kind, at_reference).start).distance);
 }
 
 }  // namespace stiv

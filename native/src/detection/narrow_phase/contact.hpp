@@ -9,6 +9,7 @@ namespace stiv {
 Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>& approach, double start_distance);
 
 /// What the pair keeps by its distance at the reference, `start_distance` if that is the start of the step.
-Keeping keeping_of(EventKind kind, const PairMotion& motion, const Proximity& proximity, double start_distance);
+PairClearance pair_clearance(EventKind kind, const PairMotion& motion, const Proximity& proximity,
+                             double start_distance);
 
 }  // namespace stiv

@@ -81,10 +81,10 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
     contact = contact_within(largest, relative, motion, at_start, latest);
     if (!contact) return std::nullopt;  // the distance at the reference is asked only where it matters
   }
-  const Keeping keeping = keeping_of(kind, motion, proximity, at_start.distance);
-  const double threshold = std::min(keeping.threshold, at_start.distance);
+  const PairClearance clearance = pair_clearance(kind, motion, proximity, at_start.distance);
+  const double threshold = std::min(clearance.threshold, at_start.distance);
   if (!contact || threshold < largest) contact = contact_within(threshold, relative, motion, at_start, latest);
-  if (contact) contact->keeping = keeping;
+  if (contact) contact->clearance = clearance;
   return contact;
 }
 

@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "detection/broad_phase/relevance.hpp"
-#include "detection/filters/nearest_filter.hpp"
-#include "detection/filters/plane_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -56,8 +55,8 @@ std::span<Candidate> PairTest::without(EventKind kind, std::span<Candidate> cand
 
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
   const double separation = proximity_.separation;
-  const std::span<Candidate> left = without(kind, candidates, separation, find_apart);
-  return without(kind, left, farthest_reported * separation, find_rims_apart);
+  const std::span<Candidate> left = without(kind, candidates, separation, find_apart_by_planes);
+  return without(kind, left, farthest_reported * separation, find_apart_by_closest_points);
 }
 
 std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, Proximity proximity,
@@ -77,7 +76,7 @@ std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate,
   const PairMotion motion = motion_of(vertices_.data(), proximity_.reference, v);
   const std::optional<Contact> contact = contact_of(kind, motion, proximity, latest);
   if (!contact) return std::nullopt;
-  return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->keeping};
+  return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->clearance};
 }
 
 }  // namespace stiv

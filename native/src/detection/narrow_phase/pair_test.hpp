@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "detection/broad_phase/candidates.hpp"
-#include "detection/filters/plane_filter.hpp"
+#include "detection/broad_phase/candidate_source.hpp"
+#include "detection/filters/pair_filters.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/narrow_phase.hpp"
 

@@ -85,15 +85,15 @@ std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMot
   const RelativeMotion<double> relative(kind, motion);
   if (relative.rests()) return std::nullopt;
   const Witness at_start = witness(kind, relative.start);
-  const Keeping keeping = keeping_of(kind, motion, proximity, at_start.distance);
-  const double threshold = std::min(keeping.threshold, at_start.distance);
+  const PairClearance clearance = pair_clearance(kind, motion, proximity, at_start.distance);
+  const double threshold = std::min(clearance.threshold, at_start.distance);
   double parted = 0;
   if (at_start.distance <= threshold + 4 * relative.rounding) {
     parted = parting_time(relative, at_start.distance, threshold);
     if (parted >= 1) return std::nullopt;
     if (parted == 0) {
       Contact contact = contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
-      contact.keeping = keeping;
+      contact.clearance = clearance;
       return contact;
     }
   }
@@ -105,7 +105,7 @@ std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMot
     Contact contact =
         contact_of(relative, {time, nearest, side_of_approach(relative, nearest, time)}, at_start.distance);
     contact.time = early;
-    contact.keeping = keeping;
+    contact.clearance = clearance;
     return contact;
   }
   return std::nullopt;

@@ -35,7 +35,7 @@ void check_against_sorting(Points points) {
     return std::tie(a.position[0], a.number) < std::tie(b.position[0], b.number);
   });
   for (const std::size_t half : {points.size() / 2, points.size() / 7, points.size() - 1, std::size_t{1}}) {
-    halve(points, half);
+    split_at_median(points, half);
     const auto middle = static_cast<std::ptrdiff_t>(half);
     CHECK(numbers_of(points.begin(), points.begin() + middle) == numbers_of(sorted.begin(), sorted.begin() + middle));
     CHECK(numbers_of(points.begin(), points.end()) == numbers_of(sorted.begin(), sorted.end()));
@@ -67,7 +67,7 @@ TEST_CASE("median split: along the longest axis") {
       point.position[axis] = static_cast<float>(-2 * k);
       points.push_back(point);
     }
-    halve(points, 20);
+    split_at_median(points, 20);
     CHECK(numbers_of(points.begin(), points.begin() + 20).front() == 40);
   }
 }

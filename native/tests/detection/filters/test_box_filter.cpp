@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "detection/batches.hpp"
-#include "detection/filters/box_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 
 using namespace stiv;
 
@@ -27,7 +27,7 @@ double gap_along(EventKind kind, const PairMotion& motion, Index axis) {
 }  // namespace
 
 TEST_CASE("box filter: what it calls apart keeps the separation, and every vector target says the same") {
-  const auto [apart, all] = check_filter(find_boxes_apart, 37);
+  const auto [apart, all] = check_filter(find_apart_by_boxes, 37);
   CHECK(apart > all / 8);
   CHECK(apart < all);
 }
@@ -38,7 +38,7 @@ TEST_CASE("box filter: it calls apart what a plane across an axis keeps apart, a
   for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge})
     for (const double separation : {0.0, 0.01, 0.2}) {
       const Batch batch = batch_of(make, MotionMaker::general, PairBlock::capacity);
-      const auto flags = flagged(find_boxes_apart, kind, batch, separation);
+      const auto flags = flagged(find_apart_by_boxes, kind, batch, separation);
       for (std::size_t k = 0; k < PairBlock::capacity; ++k) {
         double gap = -never;
         for (Index axis = 0; axis < 3; ++axis) gap = std::max(gap, gap_along(kind, batch.motions[k], axis));

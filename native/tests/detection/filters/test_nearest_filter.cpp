@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "detection/batches.hpp"
-#include "detection/filters/nearest_filter.hpp"
+#include "detection/filters/pair_filters.hpp"
 #include "detection/reference.hpp"
 
 using namespace stiv;
@@ -43,7 +43,7 @@ double distance_at_start(EventKind kind, const PairMotion& motion) {
 }  // namespace
 
 TEST_CASE("nearest filter: what it calls apart keeps the separation, and every vector target says the same") {
-  const auto [apart, all] = check_filter(find_rims_apart, 23);
+  const auto [apart, all] = check_filter(find_apart_by_closest_points, 23);
   CHECK(apart > all / 8);
   CHECK(apart < all);
 }
@@ -54,8 +54,12 @@ TEST_CASE("nearest filter: with the normals, it tells the distance of pairs that
     const Batch batch = carried(make, PairBlock::capacity);
     for (std::size_t k = 0; k < PairBlock::capacity; ++k) {
       const double distance = distance_at_start(kind, batch.motions[k]);
-      const auto by_rims = [&](double separation) { return flagged(find_rims_apart, kind, batch, separation)[k]; };
-      const auto by_normals = [&](double separation) { return flagged(find_apart, kind, batch, separation)[k]; };
+      const auto by_rims = [&](double separation) {
+        return flagged(find_apart_by_closest_points, kind, batch, separation)[k];
+      };
+      const auto by_normals = [&](double separation) {
+        return flagged(find_apart_by_planes, kind, batch, separation)[k];
+      };
       CHECK(by_rims((1 + 1e-9) * distance) == 0);
       // A normal is taken to be as long as the sum of its components.
       CHECK(by_rims((1 - 1e-9) * distance) + by_normals(0.57 * distance) > 0);
@@ -68,7 +72,7 @@ TEST_CASE("nearest filter: what is so small that squares vanish is not called ap
   for (const double scale : {0x1p-400, 0x1p-500, 0x1p-530, 0x1p-600})
     for (const EventKind kind : kinds) {
       const Batch large = batch_of(make, MotionMaker::general, PairBlock::capacity), batch = scaled(large, scale);
-      const auto flags = flagged(find_rims_apart, kind, batch, 0.3 * scale);
+      const auto flags = flagged(find_apart_by_closest_points, kind, batch, 0.3 * scale);
       for (std::size_t k = 0; k < flags.size(); ++k)
         if (flags[k] != 0) CHECK(reference::first_time(kind, large.motions[k], 0.3, 1e-5L).least > 0.3);
     }

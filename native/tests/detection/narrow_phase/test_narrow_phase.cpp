@@ -83,9 +83,9 @@ TEST_CASE("narrow phase: what a pair keeps is told by its distance at the refere
     return first_contact(EventKind::vertex_face, motion, {0.4, 0.5});
   };
   CHECK(from(1, 0.8)->time == doctest::Approx(0.6).epsilon(1e-3));  // it keeps 0.4
-  CHECK(from(1, 0.8)->keeping.threshold == 0.4);
+  CHECK(from(1, 0.8)->clearance.threshold == 0.4);
   CHECK(from(1, 0.2)->time == doctest::Approx(0.9).epsilon(1e-3));  // half of 0.2, though it starts farther away
-  CHECK(from(1, 0.2)->keeping.threshold == doctest::Approx(0.1));
+  CHECK(from(1, 0.2)->clearance.threshold == doctest::Approx(0.1));
   CHECK(from(0.15, 0.2)->time == doctest::Approx(1 / 3.0).epsilon(1e-2));
   CHECK(from(0.1, 0.2)->time == 0);   // as near as it may
   CHECK(from(0.05, 0.2)->time == 0);  // nearer: it comes no nearer

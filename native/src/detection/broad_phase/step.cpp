@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/step.hpp"
 
 namespace stiv {
 

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "detection/broad_phase/bvh.hpp"
+#include "detection/broad_phase/step.hpp"
 #include "detection/broad_phase/vertex_steps.hpp"
+#include "detection/primitive_pair.hpp"
 #include "stiv/detection/detector.hpp"
 #include "stiv/detection/event.hpp"
-#include "stiv/detection/proximity.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/surface.hpp"
 
@@ -18,14 +18,6 @@ namespace stiv {
 
 /// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
 using Candidate = PrimitivePair;
-
-/// A linear step of a surface, checked; of positions that live as long.
-struct Step {
-  PositionsView start;
-  PositionsView end;
-  Proximity proximity;
-  Vector3 motion = Vector3::Zero();  ///< of the frame that it is seen from, see common_motion
-};
 
 /// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
 /// chunk do not depend on the number of threads. Candidates are relevant (see Relevance), and each comes once; pairs

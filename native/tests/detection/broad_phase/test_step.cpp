@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "detection/broad_phase/common_motion.hpp"
+#include "detection/broad_phase/step.hpp"
 #include "detection/scenes.hpp"
 
 using namespace stiv;
