@@ -94,10 +94,10 @@ void bind_acceptance(py::module_& module) {
   module.def("stored_mesh", &stored_mesh, py::arg("mesh"), py::arg("frame"));
   module.def(
       "least_distance",
-      [](const SurfacePointer& surface, const PositionsView& q, bool within) {
+      [](const SurfacePointer& of, const PositionsView& q, bool within) {
         return tuple_of([&] {
           const py::gil_scoped_release unlocked;
-          return LeastDistance(surface).find(q, within);
+          return LeastDistance(of).find(q, within);
         }());
       },
       surface, positions, py::arg("within"));

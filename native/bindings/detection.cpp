@@ -84,6 +84,15 @@ class GuardedDetector {
   std::atomic<bool> busy_{false};
 };
 
+py::tuple find_arrays(GuardedDetector& detector, const PositionsView& start, const PositionsView& end,
+                      double separation, double min_clearance_ratio) {
+  const Events events = [&] {
+    const py::gil_scoped_release release;
+    return detector.find(start, end, separation, min_clearance_ratio);
+  }();
+  return arrays_of(events);
+}
+
 }  // namespace
 
 py::tuple arrays_of(const Events& events) {
@@ -124,17 +133,7 @@ void bind_detection(py::module_& module) {
   py::class_<GuardedDetector>(module, "Detector")
       .def(py::init<std::shared_ptr<Surface>, BroadPhase, NarrowPhase, int>(), py::arg("surface"),
            py::arg("broad_phase"), py::arg("narrow_phase"), py::arg("threads"))
-      .def(
-          "find",
-          [](GuardedDetector& detector, const PositionsView& start, const PositionsView& end, double separation,
-             double min_clearance_ratio) {
-            const Events events = [&] {
-              const py::gil_scoped_release release;
-              return detector.find(start, end, separation, min_clearance_ratio);
-            }();
-            return arrays_of(events);
-          },
-          start, end, separation, min_clearance_ratio)
+      .def("find", &find_arrays, start, end, separation, min_clearance_ratio)
       .def("earliest_time", &GuardedDetector::earliest_time, start, end, separation, min_clearance_ratio, Release());
 }
 

@@ -212,10 +212,10 @@ class EditOptions:
     volumes: VolumeKind
     accumulated_rounds: int
     exclude: Sequence[tuple[int, int]]
-    min_clearance_ratio: float
-    min_clearance_ratio_between: float
     max_rounds: int
     max_sub_edits: int
+    min_clearance_ratio: float
+    min_clearance_ratio_between: float
     pair_separations: Sequence[BodyPairSeparation]
     pull_limit: float
     separation: float
