@@ -42,3 +42,10 @@ def test_a_test_is_named_after_a_source_or_listed_as_a_behaviour(test: Path) -> 
 def test_every_listed_behaviour_exists() -> None:
     assert BEHAVIOURS
     assert not [name for name in BEHAVIOURS if not (ROOT / name).exists()]
+
+
+def test_every_native_source_and_test_is_compiled() -> None:
+    lists = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "native").rglob("CMakeLists.txt"))
+    sources = [path for folder in ("src", "tests", "bindings") for path in (ROOT / "native" / folder).rglob("*.cpp")]
+    assert sources
+    assert not [path for path in sources if not re.search(rf"\b{re.escape(path.name)}\b", lists)]
