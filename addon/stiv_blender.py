@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name: str) -> object:
-        for package in ("stiv.blender", "stiv", "stiv.checks.findings"):
+        for package in () if name.startswith("__") else ("stiv.blender", "stiv", "stiv.checks.findings"):
             found = getattr(importlib.import_module(package), name, None)
             if found is not None:
                 return found
