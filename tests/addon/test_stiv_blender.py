@@ -7,9 +7,9 @@ import pytest
 
 pytest.importorskip("bpy")
 
-import stiv  # noqa: E402
-from stiv.blender import EditSettings  # noqa: E402
-from stiv_addon import stiv_blender  # noqa: E402
+import stiv
+from stiv.blender import EditSettings
+from stiv_addon import stiv_blender
 
 
 def test_names_are_those_of_the_packages() -> None:
