@@ -7,7 +7,8 @@ import pytest
 pytest.importorskip("bpy")
 
 from stiv.blender.controls import deformation_cache
-from stiv.blender.controls.deformation_cache import MOST, cached_deformation, clear_cache
+from stiv.blender.controls.deformation_cache import cached_deformation, clear_cache
+from stiv.blender.edit.increments import MOST
 
 POINTS = np.arange(6.0).reshape(2, 3)
 
@@ -60,5 +61,5 @@ def test_old_ones_are_forgotten() -> None:
     first = cached_deformation(made, 0)
     for number in range(1, MOST + 1):
         cached_deformation(made, number)
-    assert len(deformation_cache._kept) == MOST
+    assert len(deformation_cache._cache) == MOST
     assert cached_deformation(made, 0) is not first

@@ -23,6 +23,7 @@ from stiv.blender.controls.rotations import (
 )
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.assembly import mesh_seams
+from stiv.blender.scene.dependencies import ancestors
 from stiv.seams import Seams, common_seams
 
 SHEAR = 1e-4  # greatest deviation of a placement from location, rotation and scale, relative to its size
@@ -124,6 +125,4 @@ def move_alike(one: Track, other: Track) -> bool:
 
 def _root(track: Track) -> str:
     ob = track.mesh.owner.find()
-    while ob.parent is not None:
-        ob = ob.parent
-    return str(ob.name)
+    return [str(ob.name), *ancestors(ob)][-1]

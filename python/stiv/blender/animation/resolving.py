@@ -12,10 +12,12 @@ import numpy as np
 import stiv
 from stiv.blender.animation.controls import MovingSet, make_moving_sets
 from stiv.blender.animation.tracks import Track, check_movable
-from stiv.blender.edit.sessions import intersects_only_in_render
+from stiv.blender.edit.sessions import intersects_only_in_render, storage_frames
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.seams import Seams
+
+REPORT_FIELDS = ("frame", "status", "rounds", "distance", "blocking", "subframes", "reversible")
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def resolve(
     """
     check_movable(tracks, hold)
     moving_sets = make_moving_sets(tracks, hold)
-    reports = [_report(frames[0], "start", 0, 0.0, (), 0, True)]
+    reports = [_report(frames[0], "start", 0, 0.0, [], 0, True)]
     if not moving_sets:
         return Resolved((), (Key(frames[0], np.empty((0, 3))),), (reports[0],))
     solver = _Solver(tracks, moving_sets, separation, threads)
@@ -73,10 +75,10 @@ class _Solver:
         self, tracks: Sequence[Track], moving_sets: Sequence[MovingSet], separation: float, threads: int
     ) -> None:
         self._tracks, self._moving_sets = tracks, moving_sets
-        self._goal = np.concatenate([moving_set.controls for moving_set in moving_sets])
+        self._goal = np.concatenate([each.controls for each in moving_sets])
         assembly = _assembly(tracks, moving_sets)
         self.deformation = stiv.concatenate(
-            [(p.deformation, _vertices(assembly, p)) for p in moving_sets], assembly.positions
+            [(p.deformation, assembly.vertices_of(p.tracks)) for p in moving_sets], assembly.positions
         )
         self.session = _session(assembly, self.deformation, self._goal, self._options(separation, threads))
         self._steps = stiv.StepCheck(assembly.surface, threads)
@@ -84,7 +86,7 @@ class _Solver:
     def solve(self, place: int, before: float, frame: float) -> tuple[list[Key], dict[str, Any]]:
         """The keys from the frame before to this one, and the description of this frame."""
         start = self.session.controls
-        last = np.split(self._goal, np.cumsum([len(moving_set.controls) for moving_set in self._moving_sets])[:-1])
+        last = np.split(self._goal, np.cumsum([len(each.controls) for each in self._moving_sets])[:-1])
         goals = [
             moving_set.goal(self._tracks, place, old) for moving_set, old in zip(self._moving_sets, last, strict=True)
         ]
@@ -98,7 +100,7 @@ class _Solver:
         away = float(np.linalg.norm(surface - wanted, axis=1).max(initial=0.0))
         back = self._is_free_backward([start, *states])
         rounds = sum(result.rounds for result in results)
-        return keys, _report(frame, results[0].status, rounds, away, results[0].blocking, len(states) - 1, back)
+        return keys, _report(frame, results[0].status, rounds, away, list(results[0].blocking), len(states) - 1, back)
 
     def _solve_best(self, start: Floats, last: Floats) -> list[stiv.EditResult]:
         """Edit straight to the goal; if that is blocked, also drag along the animation, and take the better result.
@@ -133,14 +135,8 @@ class _Solver:
         return all(np.array_equal(one, other) or self._steps.is_free(one, other) for one, other in steps)
 
     def _options(self, separation: float, threads: int) -> stiv.EditOptions:
-        frames, first = [], 0
-        for moving_set in self._moving_sets:
-            if moving_set.frame is not None:
-                frames.append(stiv.StorageFrame(first, len(moving_set.controls), moving_set.frame))
-            first += len(moving_set.controls)
-        weights = np.concatenate(
-            [np.full(len(moving_set.controls), moving_set.weight) for moving_set in self._moving_sets]
-        )
+        frames = storage_frames([(len(each.controls), each.frame) for each in self._moving_sets])
+        weights = np.concatenate([np.full(len(each.controls), each.weight) for each in self._moving_sets])
         return stiv.EditOptions(
             separation=separation, weights=weights, single_precision=bool(frames), storage=frames, threads=threads
         )
@@ -167,19 +163,5 @@ def _assembly(tracks: Sequence[Track], moving_sets: Sequence[MovingSet]) -> Asse
     return assemble(meshes, [kinds[track.kind] for track in tracks], together, seams=seams)
 
 
-def _vertices(assembly: Assembly, moving_set: MovingSet) -> Any:
-    return np.concatenate([assembly.range_of(index) for index in moving_set.tracks])
-
-
-def _report(
-    frame: float, status: str, rounds: int, away: float, blocking: Sequence[str], subframes: int, back: bool
-) -> dict[str, Any]:
-    return {
-        "frame": frame,
-        "status": status,
-        "rounds": rounds,
-        "distance": away,
-        "blocking": list(blocking),
-        "subframes": subframes,
-        "reversible": back,
-    }
+def _report(*values: Any) -> dict[str, Any]:
+    return dict(zip(REPORT_FIELDS, values, strict=True))

@@ -49,7 +49,7 @@ def _fix_triangulations(context: bpy.types.Context, tracks: Sequence[Track], res
 
     Only the triangles of the first frame are known to be free of intersections.
     """
-    shapes = [tracks[moving_set.tracks[0]].mesh for moving_set in resolved.moving_sets if moving_set.frame is not None]
+    shapes = [tracks[each.tracks[0]].mesh for each in resolved.moving_sets if each.frame is not None]
     flipped: list[set[int]] = [set() for _ in shapes]
     for key in resolved.keys if shapes else ():
         set_frame(context.scene, key.frame)

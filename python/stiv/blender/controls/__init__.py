@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an edit changes: the controls of cages, handles, lattices and rigid objects, and how they are written."""
+"""The controls of cages, handles, lattices and rigid objects, and their writers."""

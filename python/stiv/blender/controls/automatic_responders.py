@@ -9,7 +9,7 @@ from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
 from stiv.blender.controls.transform_locks import is_location_locked
-from stiv.blender.scene.dependencies import dependencies
+from stiv.blender.scene.dependencies import ancestors, dependencies
 from stiv.blender.scene.evaluations import SURFACE_TYPES
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
@@ -24,13 +24,13 @@ def find_automatic_responders(
     already, has another role or a constraint, is animated, linked, locked or of zero size, or if modifiers, constraints
     or instances connect it with other objects. Metaballs are obstacles too, because moving them changes their surface.
     """
-    taken = {participant.reference.name for participant in participants}
+    taken = {each.reference.name for each in participants}
     links = _outside_links()
     found: list[Participant] = []
-    for ob in sorted(objects, key=lambda each: len(_ancestors(each))):
+    for ob in sorted(objects, key=lambda each: len(ancestors(each))):
         family = [ob, *ob.children_recursive]
         names = {member.name for member in family}
-        above = _ancestors(ob)
+        above = set(ancestors(ob))
         if (
             ob.type not in SURFACE_TYPES - {"META"}
             or names & taken
@@ -57,14 +57,6 @@ def _is_movable_family(family: Sequence[bpy.types.Object], settings: EditSetting
     except InputError:
         return False
     return True
-
-
-def _ancestors(ob: bpy.types.Object) -> set[str]:
-    names = set()
-    while ob.parent is not None:
-        ob = ob.parent
-        names.add(ob.name)
-    return names
 
 
 def _outside_links() -> set[tuple[str, str]]:

@@ -61,7 +61,7 @@ def make_control_sets(
             control_sets.append(_lattice(context, participant, by_lattice[participant.reference], meshes, settings))
     for control_set in control_sets:
         _check_surface(control_set, meshes)
-    return [join_seams(control_set, meshes) for control_set in control_sets if control_set.surfaces], groups
+    return [join_seams(each, meshes) for each in control_sets if each.surfaces], groups
 
 
 def _rigid(group: RigidGroup, meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str) -> ControlSet:
@@ -148,7 +148,7 @@ def _check_independent(
                     f'object "{name}": moves, and so does its lattice "{lattice.name}"; deselect one of them'
                 )
             in_lattices.add(name)
-    deforming = {participant.reference.name for participant in participants if participant.role != "rigid"}
+    deforming = {each.reference.name for each in participants if each.role != "rigid"}
     for name in sorted(deforming & in_groups):
         raise InputError(f'object "{name}": is deformed, and its parent moves; deselect one of them')
     check_dependents(

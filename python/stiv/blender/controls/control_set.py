@@ -30,7 +30,7 @@ class Writer(Protocol):
         """Write controls, (m, 3). Raises SceneChangedError if the object was removed or changed."""
 
     def restore(self) -> None:
-        """Restore the start bit by bit."""
+        """Restore the start exactly."""
 
 
 class GoalRule(Protocol):

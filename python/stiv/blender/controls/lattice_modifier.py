@@ -9,7 +9,7 @@ import numpy as np
 import stiv
 from stiv.blender.controls.deformation_cache import cached_deformation
 from stiv.blender.controls.subdivision import subdivide
-from stiv.blender.scene.arrays import Floats, Singles, as_matrix, transform_points
+from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.evaluations import SHOWN
 from stiv.blender.scene.lattice_reading import is_undeformed, read_lattice_points, read_rest_lattice_points
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_cage
@@ -65,35 +65,11 @@ def _lattice(ob: bpy.types.Object, stage: LatticeStage, rest: Floats, context: b
     lattice = stage.lattice.find()
     data = lattice.data
     return cached_deformation(
-        _make_lattice,
-        rest,
-        (data.points_u, data.points_v, data.points_w),
-        as_matrix(lattice.matrix_world),
-        [_interpolation(data, axis) for axis in "uvw"],
-        stage.strength * _group_weights(ob, stage, len(rest), context),
-        read_rest_lattice_points(data),
-        _point_weights(lattice),
-    )
-
-
-def _make_lattice(
-    vertices: Floats,
-    resolution: tuple[int, int, int],
-    frame: Floats,
-    interpolation: list[str],
-    influence: Floats,
-    rest: Singles,
-    point_weights: Any,
-) -> stiv.Deformation:
-    return stiv.lattice(
-        vertices,
-        resolution,
-        frame=frame,
-        interpolation=interpolation,
-        influence=influence,
-        rest=rest,
-        point_weights=point_weights,
-    )
+        stiv.lattice, rest, (data.points_u, data.points_v, data.points_w), frame=as_matrix(lattice.matrix_world),
+        interpolation=[_interpolation(data, axis) for axis in "uvw"],
+        influence=stage.strength * _group_weights(ob, stage, len(rest), context),
+        rest=read_rest_lattice_points(data), point_weights=_point_weights(lattice),
+    )  # fmt: skip
 
 
 def _interpolation(lattice: bpy.types.Lattice, axis: str) -> str:

@@ -39,7 +39,7 @@ class ObjectTransform:
         return is_rotation(parent_matrix / size * np.sign(np.linalg.det(parent_matrix)))
 
     def restore(self, ob: bpy.types.Object) -> None:
-        """Restore location, rotation and scale, bit by bit."""
+        """Restore location, rotation and scale exactly."""
         ob.location = self.location
         setattr(ob, self.rotation_property, self.rotation)
         ob.scale = self.scale

@@ -23,14 +23,16 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     objects = [
         ob for ob in context.view_layer.objects if is_visible(context, ob) and settings.cage_of(ob.name) == ob.name
     ]
-    selected = _in_edit_mode(context, objects) if context.mode != "OBJECT" else _selected(objects)
+    selected = (
+        _in_edit_mode(context, objects) if context.mode != "OBJECT" else [ob for ob in objects if ob.select_get()]
+    )
     participants = [
         participant for ob in objects if (participant := make_participant(ob, ob in selected, settings)) is not None
     ]
     participants = merge_participants(participants)
     if settings.responders != "selected" and context.mode == "OBJECT":
         participants += find_automatic_responders(objects, participants, settings)
-    if not any(participant.selected for participant in participants):
+    if not any(each.selected for each in participants):
         raise InputError("nothing movable is selected; select a mesh, a lattice or an object with a surface")
     return participants
 
@@ -47,10 +49,6 @@ def _in_edit_mode(context: bpy.types.Context, objects: list[bpy.types.Object]) -
         mode = context.mode.replace("_", " ").title()
         raise InputError(f"mode {mode} is not supported; use Object Mode, or Edit Mode of a mesh or lattice")
     return [ob for ob in objects if ob.mode == "EDIT"]
-
-
-def _selected(objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
-    return [ob for ob in objects if ob.select_get()]
 
 
 def make_participant(ob: bpy.types.Object, selected: bool, settings: EditSettings) -> Participant | None:

@@ -122,8 +122,8 @@ def point_weights(selected: Flags, of_selected: float, of_others: float, max_wei
 def to_stored(frame: Floats, world: Floats, original: Singles, pinned: Flags | None = None) -> Singles:
     """Convert world positions to stored local coordinates, (m, 3), in single precision.
 
-    Points at their start, given by `original`, (m, 3), keep their coordinates bit by bit, because conversion loses
-    digits of small coordinates. So do the coordinates flagged in `pinned`, (m, 3), if they differ only by rounding.
+    Points at their start, given by `original`, (m, 3), keep their coordinates exactly, because conversion loses digits
+    of small coordinates. So do the coordinates flagged in `pinned`, (m, 3), if they differ only by rounding.
     """
     local = to_single(frame, world)
     resting = (world == transform_points(frame, original)).all(axis=1)

@@ -11,7 +11,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
-from stiv.blender.scene.dependencies import Dependency, dependencies
+from stiv.blender.scene.dependencies import Dependency, ancestors, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 
@@ -91,10 +91,10 @@ def check_instances(moved: set[str], meshes: Iterable[VisibleMesh]) -> None:
 
 def _topmost(participants: list[Participant]) -> list[Participant]:
     """Participants without a participating ancestor; the others move along with it."""
-    names = {participant.reference.name: participant for participant in participants}
+    names = {each.reference.name: each for each in participants}
     top = []
     for participant in participants:
-        above = [names[name] for name in _ancestors(participant.reference.find()) if name in names]
+        above = [names[name] for name in ancestors(participant.reference.find()) if name in names]
         if any(other.selected != participant.selected for other in above):
             raise InputError(
                 f'object "{participant.reference.name}": its parent "{above[0].reference.name}" moves too; select both '
@@ -103,14 +103,6 @@ def _topmost(participants: list[Participant]) -> list[Participant]:
         if not above:
             top.append(participant)
     return top
-
-
-def _ancestors(ob: bpy.types.Object) -> list[str]:
-    names = []
-    while ob.parent is not None:
-        ob = ob.parent
-        names.append(ob.name)
-    return names
 
 
 def _family(participant: Participant) -> RigidGroup:

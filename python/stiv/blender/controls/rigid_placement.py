@@ -132,7 +132,7 @@ class PlacementWriter:
 def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str) -> bool:
     """Can all roots be rotated? Not below an unevenly scaled parent, or with locks.
 
-    Raises InputError for rotations below such a parent; locked objects move without rotation.
+    Raises InputError for rotations below that parent; locked objects move without rotation.
     """
     if not all(can_rotate(root.reference.find()) for root in group.roots):
         return False

@@ -20,8 +20,9 @@ def subdivide(mesh: bpy.types.Mesh, stage: SubdivisionStage) -> stiv.Deformation
     edge_crease, vertex_crease = read_creases(mesh) if stage.use_creases else (None, None)
     cage = (len(mesh.vertices), corners, starts, read_edges(mesh), edge_crease, vertex_crease)
     return cached_deformation(
-        _smooth, *cage, stage.levels, stage.limit_surface, stage.quality, stage.simple, stage.boundary
-    )
+        _catmull_clark, *cage, stage.levels, limit_surface=stage.limit_surface, quality=stage.quality,
+        simple=stage.simple, boundary=stage.boundary,
+    )  # fmt: skip
 
 
 def identity_deformation(count: int) -> stiv.Deformation:
@@ -52,21 +53,9 @@ def stack_deformations(deformations: Sequence[stiv.Deformation]) -> stiv.Deforma
     return stiv.linear(whole, np.concatenate(offsets))
 
 
-def _smooth(
-    count: int,
-    corners: Indices,
-    starts: Indices,
-    edges: Indices,
-    edge_crease: Singles | None,
-    vertex_crease: Singles | None,
-    levels: int,
-    limit_surface: bool,
-    quality: int,
-    simple: bool,
-    boundary: Any,
-) -> stiv.Deformation:
+def _catmull_clark(
+    count: int, corners: Indices, starts: Indices, edges: Indices, edge_crease: Singles | None,
+    vertex_crease: Singles | None, levels: int, **options: Any,
+) -> stiv.Deformation:  # fmt: skip
     cage = stiv.Cage(count, corners, starts, edges, edge_crease, vertex_crease)
-    deformation, _ = stiv.catmull_clark(
-        cage, levels, limit_surface=limit_surface, quality=quality, simple=simple, boundary=boundary
-    )
-    return deformation
+    return stiv.catmull_clark(cage, levels, **options)[0]

@@ -32,10 +32,8 @@ def drop_locked(participants: Sequence[Participant], kind: str) -> list[Particip
     for participant in left:
         if participant.role == "rigid":
             _check(participant.reference.find(), kind if participant.selected else "move")
-    if any(participant.selected for participant in participants) and not any(
-        participant.selected for participant in left
-    ):
-        name = next(participant.reference.name for participant in participants if participant.selected)
+    if any(each.selected for each in participants) and not any(participant.selected for participant in left):
+        name = next(each.reference.name for each in participants if each.selected)
         raise InputError(f'object "{name}": its transform is locked; unlock it, or deform the object')
     return left
 
@@ -92,6 +90,6 @@ def find_free_directions(
 
 
 def restore_locked(ob: bpy.types.Object, start: ObjectTransform) -> None:
-    """Restore the locked location channels bit by bit, because conversion through world space rounds them."""
+    """Restore the locked location channels exactly, because conversion through world space rounds them."""
     for axis in np.flatnonzero(ob.lock_location):
         ob.location[axis] = start.location[axis]

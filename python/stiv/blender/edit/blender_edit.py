@@ -18,7 +18,7 @@ from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.increments import Path, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
-from stiv.blender.edit.sessions import split_controls, stack_controls
+from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.state_writer import StateWriter, WriteReport
@@ -41,14 +41,13 @@ class BlenderEdit:
     """
 
     def __init__(self, snapshot: EditSnapshot) -> None:
-        """Use `begin`."""
         settings = snapshot.settings
         self.dropped_exclusions, self.start_digest = snapshot.dropped_exclusions, snapshot.digest
         self.guard, self.carried = snapshot.guard, snapshot.carried
         self._hidden, self._control_sets = snapshot.hidden, snapshot.control_sets
         self._selected_weight = settings.response_weight(True)
         self._influence: Influence | None = None
-        self._start = stack_controls([control_set.controls for control_set in self._control_sets])
+        self._start = stack_controls([each.controls for each in self._control_sets])
         self._goal = self._start
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
@@ -92,7 +91,7 @@ class BlenderEdit:
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:
-        """The control sets that move or yield, in the order of the controls."""
+        """The moving and yielding control sets, in the order of the controls."""
         return self._control_sets
 
     @property
@@ -136,10 +135,6 @@ class BlenderEdit:
     @cached_property
     def _moving_vertices(self) -> Indices:
         return find_moving_vertices(self.assembly, self._control_sets)
-
-    @property
-    def _moving_points_at_rest(self) -> Floats:
-        return self.assembly.positions[self._moving_vertices]
 
     @property
     def moving(self) -> frozenset[str]:
@@ -213,7 +208,7 @@ class BlenderEdit:
         self._apply_influence(chosen_motion.influence)
         self._goal = self._goal_of(chosen_motion)
         if self._unguarded is not None:
-            self._unguarded = round_to_storage(self._control_sets, self._split(self._goal))
+            self._unguarded = round_to_storage(self._control_sets, split_controls(self._goal, self._control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
         return self._solver.solve(self._goal, **execution)
 
@@ -228,7 +223,7 @@ class BlenderEdit:
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
         results = []
-        for increment in split_motion(Motion.of(motion), path, self._moving_points_at_rest):
+        for increment in split_motion(Motion.of(motion), path, self.assembly.positions[self._moving_vertices]):
             results.append(self.drag(increment, **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
@@ -255,13 +250,11 @@ class BlenderEdit:
         return self._writer.verify(self.surface).passed
 
     def restore(self) -> None:
-        """Restore the start bit by bit. Raises SceneChangedError.
+        """Restore the start exactly. Raises SceneChangedError.
 
         Collisions are off again if the edit began with them off.
         """
-        for control_set in self._control_sets:
-            control_set.writer.restore()
-        bpy.context.view_layer.update()
+        restore_controls(self._control_sets)
         self._goal = self._start
         if self._unguarded is not None or not self._began_free:
             self._unguarded = self._start
@@ -269,9 +262,6 @@ class BlenderEdit:
             self._solver.restart_from(self._start, self._goal)
         else:
             self._solver.discard_session()
-
-    def _split(self, controls: Floats) -> list[Floats]:
-        return split_controls(controls, self._control_sets)
 
     def _apply_influence(self, influence: Influence | None) -> None:
         """Give points within the influence the response weight of selected points."""
@@ -289,7 +279,7 @@ class BlenderEdit:
             )
 
     def _goal_of(self, motion: Motion) -> Floats:
-        last = self._split(self._goal)
+        last = split_controls(self._goal, self._control_sets)
         return stack_controls(
             [
                 control_set.rule.goal(control_set.controls, old, motion)

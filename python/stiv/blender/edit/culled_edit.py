@@ -41,12 +41,11 @@ def begin_culled_edit(context: bpy.types.Context, settings: EditSettings, kind: 
 class CulledEdit:
     """A BlenderEdit with the obstacles of a culling box; undocumented members are those of the inner edit.
 
-    Accepted states stay inside the box, so they cannot intersect what is left out. Once a goal or a solution leaves the
-    box, an edit with a larger box resumes from the state written last.
+    Accepted states stay inside the box, so they cannot intersect the other obstacles. Once a goal or a solution leaves
+    the box, an edit with a larger box resumes from the state written last.
     """
 
     def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, culling: CullingBox) -> None:
-        """Use `begin_culled_edit`."""
         self._settings, self._kind = settings, kind
         self._culling: CullingBox | None = culling
         participants = find_participants(context, settings)
@@ -136,4 +135,4 @@ class CulledEdit:
 
 def names_of(participants: Sequence[Participant]) -> set[str]:
     """Names of the participants."""
-    return {participant.reference.name for participant in participants}
+    return {each.reference.name for each in participants}

@@ -38,7 +38,7 @@ def interpolate_transform(matrix: Floats, fraction: float) -> Floats:
 
 
 def count_increments(path: Path, points: Floats, longest: float, most: int) -> int:
-    """Number of increments, at most `most`, such that no point, (n, 3), moves much farther than `longest` in one."""
+    """Number of increments, at most `most`, such that no point, (n, 3), moves much more than `longest` in one."""
     if len(points) == 0 or longest <= 0:
         return 1
     matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
@@ -57,7 +57,7 @@ MOST = 200  # increments for each value
 
 
 def split_motion(target: Motion, path: Path | None, points: Floats) -> Iterator[Motion]:
-    """Motions of increasing size, the target last, such that no point, (n, 3), moves much farther than in a drag.
+    """Motions of increasing size, the target last, such that no point, (n, 3), moves much more than in a drag.
 
     path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
     """

@@ -2,37 +2,36 @@
 """Makes the session that solves for all control sets of an assembly."""
 
 from collections.abc import Sequence
-from typing import Any
 
+import bpy
 import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER
 from stiv.blender.scene.exclusions import find_excluded_triangles
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 
 
-def mobilities(count: int, control_sets: Sequence[ControlSet]) -> list[str]:
-    """Mobility of each of `count` visible meshes: "fixed", "rigid" or "deformable"."""
-    mobility = ["fixed"] * count
+def assemble_with_controls(
+    meshes: Sequence[VisibleMesh],
+    control_sets: Sequence[ControlSet],
+    together: Sequence[frozenset[str]],
+    settings: EditSettings,
+) -> Assembly:
+    """Assemble meshes for a session: what no control set moves is fixed, and seams that stay closed are merged."""
+    mobility, seams = ["fixed"] * len(meshes), list[Seams | None]([None] * len(meshes))
     for control_set in control_sets:
         for index in control_set.surfaces:
             mobility[index] = "rigid" if control_set.role == "rigid" else "deformable"
-    return mobility
-
-
-def seams_of(count: int, control_sets: Sequence[ControlSet]) -> list[Seams | None]:
-    """Seams that the control sets keep closed, for each of `count` visible meshes."""
-    seams: list[Seams | None] = [None] * count
-    for control_set in control_sets:
         for index, each in zip(control_set.surfaces, control_set.seams, strict=False):
             seams[index] = each
-    return seams
+    return assemble(meshes, mobility, together, settings.ignored_pairs, seams)
 
 
 def make_session(
@@ -48,11 +47,7 @@ def make_session(
     deformation: of `deformation_of`. weights: response weights of each control set, (m,) or (m, 3). Raises InputError,
     StartIntersectsError.
     """
-    frames, first = [], 0
-    for control_set in control_sets:
-        if control_set.frame is not None:
-            frames.append(stiv.StorageFrame(first, len(control_set.controls), control_set.frame))
-        first += len(control_set.controls)
+    frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         **settings.shared(),
@@ -89,7 +84,7 @@ def weights_of_all(weights: Sequence[Floats]) -> Floats:
 
 def axes_of_all(control_sets: Sequence[ControlSet]) -> Floats | None:
     """Stacked weight axes of all control sets, (m, 3, 3); None if all use the world axes."""
-    if all(control_set.weight_axes is None for control_set in control_sets):
+    if all(each.weight_axes is None for each in control_sets):
         return None
     world = np.eye(3)
     return np.concatenate(
@@ -103,8 +98,7 @@ def axes_of_all(control_sets: Sequence[ControlSet]) -> Floats | None:
 def deformation_of(assembly: Assembly, control_sets: Sequence[ControlSet]) -> stiv.Deformation:
     """Deformation of all control sets; other vertices stay where the assembly has them."""
     return stiv.concatenate(
-        [(control_set.deformation, _vertices(assembly, control_set)) for control_set in control_sets],
-        assembly.positions,
+        [(each.deformation, assembly.vertices_of(each.surfaces)) for each in control_sets], assembly.positions
     )
 
 
@@ -115,7 +109,35 @@ def stack_controls(controls: Sequence[Floats]) -> Floats:
 
 def split_controls(controls: Floats, control_sets: Sequence[ControlSet]) -> list[Floats]:
     """Split stacked controls into those of each control set, (m, 3)."""
-    return np.split(controls, np.cumsum([len(control_set.controls) for control_set in control_sets])[:-1])
+    return np.split(controls, np.cumsum([len(each.controls) for each in control_sets])[:-1])
+
+
+def storage_frames(stored: Sequence[tuple[int, Floats | None]]) -> list[stiv.StorageFrame]:
+    """How stacked controls are stored, from the number and frame of each control set."""
+    firsts = np.cumsum([0, *(count for count, _ in stored)]).tolist()
+    rows = zip(firsts, stored, strict=False)
+    return [stiv.StorageFrame(first, count, frame) for first, (count, frame) in rows if frame is not None]
+
+
+def write_controls(control_sets: Sequence[ControlSet], controls: Floats, start: Floats) -> None:
+    """Write stacked controls, (m, 3), and update Blender's evaluation. Control sets at their start are restored.
+
+    Raises SceneChangedError if an object was removed or changed.
+    """
+    rows = zip(control_sets, split_controls(controls, control_sets), split_controls(start, control_sets), strict=True)
+    for control_set, row, before in rows:
+        if np.array_equal(row, before):
+            control_set.writer.restore()
+        else:
+            control_set.writer.write(row)
+    bpy.context.view_layer.update()
+
+
+def restore_controls(control_sets: Sequence[ControlSet]) -> None:
+    """Restore the start exactly. Raises SceneChangedError if an object was removed."""
+    for control_set in control_sets:
+        control_set.writer.restore()
+    bpy.context.view_layer.update()
 
 
 def body_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
@@ -129,7 +151,3 @@ def body_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[s
         for a in bodies.get(settings.shown_by(first), [])
         for b in bodies.get(settings.shown_by(second), [])
     }
-
-
-def _vertices(assembly: Assembly, control_set: ControlSet) -> Any:
-    return np.concatenate([assembly.range_of(index) for index in control_set.surfaces])

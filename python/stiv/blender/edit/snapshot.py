@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The state of the scene at the start of an edit: surfaces, control sets and settings."""
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
-import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.edit.sessions import mobilities, seams_of, stack_controls
-from stiv.blender.scene.arrays import Floats, Indices, as_matrix
-from stiv.blender.scene.assembly import Assembly, assemble
-from stiv.blender.scene.culling import CullingBox, find_dependents
+from stiv.blender.edit.sessions import assemble_with_controls
+from stiv.blender.scene.arrays import Indices, as_matrix, digest
+from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.culling import CullingBox
+from stiv.blender.scene.dependencies import find_dependents
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.exclusions import drop_stale
 from stiv.blender.scene.guarded_evaluations import Guard, read_guarded_scene
@@ -28,7 +27,7 @@ class EditSnapshot:
 
     Attributes:
         assembly: all surfaces.
-        control_sets: what moves or yields, in the order of the controls.
+        control_sets: the moving and yielding ones, in the order of the controls.
         settings: without stale exclusions.
         guard: the evaluations that stay free of intersections.
         hidden: number of hidden objects, which do not participate.
@@ -69,31 +68,27 @@ def take_snapshot(
     )
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     found, groups = make_control_sets(context, participants, solid, settings, kind)
-    control_sets = tuple(adapt(control_set) for control_set in found)
-    if not any(control_set.rule.moves for control_set in control_sets):
+    control_sets = tuple(adapt(each) for each in found)
+    if not any(each.rule.moves for each in control_sets):
         raise InputError("nothing movable is selected; select vertices, points or objects with a surface")
-    moving = {participant.reference.name for participant in participants}.union(
+    moving = {each.reference.name for each in participants}.union(
         *(group.members for group in groups),
         (solid[index].owner.name for control_set in control_sets for index in control_set.surfaces),
     )
     still, carried = _static_strands(context, scene.meshes, moving)
     meshes = [*solid, *still]
-    count = len(meshes)
-    assembly = assemble(
-        meshes, mobilities(count, control_sets), [group.members for group in groups], settings.ignored_pairs,
-        seams_of(count, control_sets),
-    )  # fmt: skip
+    assembly = assemble_with_controls(meshes, control_sets, [group.members for group in groups], settings)
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
     points = assembly.positions[find_moving_vertices(assembly, control_sets)]
-    digest = _digest(stack_controls([control_set.controls for control_set in control_sets]), points, *placements)
+    start_digest = digest(*(each.controls for each in control_sets), points, *placements).hex()
     chosen = replace(settings, excluded=excluded)
-    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, digest, carried)
+    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, start_digest, carried)
 
 
 def find_moving_vertices(assembly: Assembly, control_sets: Sequence[ControlSet]) -> Indices:
     """Vertices of the surface that follow the controls."""
-    return np.concatenate([assembly.range_of(index) for control_set in control_sets for index in control_set.surfaces])
+    return assembly.vertices_of([index for each in control_sets for index in each.surfaces])
 
 
 def _static_strands(
@@ -111,10 +106,3 @@ def _static_strands(
 def _carriers(strands: VisibleMesh) -> set[str]:
     surface = surface_of(strands.owner.find())
     return {strands.owner.name, strands.source} | ({surface.name} if surface is not None else set())
-
-
-def _digest(*arrays: Floats) -> str:
-    found = hashlib.blake2b(digest_size=16)
-    for array in arrays:
-        found.update(np.ascontiguousarray(array).tobytes())
-    return found.hexdigest()

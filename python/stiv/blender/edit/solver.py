@@ -27,7 +27,7 @@ class EditSolver:
         """
         self._control_sets = control_sets
         self._settings = settings
-        self._weights = [control_set.weights for control_set in control_sets]
+        self._weights = [each.weights for each in control_sets]
         self._session: stiv.EditSession | None = None
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)

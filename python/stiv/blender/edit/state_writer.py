@@ -10,7 +10,7 @@ import numpy as np
 import stiv
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.edit.results import merge_results
-from stiv.blender.edit.sessions import split_controls, stack_controls
+from stiv.blender.edit.sessions import stack_controls, write_controls
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
@@ -45,7 +45,7 @@ class StateWriter:
     def __init__(self, control_sets: Sequence[ControlSet], solver: EditSolver, settings: EditSettings) -> None:
         """Take the control sets of an edit in their present state, and its solver."""
         self._control_sets = control_sets
-        self._start = stack_controls([control_set.controls for control_set in control_sets])
+        self._start = stack_controls([each.controls for each in control_sets])
         self._solver = solver
         self._settings = settings
         self._verifier = self._new_verifier()
@@ -83,18 +83,7 @@ class StateWriter:
 
     def write(self, controls: Floats) -> None:
         """Write controls, (m, 3), and update Blender's evaluation; nothing is tested."""
-        rows = zip(
-            self._control_sets,
-            split_controls(controls, self._control_sets),
-            split_controls(self._start, self._control_sets),
-            strict=True,
-        )
-        for control_set, wanted, start in rows:
-            if np.array_equal(wanted, start):
-                control_set.writer.restore()
-            else:
-                control_set.writer.write(wanted)
-        bpy.context.view_layer.update()
+        write_controls(self._control_sets, controls, self._start)
 
     def _new_verifier(self) -> Verifier:
         def is_step_free(start: Floats, end: Floats) -> bool:

@@ -48,12 +48,12 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
     return Summary(
         tuple(ParticipantSummary(name, role, count) for (name, role), count in counts.items()),
         hidden,
-        sum(len(control_set.controls) for control_set in control_sets),
+        sum(len(each.controls) for each in control_sets),
         len(assembly.surface.triangles),
         guard.choice,
         (
             *((guard.reason,) if guard.reason else ()),
-            *(control_set.note for control_set in control_sets if control_set.note),
+            *(each.note for each in control_sets if each.note),
             *_warnings(assembly),
         ),
     )

@@ -53,8 +53,8 @@ def correct_after_tool(
 ) -> ToolCorrection:
     """Edit from the accepted state toward the present scene, and write the result.
 
-    changes: of `compare`, without an unsupported one. A result that needs no correction stays as it is, bit by bit.
-    Raises InputError, StartIntersectsError and SceneChangedError; the tool's result then remains.
+    changes: of `compare`, without an unsupported one. A result that needs no correction stays as it is exactly. Raises
+    InputError, StartIntersectsError and SceneChangedError; the tool's result then remains.
     """
     chosen = [change for change in changes.changes if _participates(change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
@@ -109,7 +109,7 @@ def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Ch
 def _is_tool_result_free(
     context: bpy.types.Context, wanted: SceneState, changes: Sequence[Change], outcomes: Sequence[_Outcome]
 ) -> bool:
-    """Restore the tool's own result bit by bit and test it; if the test fails, the solved state is written again."""
+    """Restore the tool's own result exactly and test it; if the test fails, the solved state is written again."""
     solved = read_state(context)
     _restore(context, wanted, changes)
     if not outcomes or outcomes[-1].edit.is_shown():
@@ -175,7 +175,7 @@ def _edit(
         context, replace(settings, time_budget=TIME_LIMIT), kind,
         _participants(context, settings, by_name), lambda control_set: _with_response(control_set, by_name, settings),
     )  # fmt: skip
-    goal = stack_controls([_goal_of(control_set, by_name, present, wanted) for control_set in edit.control_sets])
+    goal = stack_controls([_goal_of(each, by_name, present, wanted) for each in edit.control_sets])
     results = []
     for step in _steps_to(edit, goal):
         results.append(edit.drag_to(step))
@@ -186,7 +186,7 @@ def _edit(
         results.append(edit.settle())
     report = edit.write()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
-    message = report.message or "; ".join(control_set.note for control_set in edit.control_sets if control_set.note)
+    message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
     return _Outcome(edit, reached and report.passed and report.result is None, blocking, message)
 
 

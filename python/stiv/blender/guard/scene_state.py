@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""States of a scene: all that a user can change by hand, to detect changes and to restore them bit by bit."""
+"""States of a scene: all that a user can change by hand, to detect changes and to restore them exactly."""
 
 import zlib
 from collections.abc import Mapping
@@ -82,7 +82,7 @@ class ObjectState:
         return self.location, self.rotation, self.scale
 
     def has_same_points(self, other: "ObjectState") -> bool:
-        """Do the vertices or points agree with another state, bit by bit?"""
+        """Do the vertices or points agree with another state exactly?"""
         if self.points is None or other.points is None:
             return self.points is other.points
         return np.array_equal(self.points, other.points)
@@ -152,9 +152,7 @@ def read_pose(ob: bpy.types.Object) -> PoseState:
     )
 
 
-def _read_bone(
-    bone: bpy.types.PoseBone,
-) -> tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]]:
+def _read_bone(bone: bpy.types.PoseBone) -> tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]]:
     rotation = ROTATION_PROPERTIES.get(bone.rotation_mode, "rotation_euler")
     return bone.name, tuple(bone.location), rotation, tuple(getattr(bone, rotation)), tuple(bone.scale)
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import compress
 from typing import Any
 
 import bpy
@@ -11,10 +12,11 @@ import numpy as np
 
 import stiv
 from stiv import InputError
+from stiv.blender.controls.cage import CageWriter
 from stiv.blender.repair.repair import run_to_end
-from stiv.blender.repair.reshaping import ReshapeReport, ReshapeSnapshot, cage_writer_of, take_reshape_snapshot
+from stiv.blender.repair.reshaping import ReshapeReport, ReshapeSnapshot, take_reshape_snapshot
 from stiv.blender.repair.rest_shape import read_rest_shape, store_rest_shape
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, Singles
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
@@ -44,13 +46,9 @@ class BlenderContraction:
     """A contraction from the snapshot of the scene to the written state: `solve`, then `write`, as BlenderRepair."""
 
     def __init__(self, snapshot: ReshapeSnapshot, settings: ContractionSettings) -> None:
-        """Use `begin`."""
         self._snapshot = snapshot
         self._settings = settings
-        stored = [
-            None if settings.new_original else _stored_rest_shape(ob, snapshot, k)
-            for k, ob in enumerate(snapshot.objects)
-        ]
+        stored = [None if settings.new_original else _stored_rest_shape(writer) for writer in snapshot.writers]
         self._needs_rest_shape = [local is None for local in stored]
         self._rest_shapes = snapshot.world(stored)
         self._before = len(find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads))
@@ -88,17 +86,15 @@ class BlenderContraction:
         if controls is None:
             return ReshapeReport("cancelled", False, "cancelled", (), self._before)
         snapshot.show(controls)
-        pairs = find_face_pairs(
-            snapshot.assembly, read_shown(bpy.context, snapshot.assembly), self._settings.edit.threads
-        )
-        for control_set, needs_one in zip(snapshot.control_sets, self._needs_rest_shape, strict=True):
-            if needs_one:
-                store_rest_shape(cage_writer_of(control_set).reference.find(), cage_writer_of(control_set).original)
+        shown = read_shown(bpy.context, snapshot.assembly)
+        pairs = find_face_pairs(snapshot.assembly, shown, self._settings.edit.threads)
+        for writer in compress(snapshot.writers, self._needs_rest_shape):
+            store_rest_shape(writer.reference.find(), writer.original)
         changed = not np.array_equal(controls, snapshot.start)
         return ReshapeReport("contracted", changed, "", pairs, self._before, snapshot.deviation(controls))
 
     def restore(self) -> None:
-        """Restore everything bit by bit."""
+        """Restore everything exactly."""
         self._snapshot.restore()
 
     def _until_free(self, cancel: stiv.CancelToken | None, progress: Progress | None) -> Floats | None:
@@ -116,16 +112,12 @@ def contract_scene(
 ) -> ReshapeReport:
     """Contract the selected meshes, as the operator `stiv.contract` does; `cancel` and `progress` as in `solve`.
 
-    Raises InputError and SceneChangedError, with everything as it was.
+    Raises InputError and SceneChangedError, with nothing changed.
     """
     return run_to_end(BlenderContraction.begin(context, settings), **execution)
 
 
-def _stored_rest_shape(ob: bpy.types.Object, snapshot: ReshapeSnapshot, control_set: int) -> Any:
+def _stored_rest_shape(writer: CageWriter) -> Singles | None:
     """The rest shape of a mesh, if it fits the present mesh."""
-    local = read_rest_shape(ob)
-    return (
-        local
-        if local is not None and len(local) == len(cage_writer_of(snapshot.control_sets[control_set]).original)
-        else None
-    )
+    local = read_rest_shape(writer.reference.find())
+    return local if local is not None and len(local) == len(writer.original) else None

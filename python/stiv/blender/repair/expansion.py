@@ -19,7 +19,6 @@ from stiv.blender.repair.reshaping import (
     MAX_FLIP_RETRIES,
     ReshapeReport,
     ReshapeSnapshot,
-    cage_writer_of,
     take_reshape_snapshot,
 )
 from stiv.blender.repair.rest_shape import read_rest_shape, remove_rest_shape
@@ -120,7 +119,7 @@ class BlenderExpansion:
         return self._written(place.controls, "blocked", f"stopped early: {verification.message}")
 
     def restore(self) -> None:
-        """Restore everything bit by bit."""
+        """Restore everything exactly."""
         self._snapshot.restore()
 
     def _energy(self, controls: Floats) -> float:
@@ -139,9 +138,8 @@ class BlenderExpansion:
 
     def _written(self, controls: Floats, status: str, message: str) -> ReshapeReport:
         if not self._settings.target and self._settings.amount == 1 and status == "reached":
-            for control_set in self._snapshot.control_sets:
-                if self._snapshot.moves.all():
-                    remove_rest_shape(cage_writer_of(control_set).reference.find())
+            for ob in self._snapshot.objects if self._snapshot.moves.all() else ():
+                remove_rest_shape(ob)
         changed = not np.array_equal(controls, self._snapshot.start)
         done = merge_results(self._results)
         return ReshapeReport(status, changed, message, (), 0, self._snapshot.deviation(controls), result=done)
@@ -152,7 +150,7 @@ def expand_scene(
 ) -> ReshapeReport:
     """Expand the selected meshes, as the operator `stiv.expand` does; `cancel` and `progress` as in `solve`.
 
-    Raises InputError, StartIntersectsError and SceneChangedError, with everything as it was.
+    Raises InputError, StartIntersectsError and SceneChangedError, with nothing changed.
     """
     return run_to_end(BlenderExpansion.begin(context, settings), **execution)
 

@@ -13,7 +13,6 @@ from stiv.blender.repair.reshaping import (
     MAX_FLIP_RETRIES,
     ReshapeReport,
     ReshapeSnapshot,
-    cage_writer_of,
     take_reshape_snapshot,
 )
 from stiv.blender.repair.rest_shape import store_rest_shape
@@ -47,7 +46,6 @@ class BlenderRepair:
     """
 
     def __init__(self, snapshot: ReshapeSnapshot, settings: RepairSettings, welded: WeldedMeshes | None = None) -> None:
-        """Use `begin`."""
         self._snapshot = snapshot
         self._settings = settings
         self._welded = welded
@@ -82,7 +80,7 @@ class BlenderRepair:
     def write(self) -> ReshapeReport | None:
         """Write the result and test Blender's evaluation; None: `solve` again, because Blender flipped triangles.
 
-        Restores the start bit by bit if Blender's evaluation intersects. Raises SceneChangedError.
+        Restores the start exactly if Blender's evaluation intersects. Raises SceneChangedError.
         """
         result = self._result
         assert result is not None
@@ -103,7 +101,7 @@ class BlenderRepair:
         return self._refused(f"the repair intersects in Blender's evaluation: {verification.message}")
 
     def restore(self) -> None:
-        """Restore everything bit by bit."""
+        """Restore everything exactly."""
         self._snapshot.restore()
         if self._welded is not None:
             self._welded.undo()
@@ -112,8 +110,8 @@ class BlenderRepair:
         assert self._result is not None
         if self._welded is not None:
             self._welded.apply()
-        for control_set in self._snapshot.control_sets:
-            store_rest_shape(cage_writer_of(control_set).reference.find(), cage_writer_of(control_set).original)
+        for writer in self._snapshot.writers:
+            store_rest_shape(writer.reference.find(), writer.original)
         deviation = self._snapshot.deviation(controls)
         return ReshapeReport("repaired", True, "", (), len(self._before), deviation, self._result.contracted)
 
@@ -132,7 +130,7 @@ class BlenderRepair:
 def repair_scene(context: bpy.types.Context, settings: RepairSettings | None = None, **execution: Any) -> ReshapeReport:
     """Repair the selected meshes, as the operator `stiv.repair` does; `cancel` and `progress` as in `solve`.
 
-    Raises InputError and SceneChangedError, with everything as it was.
+    Raises InputError and SceneChangedError, with nothing changed.
     """
     return run_to_end(BlenderRepair.begin(context, settings), **execution)
 

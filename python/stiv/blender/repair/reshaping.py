@@ -22,16 +22,19 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.joined_seams import SeamWriter, join_rows
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.sessions import (
+    assemble_with_controls,
     axes_of_all,
     body_separations,
     deformation_of,
-    mobilities,
-    seams_of,
+    restore_controls,
+    split_controls,
     stack_controls,
+    storage_frames,
     weights_of_all,
+    write_controls,
 )
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
-from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
@@ -50,7 +53,7 @@ class ReshapeReport:
 
     Attributes:
         status: of stiv.RepairResult or stiv.EditResult, or "contracted".
-        changed: Blender shows a new state; if False, everything is as it was, bit by bit.
+        changed: Blender shows a new state; if False, nothing changed.
         message: for the user; may be "".
         pairs: intersections that Blender shows now.
         pairs_before: number of intersections at the start.
@@ -98,17 +101,17 @@ class ReshapeSnapshot:
     @property
     def frames(self) -> tuple[stiv.StorageFrame, ...]:
         """How the controls are stored."""
-        firsts = np.cumsum([0, *(len(control_set.controls) for control_set in self.control_sets)])
-        return tuple(
-            stiv.StorageFrame(int(first), len(control_set.controls), control_set.frame)
-            for first, control_set in zip(firsts, self.control_sets, strict=False)
-            if control_set.frame is not None
-        )
+        return tuple(storage_frames([(len(each.controls), each.frame) for each in self.control_sets]))
 
     @property
     def objects(self) -> list[bpy.types.Object]:
         """The objects that change, in the order of the control sets."""
-        return [cage_writer_of(control_set).reference.find() for control_set in self.control_sets]
+        return [writer.reference.find() for writer in self.writers]
+
+    @property
+    def writers(self) -> list[CageWriter]:
+        """The writers of all vertices of each cage, in the order of the control sets."""
+        return [_cage_writer_of(each) for each in self.control_sets]
 
     def add_triangles(self, flips: Sequence[FaceTriangles]) -> ReshapeSnapshot:
         """The snapshot with additional triangles of bent faces."""
@@ -116,7 +119,7 @@ class ReshapeSnapshot:
 
     def edit_options(self) -> stiv.EditOptions:
         """Options for edits of all controls that may move."""
-        max_weights = weights_of_all([control_set.max_weights for control_set in self.control_sets])
+        max_weights = weights_of_all([each.max_weights for each in self.control_sets])
         return stiv.EditOptions(
             **self.settings.shared(),
             pair_separations=body_separations(self.assembly, self.settings),
@@ -127,21 +130,17 @@ class ReshapeSnapshot:
 
     def world(self, locals_: Sequence[Singles | None]) -> Floats:
         """Controls, (m, 3), for local positions of each control set; None stands for those at the start."""
-        rows = np.split(self.start, np.cumsum([len(control_set.controls) for control_set in self.control_sets])[:-1])
-        found = []
-        for control_set, local, row in zip(self.control_sets, locals_, rows, strict=True):
-            found.append(
-                row
-                if local is None
-                else transform_points(cage_writer_of(control_set).frame, control_set.values_at_controls(local))
-            )
-        return stack_controls(found)
+        rows = split_controls(self.start, self.control_sets)
+        return stack_controls(
+            [
+                row if local is None else transform_points(_cage_writer_of(each).frame, each.values_at_controls(local))
+                for each, local, row in zip(self.control_sets, locals_, rows, strict=True)
+            ]
+        )
 
     def deviation(self, controls: Floats) -> float:
         """Root mean square distance of the moving surface from the start, in its diagonals."""
-        moving = np.concatenate(
-            [self.assembly.range_of(index) for control_set in self.control_sets for index in control_set.surfaces]
-        )
+        moving = self.assembly.vertices_of([index for each in self.control_sets for index in each.surfaces])
         before = self.deformation.surface(self.start)[moving]
         after = self.deformation.surface(controls)[moving]
         diagonal = float(np.linalg.norm(np.ptp(before, axis=0))) if len(before) else 0.0
@@ -150,15 +149,7 @@ class ReshapeSnapshot:
 
     def show(self, controls: Floats) -> None:
         """Write controls, (m, 3). Raises SceneChangedError if an object was removed or changed."""
-        ends = np.cumsum([len(control_set.controls) for control_set in self.control_sets])[:-1]
-        for control_set, rows, start in zip(
-            self.control_sets, np.split(controls, ends), np.split(self.start, ends), strict=True
-        ):
-            if np.array_equal(rows, start):
-                control_set.writer.restore()
-            else:
-                control_set.writer.write(rows)
-        bpy.context.view_layer.update()
+        write_controls(self.control_sets, controls, self.start)
 
     def verify(self, controls: Floats) -> Verification:
         """Write controls whose surface is free of intersections, and test Blender's evaluation."""
@@ -168,10 +159,8 @@ class ReshapeSnapshot:
         return verifier.verify(bpy.context, self.deformation.surface(controls))
 
     def restore(self) -> None:
-        """Restore everything bit by bit."""
-        for control_set in self.control_sets:
-            control_set.writer.restore()
-        bpy.context.view_layer.update()
+        """Restore everything exactly."""
+        restore_controls(self.control_sets)
 
 
 def take_reshape_snapshot(
@@ -186,19 +175,15 @@ def take_reshape_snapshot(
     control_sets, _ = make_control_sets(context, participants, scene.meshes, settings, "move")
     if not control_sets:
         raise InputError("the selection has no surface; select visible meshes")
-    count = len(scene.meshes)
-    assembly = assemble(
-        scene.meshes, mobilities(count, control_sets), (), settings.ignored_pairs, seams_of(count, control_sets)
-    )  # fmt: skip
-    moves = np.concatenate([_selected(control_set) for control_set in control_sets])
+    assembly = assemble_with_controls(scene.meshes, control_sets, (), settings)
+    moves = np.concatenate([_selected(each) for each in control_sets])
     if not moves.any():
         raise InputError("no movable vertex is selected; select some, or leave Edit Mode")
-    start = stack_controls([control_set.controls for control_set in control_sets])
+    start = stack_controls([each.controls for each in control_sets])
     return ReshapeSnapshot(assembly, tuple(control_sets), _cage_of(control_sets), start, moves, settings)
 
 
-def cage_writer_of(control_set: ControlSet) -> CageWriter:
-    """The writer of all vertices of a cage."""
+def _cage_writer_of(control_set: ControlSet) -> CageWriter:
     writer = control_set.writer.writer if isinstance(control_set.writer, SeamWriter) else control_set.writer
     assert isinstance(writer, CageWriter)
     return writer
@@ -225,7 +210,7 @@ def _participants(context: bpy.types.Context, settings: EditSettings) -> list[Pa
             raise InputError(f'object "{ob.name}": only meshes can be reshaped; deselect it, or convert it to a mesh')
         participants.append(Participant(ObjectReference.of(ob), "cage", True))
     if not participants:
-        raise InputError("no movable mesh is selected; select one that is no obstacle and has collisions")
+        raise InputError("no movable mesh is selected; select one that is not an obstacle")
     return participants
 
 
@@ -233,7 +218,7 @@ def _cage_of(control_sets: Sequence[ControlSet]) -> stiv.Surface:
     """The meshes of all cages, below their modifiers."""
     triangles, loose, first = [np.empty((0, 3), np.int32)], [np.empty((0, 2), np.int32)], 0
     for control_set in control_sets:
-        mesh = cage_writer_of(control_set).reference.find().data
+        mesh = _cage_writer_of(control_set).reference.find().data
         triangles.append(join_rows(read_triangles(mesh)[0], control_set.control_seams) + first)
         loose.append(join_rows(read_edges(mesh)[read_loose_numbers(mesh)], control_set.control_seams) + first)
         first += len(control_set.controls)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Array types, and affine maps of points."""
 
+import hashlib
 from collections.abc import Iterable
 from typing import Any
 
@@ -28,3 +29,14 @@ def read_collection(collection: Any, attribute: str, width: int, dtype: type) ->
     values: NDArray[Any] = np.empty(len(collection) * width, dtype)
     collection.foreach_get(attribute, values)
     return values if width == 1 else values.reshape(-1, width)
+
+
+def digest(*values: Any) -> bytes:
+    """Digest of arrays and plain values."""
+    found = hashlib.blake2b(digest_size=20)
+    for value in values:
+        array = isinstance(value, np.ndarray)
+        found.update(repr((value.dtype.str, value.shape) if array else value).encode() + b"\0")
+        if array:
+            found.update(np.ascontiguousarray(value).tobytes())
+    return found.digest()

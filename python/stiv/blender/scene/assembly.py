@@ -39,9 +39,9 @@ class Assembly:
         """Vertex of the surface for each vertex of a mesh, (n,)."""
         return _surface_vertices(self.seams[mesh], int(self.starts[mesh]), len(self.meshes[mesh].local))
 
-    def range_of(self, mesh: int) -> Indices:
-        """Vertices of the surface that belong to a mesh, without duplicates."""
-        return np.arange(self.starts[mesh], self.starts[mesh + 1], dtype=np.int32)
+    def vertices_of(self, meshes: Sequence[int]) -> Indices:
+        """Vertices of the surface that belong to meshes, without duplicates on seams."""
+        return np.concatenate([np.arange(self.starts[k], self.starts[k + 1], dtype=np.int32) for k in meshes])
 
     def merge_seams(self, mesh: int, points: Floats) -> Floats:
         """Points of a mesh, (n, 3), without duplicates on seams."""

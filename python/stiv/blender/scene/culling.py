@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.scene.dependencies import dependencies
+from stiv.blender.scene.dependencies import dependencies, find_dependents
 from stiv.blender.scene.evaluations import RENDER, SURFACE_TYPES, VIEWPORT, is_visible, signature
 from stiv.blender.scene.mesh_reading import read_corners, read_edges, read_loose_numbers, read_positions
 from stiv.blender.settings import EditSettings
@@ -89,19 +89,6 @@ def _is_independent(ob: bpy.types.Object) -> bool:
 def _is_rendered_alike(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     """Is the render like the viewport, so that the bounds are those of both?"""
     return signature(ob, scene, VIEWPORT) == signature(ob, scene, RENDER)
-
-
-def find_dependents(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:
-    """The named objects, and all that depend on them directly or indirectly."""
-    users = {ob.name: {each.used for each in dependencies(ob)} for ob in objects}
-    for ob in objects:
-        if ob.parent is not None:
-            users[ob.name].add(ob.parent.name)
-    found, before = set(names), -1
-    while len(found) != before:
-        before = len(found)
-        found |= {name for name, used in users.items() if used & found}
-    return found
 
 
 def _box(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Floats]:

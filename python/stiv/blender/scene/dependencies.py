@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import bpy
 
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
+
+T = TypeVar("T", str, int)  # objects by name or session number
 
 
 @dataclass(frozen=True)
@@ -86,3 +88,26 @@ def shape_dependencies(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
         yield from ob.children
     if ob.parent is not None and (ob.parent_type.startswith("VERTEX") or ob.parent.instance_type != "NONE"):
         yield ob.parent
+
+
+def find_dependents(objects: Sequence[bpy.types.Object], names: set[str]) -> set[str]:
+    """The named objects, and all that depend on them directly or indirectly."""
+    users = {ob.name: {each.used for each in dependencies(ob)} for ob in objects}
+    for ob in objects:
+        if ob.parent is not None:
+            users[ob.name].add(ob.parent.name)
+    return add_dependents(names, users)
+
+
+def add_dependents(start: set[T], used_by: Mapping[T, set[T]]) -> set[T]:
+    """The objects of `start`, and all that use them directly or indirectly."""
+    found, before = set(start), -1
+    while len(found) != before:
+        before = len(found)
+        found |= {each for each, used in used_by.items() if used & found}
+    return found
+
+
+def ancestors(ob: bpy.types.Object) -> list[str]:
+    """Names of the object's parents, the nearest first."""
+    return [] if ob.parent is None else [str(ob.parent.name), *ancestors(ob.parent)]

@@ -20,19 +20,11 @@ COPIED_TYPES = ("CURVE", "SURFACE", "FONT", "META")  # their data holds the reso
 SCENE_SETTINGS = ("frame_current", "frame_subframe", "gravity", "use_gravity")
 TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_subdivision")
 
-_open = 0
-
-
-def is_evaluating() -> bool:
-    """Does a scene of copies exist now? Handlers should ignore changes meanwhile."""
-    return _open > 0
-
 
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
     def __init__(self, context: bpy.types.Context, evaluation: str) -> None:
-        """Use `open_copies`."""
         self._evaluation = evaluation
         self._made: list[bpy.types.ID] = []
         self._copies: dict[int, bpy.types.Object] = {}
@@ -139,15 +131,12 @@ def open_copies(
     shown: Callable[[bpy.types.Object], bool],
 ) -> Iterator[EvaluationCopies]:
     """Copy objects and evaluate them as in Object Mode or as rendered. `shown` selects the visible ones."""
-    global _open
-    _open += 1
     copies = EvaluationCopies(context, evaluation)
     try:
         copies.fill(objects, shown)
         yield copies
     finally:
         copies.remove()
-        _open -= 1
 
 
 def _as_rendered(twin: bpy.types.Object) -> None:

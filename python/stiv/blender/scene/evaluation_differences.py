@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from stiv.blender.scene.dependencies import shape_dependencies
+from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
 from stiv.blender.scene.evaluations import (
     RENDER,
     SHOWN,
@@ -110,8 +110,4 @@ def _with_users(numbers: set[int], objects: Iterable[bpy.types.Object]) -> set[i
     if not numbers:
         return numbers
     users = {ob.session_uid: {used.session_uid for used in shape_dependencies(ob)} for ob in objects}
-    found, before = set(numbers), -1
-    while len(found) != before:
-        before = len(found)
-        found |= {number for number, used in users.items() if used & found}
-    return found
+    return add_dependents(numbers, users)

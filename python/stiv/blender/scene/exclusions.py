@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Excluded pairs of faces: they may intersect, but no more of them than at the start of the edit."""
+"""Excluded pairs of faces: those that intersect at the start of an edit may continue to."""
 
 from __future__ import annotations
 

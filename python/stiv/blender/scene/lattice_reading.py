@@ -8,7 +8,7 @@ from stiv.blender.scene.arrays import Singles, read_collection
 
 
 def is_undeformed(lattice: bpy.types.Lattice) -> bool:
-    """Are all points at rest, bit by bit? Such a lattice changes nothing."""
+    """Are all points at rest exactly? Then the lattice changes nothing."""
     return bool(np.array_equal(read_lattice_points(lattice), read_rest_lattice_points(lattice)))
 
 

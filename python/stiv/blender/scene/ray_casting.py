@@ -25,18 +25,18 @@ def first_hit(
     for _ in range(MAX_PASSED):
         start = origin + travelled * unit
         left = length - travelled
-        hit, place, _, face, thing, matrix = context.scene.ray_cast(depsgraph, start, unit, distance=left)
+        hit, place, _, face, shown, matrix = context.scene.ray_cast(depsgraph, start, unit, distance=left)
         if not hit:
             return None
-        if thing.name not in through:
-            return np.array(place), _corners(thing.evaluated_get(depsgraph), face, matrix, np.array(place))
+        if shown.name not in through:
+            return np.array(place), _corners(shown.evaluated_get(depsgraph), face, matrix, np.array(place))
         travelled += float(np.linalg.norm(np.array(place) - start)) * (1 + STEP) + STEP * STEP * length
     return None
 
 
-def _corners(thing: bpy.types.Object, face: int, matrix: Any, place: Floats) -> Floats:
+def _corners(shown: bpy.types.Object, face: int, matrix: Any, place: Floats) -> Floats:
     """World positions of a face's corners; the hit point alone if the evaluated mesh does not have the face."""
-    mesh = thing.data
+    mesh = shown.data
     if not isinstance(mesh, bpy.types.Mesh) or not 0 <= face < len(mesh.polygons):
         return place[None]
     local = [mesh.vertices[vertex].co for vertex in mesh.polygons[face].vertices]

@@ -22,7 +22,7 @@ CATMULL_ROM, POLY = 0, 1  # values of the attribute curve_type
 
 
 def why_no_strands(shown: bpy.types.Object, owner: bpy.types.Object, helpers: frozenset[str]) -> str:
-    """Why an object of STRAND_TYPES is no obstacle; "" if it is one."""
+    """Why an object of STRAND_TYPES is not an obstacle; "" if it is."""
     if shown.type == "CURVE":
         return "helper curves" if owner.name in helpers else _too_many("curves without surface", _size(shown.data))
     curves = shown.data
@@ -51,7 +51,7 @@ def hair_systems(ob: bpy.types.Object) -> list[int]:
 
 
 def why_no_particle_hair(evaluated: bpy.types.Object) -> str:
-    """Why the particle hair of an evaluated object is no obstacle; "" if it is one."""
+    """Why the particle hair of an evaluated object is not an obstacle; "" if it is."""
     systems = (evaluated.particle_systems[index] for index in hair_systems(evaluated))
     return _too_many("particle hair", sum(len(_shown_strands(each)) * _steps(each.settings) for each in systems))
 

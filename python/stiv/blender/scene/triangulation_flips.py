@@ -159,9 +159,7 @@ def _retriangulated(
 
 def _extend(mesh: VisibleMesh, flip: FaceTriangles) -> VisibleMesh:
     return replace(
-        mesh,
-        triangles=np.concatenate([mesh.triangles, flip.triangles]),
-        faces=np.concatenate([mesh.faces, flip.faces]),
+        mesh, triangles=np.concatenate([mesh.triangles, flip.triangles]), faces=np.concatenate([mesh.faces, flip.faces])
     )
 
 

@@ -17,12 +17,7 @@ from stiv.edit_scripts import EditStep
 
 def select(step: EditStep) -> None:
     """Select the step's objects, the first one active, and in Edit Mode its points. Raises InputError."""
-    layer = bpy.context.view_layer
-    missing = [name for name in step.objects if name not in layer.objects]
-    if missing:
-        raise InputError(f'there is no object "{missing[0]}" in the view layer')
-    if bpy.context.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+    layer = _enter_object_mode(bpy.context, step.objects)
     for obj in layer.objects:
         obj.select_set(obj.name in step.objects)
     layer.objects.active = layer.objects[step.objects[0]]
@@ -58,12 +53,7 @@ def _select_vertices(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
 @contextmanager
 def selected(context: bpy.types.Context, names: Collection[str]) -> Iterator[None]:
     """Select exactly these objects, in Object Mode, inside the `with` statement. Raises InputError."""
-    layer = context.view_layer
-    missing = [name for name in names if name not in layer.objects]
-    if missing:
-        raise InputError(f'there is no object "{missing[0]}" in the view layer')
-    if context.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+    layer = _enter_object_mode(context, names)
     before = [ob.name for ob in layer.objects if ob.select_get()]
     try:
         for ob in layer.objects:
@@ -72,3 +62,14 @@ def selected(context: bpy.types.Context, names: Collection[str]) -> Iterator[Non
     finally:
         for ob in layer.objects:
             ob.select_set(ob.name in before)
+
+
+def _enter_object_mode(context: bpy.types.Context, names: Collection[str]) -> bpy.types.ViewLayer:
+    """The view layer, in Object Mode. Raises InputError if it lacks one of the named objects."""
+    layer = context.view_layer
+    missing = [name for name in names if name not in layer.objects]
+    if missing:
+        raise InputError(f'there is no object "{missing[0]}" in the view layer')
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return layer

@@ -98,11 +98,7 @@ class Pose:
 
 
 def _read(
-    context: bpy.types.Context,
-    objects: Collection[str],
-    evaluations: Sequence[str],
-    frame: float | None,
-    threads: int,
+    context: bpy.types.Context, objects: Collection[str], evaluations: Sequence[str], frame: float | None, threads: int
 ) -> dict[str, Pose]:
     """Poses by evaluation; those like the first evaluation are left out."""
     is_counted = tested_names(context, EditSettings(), objects or None)
@@ -200,7 +196,7 @@ def _match_meshes(
 
 
 def _by_name(assembly: Assembly) -> dict[tuple[int, str, bool, int], VisibleMesh]:
-    """Meshes by what frames have in common: owner, source, whether strands, and a running number."""
+    """Meshes by the properties that frames share: owner, source, whether strands, and a running number."""
     found: dict[tuple[int, str, bool, int], VisibleMesh] = {}
     counts: dict[tuple[int, str, bool], int] = {}
     for mesh in assembly.meshes:

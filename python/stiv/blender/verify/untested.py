@@ -17,10 +17,7 @@ from stiv.blender.scene.strand_reading import (
 )
 from stiv.checks.findings import Untested, untested_text
 
-WITHOUT_SURFACE = {
-    "POINTCLOUD": "point clouds",
-    "VOLUME": "volumes",
-}
+WITHOUT_SURFACE = {"POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 
 
 def find_untested(
