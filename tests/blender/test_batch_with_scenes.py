@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv batch` on .blend files: a worker keeps its Blender, and what it does is what `stiv replay` does.
+"""`stiv batch` on .blend files: a worker keeps its Blender and gives the results of `stiv replay`.
 
 Files that Blender saves are not equal by bytes, so coordinates are compared.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's cloth simulation as an opponent: the body goes where it is told, the cloth answers, fabric shrinks."""
+"""Blender's cloth simulation as an opponent: the body follows its goal, the cloth responds, fabric shrinks."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def ball(radius):
     return round_.vertices, round_.triangles()
 
 
-def test_a_body_that_grows_pushes_the_cloth_away():
+def test_a_growing_body_pushes_the_cloth_away():
     body, cloth = ball(0.5), sheet(0.55)
     run = simulate_cloth(cloth, body, 2 * body[0], 12)
     middle = np.linalg.norm(cloth[0][:, :2], axis=1).argmin()
@@ -28,7 +28,7 @@ def test_a_body_that_grows_pushes_the_cloth_away():
     assert np.allclose(left_alone.cloth, cloth[0], atol=0.02)  # it has no weight
 
 
-def test_fabric_shrinks_by_the_share_it_is_given():
+def test_fabric_shrinks_by_the_given_fraction():
     body, cloth = ball(0.2), sheet(3.0)
     run = simulate_cloth(cloth, body, body[0], 30, shrink=0.3)
     assert np.ptp(run.cloth, axis=0)[:2] == pytest.approx([1.4, 1.4], abs=0.1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames as dragged: a script is dragged to its end, every tick is told, and what they came to is free."""
+"""Frames as dragged: a script is dragged to its end, every tick is reported, and the result is free."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
 BLEND = FIXTURES / "sphere_along_wall.blend"
 
 
-def test_every_drag_of_a_script_is_told_tick_by_tick():
+def test_every_drag_of_a_script_is_reported_tick_by_tick():
     open_blend(BLEND)
     before = read_surface(bpy.context).positions
     (row,), failed = dragged_rows(BLEND, drags_in_blender, [1])
@@ -38,7 +38,7 @@ def test_every_drag_of_a_script_is_told_tick_by_tick():
 
 
 @pytest.mark.usefixtures("registered")
-def test_turning_is_refused():
+def test_rotations_are_refused():
     from benchmarks.sessions.dragged_frames import dragged_stages
     from stiv_addon.scene.edit_settings import edit_settings
 

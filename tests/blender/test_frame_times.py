@@ -25,7 +25,7 @@ def settings_of(scene):
     return edit_settings(scene)
 
 
-def test_a_drag_goes_on_from_its_own_start():
+def test_a_drag_continues_from_its_own_start():
     moved = EditStep("move", "OBJECT", ("A",), {"value": (0.5, 0, -1)})
     assert np.array_equal(goal_matrix(moved, 4, np.ones(3))[:3, 3], [2, 0, -4])
     grown = EditStep("scale", "EDIT", ("A",), {"value": (2, 1, 1)})
@@ -53,7 +53,7 @@ def test_operators_that_reshape_are_frames_too():
     assert frame.passed and not frame.touches and frame.seconds > 0
 
 
-def test_turning_is_refused():
+def test_rotations_are_refused():
     open_blend(FIXTURES / "sphere_along_wall.blend")
     name = next(ob.name for ob in bpy.context.scene.objects if ob.type == "MESH")
     turned = EditStep("rotate", "OBJECT", (name,), {"angle": 1.0, "axis": (0, 0, 1)})

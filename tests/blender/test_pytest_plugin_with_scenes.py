@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fixture for pytest on .blend files: what meets between frames is named."""
+"""The fixture for pytest on .blend files: intersections between frames are named."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from stiv.blender.scripts.blend_files import save_blend
 from stiv.pytest_plugin import _check
 
 
-def test_a_scene_is_opened_and_what_meets_is_named(tmp_path: Path) -> None:
+def test_a_scene_is_opened_and_intersections_are_named(tmp_path: Path) -> None:
     add_grid("Plate", 1, 2.0)
     cube = add_cube("Cube ü", (0.3, 0.2, 1), 0.1)
     for frame, height in ((1, 1), (2, -1)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv resolve`: animations that go through something, corrected, read back from the file that was written."""
+"""`stiv resolve`: intersecting animations are corrected; checks read the written file back."""
 
 import json
 from pathlib import Path
@@ -76,7 +76,7 @@ def test_a_sheet_that_changes_its_shape_is_written_as_shape_keys(tmp_path: Path)
     assert len(bpy.data.objects["Sheet"].data.shape_keys.key_blocks) >= 5
 
 
-def test_what_hangs_together_stays_together(tmp_path: Path) -> None:
+def test_connected_objects_stay_together(tmp_path: Path) -> None:
     add_grid("Plate", 4, 2.0)
     parent = add("Parent", None)
     for name, place in (("One", (-0.5, 0, 0)), ("Two", (0.5, 0, 0.4))):
@@ -90,7 +90,7 @@ def test_what_hangs_together_stays_together(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.linalg.norm(one.mean(axis=0) - two.mean(axis=0)), np.hypot(1, 0.4), atol=1e-5)
 
 
-def test_an_object_that_turns_is_followed(tmp_path: Path) -> None:
+def test_a_rotating_object_is_resolved(tmp_path: Path) -> None:
     bar = add("Bar", mesh("Bar", [(-1, 0, 0), (1, 0, 0), (1, 0.1, 0), (-1, 0.1, 0)], [(0, 1, 2, 3)]), (0, 0, 3))
     key(bar, "rotation_euler", [(0, 0, angle) for angle in (0, 1, 2, 3, 4, 5)])
     wanted = positions("Bar", 5)
@@ -98,7 +98,7 @@ def test_an_object_that_turns_is_followed(tmp_path: Path) -> None:
     np.testing.assert_allclose(positions("Bar", 5), wanted, atol=1e-5)
 
 
-def test_what_is_held_keeps_its_animation_and_others_give_way(tmp_path: Path) -> None:
+def test_held_objects_keep_their_animation_and_others_yield(tmp_path: Path) -> None:
     key(add_cube("Pusher", size=0.5), "location", [(x, 0, 0) for x in (-3, -2, -1, 0)])
     key(add_cube("Pushed", size=0.5), "location", [(0, 0.1, 0.01 * k) for k in range(4)])
     assert findings(4)
@@ -109,7 +109,7 @@ def test_what_is_held_keeps_its_animation_and_others_give_way(tmp_path: Path) ->
     assert np.abs(positions("Pushed", 4).mean(axis=0)).max() > 0.5
 
 
-def test_an_animation_in_the_clear_stays_as_it_is(tmp_path: Path) -> None:
+def test_an_animation_without_contact_is_unchanged(tmp_path: Path) -> None:
     add_grid("Plate", 4, 2.0)
     key(add_cube("Cube", size=0.1), "location", [(0, 0, 2), (0, 0, 1)])
     report = resolved(tmp_path, 2)
@@ -125,7 +125,7 @@ def test_a_first_frame_that_intersects_ends_with_4_and_writes_nothing(tmp_path: 
 
 
 @pytest.mark.parametrize("case", ["hold", "array", "text"])
-def test_what_cannot_be_resolved_is_refused_by_name(tmp_path: Path, capsys, case: str) -> None:
+def test_unsupported_animations_are_refused_by_name(tmp_path: Path, capsys, case: str) -> None:
     cube = add_cube("Cube", size=0.1)
     key(cube, "location", [(0, 0, 2), (0, 0, 1)])
     if case == "array":

@@ -140,7 +140,7 @@ def run(folder: Path, *options: str) -> tuple[int, Path, Path]:
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_what_is_rendered_is_free_and_check_agrees(tmp_path: Path, scene: str) -> None:
+def test_the_render_is_free_and_check_agrees(tmp_path: Path, scene: str) -> None:
     SCENES[scene]()
     code, source, out = run(tmp_path)
     assert code == 0
@@ -207,7 +207,7 @@ def test_shapes_are_written_at_the_levels_of_their_guard(tmp_path: Path, guard: 
 
 
 @pytest.mark.parametrize(("make", "expected", "said"), REFUSED)
-def test_what_cannot_be_guarded_is_refused_by_name(
+def test_unsupported_evaluations_are_refused_by_name(
     tmp_path: Path, capsys: Any, make: Callable[[], None], expected: int, said: str
 ) -> None:
     make()
@@ -218,7 +218,7 @@ def test_what_cannot_be_guarded_is_refused_by_name(
 
 
 @pytest.mark.usefixtures("registered")
-def test_the_scenes_own_guard_applies_and_a_large_render_is_said(
+def test_the_scenes_own_guard_applies_and_a_large_render_is_reported(
     tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     SCENES["corners"]()

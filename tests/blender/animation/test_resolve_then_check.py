@@ -73,7 +73,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_what_resolve_writes_passes_check(tmp_path: Path, scene: str) -> None:
+def test_resolved_files_pass_check(tmp_path: Path, scene: str) -> None:
     SCENES[scene]()
     bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, LAST
     source, out = (str(tmp_path / name) for name in ("scene.blend", "out.blend"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who gives way without having been given a role."""
+"""Objects that yield without a role of their own."""
 
 from typing import Any
 
@@ -36,7 +36,7 @@ def test_a_row_of_objects_is_pushed_along() -> None:
     assert snapshot() == start
 
 
-def test_all_lets_both_sides_give_way() -> None:
+def test_all_lets_both_sides_yield() -> None:
     pusher, other = add_cube("Pusher", size=0.5), add_cube("Other", (1.2, 0, 0), 0.5)
     select(pusher)
     edit = begin("all")
@@ -63,7 +63,7 @@ def test_an_obstacle_never_moves() -> None:
         edit.restore()
 
 
-def test_the_deformation_chosen_for_an_object_is_how_it_gives_way() -> None:
+def test_objects_yield_by_their_own_deformation() -> None:
     pusher, sheet = add_cube("Pusher", size=0.5), add_grid("Sheet", 6, location=(0, 0, 0.7))
     select(pusher)
     assert roles(begin("selected", deformations={"Sheet": "vertices"}))["Sheet"] == "obstacle"
@@ -77,7 +77,7 @@ def test_the_deformation_chosen_for_an_object_is_how_it_gives_way() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_what_cannot_be_placed_stays_in_the_way() -> None:
+def test_objects_that_cannot_move_are_obstacles() -> None:
     pusher = add_cube("Pusher", size=0.5)
     held = add_cube("Held", (0, 3, 0), 0.5)
     held.constraints.new("LIMIT_LOCATION")
@@ -104,7 +104,7 @@ def test_what_cannot_be_placed_stays_in_the_way() -> None:
     del child
 
 
-def test_metaballs_stay_as_another_place_gives_them_another_surface() -> None:
+def test_metaballs_are_obstacles() -> None:
     data = bpy.data.metaballs.new("Ball")
     data.elements.new()
     ball = add("Ball", data, (2.5, 0, 0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights of controls from vertex groups: 0 keeps every bit, less gives way less, a pinned contact stops the edit."""
+"""Weights of controls from vertex groups: 0 pins exactly, less yields less, a pinned contact stops the edit."""
 
 from typing import Any
 
@@ -49,12 +49,12 @@ def pinned_half(ob: Any, name: str = "Weights") -> np.ndarray:
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-@pytest.mark.parametrize("thing", ["cage", "lattice"])
-def test_pinned_controls_keep_every_bit(thing: str, mode: str) -> None:
+@pytest.mark.parametrize("kind", ["cage", "lattice"])
+def test_pinned_controls_stay_exactly(kind: str, mode: str) -> None:
     sheet = add_grid("Sheet", 8, location=(0.1, 0.2, 0.7), rotation_euler=(0.02, 0.01, 0.3))
     add_modifier(sheet, "SUBSURF", levels=1)
     ob = sheet
-    if thing == "lattice":
+    if kind == "lattice":
         ob = add_lattice("Cage", (4, 3, 2), (0.1, 0.2, 0.7), rotation_euler=(0.02, 0.01, 0.3), scale=(2.5, 2.5, 0.6))
         sheet.modifiers.clear()
         add_modifier(sheet, "LATTICE", object=ob)
@@ -62,7 +62,7 @@ def test_pinned_controls_keep_every_bit(thing: str, mode: str) -> None:
     pinned = pinned_half(ob)
     if mode == "EDIT":
         edit_mode(ob)
-        getattr(bpy.ops, "lattice" if thing == "lattice" else "mesh").select_all(action="SELECT")
+        getattr(bpy.ops, "lattice" if kind == "lattice" else "mesh").select_all(action="SELECT")
     else:
         select(ob)
     start, before = snapshot(), points(ob)
@@ -77,8 +77,8 @@ def test_pinned_controls_keep_every_bit(thing: str, mode: str) -> None:
     assert snapshot() == start
 
 
-def test_what_has_less_weight_gives_way_less() -> None:
-    """Two squares of a cage each, pushed into a floor alike: the response goes by the weights."""
+def test_less_weight_yields_less() -> None:
+    """Two square cages, pushed equally into a floor, respond by their weights."""
     depths = []
     for weight in (1.0, 0.01):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -95,8 +95,8 @@ def test_what_has_less_weight_gives_way_less() -> None:
     assert depths[1] < depths[0] - 0.005
 
 
-def test_a_contact_with_all_of_it_pinned_stops_the_edit_and_is_named() -> None:
-    """The pushed vertices reach the pinned ones of another cage: nothing may give way."""
+def test_a_fully_pinned_contact_stops_the_edit_and_is_named() -> None:
+    """The pushed vertices reach the pinned ones of another cage: nothing can yield."""
     wall = add_grid("Wand", 4, 3.0, (1.0, 0, 0), rotation_euler=(0, np.pi / 2, 0))
     group(wall, "Weights", {})
     sheet = add_grid("Sheet", 2, rotation_euler=(0, np.pi / 2, 0))
@@ -111,7 +111,7 @@ def test_a_contact_with_all_of_it_pinned_stops_the_edit_and_is_named() -> None:
     assert evaluated(sheet)[:, 0].max() < 1.0
 
 
-def test_inverted_weights_pin_what_is_in_the_group() -> None:
+def test_inverted_weights_pin_the_group() -> None:
     sheet = add_grid("Sheet", 2)
     group(sheet, "Pins", {4: 1.0})
     edit_mode(sheet)
@@ -138,7 +138,7 @@ def test_a_missing_group_is_named() -> None:
 
 
 def test_point_weights_of_a_lattice_in_edit_mode() -> None:
-    """Blender looks these groups up in the wrong memory there, and crashed."""
+    """Blender reads these groups from the wrong memory there, and crashed."""
     cube, lattice = add_cube("Cube", size=0.4), add_lattice("Cage", (3, 3, 3), scale=(3, 3, 3))
     group(lattice, "Points", {number: number / 27 for number in range(27)})
     lattice.data.vertex_group = "Points"

@@ -28,7 +28,7 @@ def made(*inputs: object) -> object:
 made.calls = 0
 
 
-def test_equal_inputs_give_the_same_again() -> None:
+def test_equal_inputs_return_the_cached_deformation() -> None:
     first = cached_deformation(made, POINTS, 2, "name", None)
     assert cached_deformation(made, POINTS.copy(), 2, "name", None) is first
 
@@ -45,7 +45,7 @@ def test_equal_inputs_give_the_same_again() -> None:
         (2, POINTS),
     ],
 )
-def test_any_difference_makes_it_anew(inputs: tuple) -> None:
+def test_different_inputs_make_a_new_deformation(inputs: tuple) -> None:
     first = cached_deformation(made, POINTS, 2)
     assert cached_deformation(made, *inputs) is not first
     before = made.calls
@@ -53,11 +53,11 @@ def test_any_difference_makes_it_anew(inputs: tuple) -> None:
     assert made.calls == before
 
 
-def test_another_maker_is_another_thing() -> None:
+def test_different_functions_do_not_share_results() -> None:
     assert cached_deformation(made, 1) is not cached_deformation(lambda *inputs: object(), 1)
 
 
-def test_old_ones_are_forgotten() -> None:
+def test_the_oldest_deformations_are_removed() -> None:
     first = cached_deformation(made, 0)
     for number in range(1, MOST + 1):
         cached_deformation(made, number)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who may not be moved, and what the refusal says; the scene is left as it was."""
+"""Objects that cannot be edited: the messages of refusals, which leave the scene unchanged."""
 
 from pathlib import Path
 from typing import Any
@@ -86,7 +86,7 @@ def test_driven_placement() -> None:
     refused('object "Cube": its transform is animated')
 
 
-def test_animation_of_other_properties_is_no_obstacle() -> None:
+def test_animation_of_other_properties_is_accepted() -> None:
     cube = add_cube("Cube")
     cube.keyframe_insert("hide_render", frame=1)
     select(cube)
@@ -190,7 +190,7 @@ def test_lattice_moved_away_from_its_mesh() -> None:
     refused('object "Cube": moves, and so does its lattice "Lattice"; deselect one', DEFORM)
 
 
-def test_what_other_objects_look_at() -> None:
+def test_objects_that_modifiers_refer_to() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     add_modifier(other, "BOOLEAN", "Cut", object=cube)
     select(cube)
@@ -200,7 +200,7 @@ def test_what_other_objects_look_at() -> None:
     accepted()
 
 
-def test_what_geometry_nodes_look_at() -> None:
+def test_objects_inside_geometry_nodes() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     tree = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
     node = tree.nodes.new("GeometryNodeObjectInfo")
@@ -210,7 +210,7 @@ def test_what_geometry_nodes_look_at() -> None:
     refused('object "Other", modifier "Look": depends on object "Cube"')
 
 
-def test_what_is_given_to_geometry_nodes() -> None:
+def test_inputs_of_geometry_nodes() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     tree = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
     socket = tree.interface.new_socket("Object", in_out="INPUT", socket_type="NodeSocketObject")
@@ -229,7 +229,7 @@ def give(modifier: Any, socket: str, value: Any) -> None:
         modifier[socket] = value
 
 
-def test_what_instances_show() -> None:
+def test_instanced_objects() -> None:
     cube = add_cube("Cube")
     collection = bpy.data.collections.new("Shared")
     collection.objects.link(cube)
@@ -247,7 +247,7 @@ def test_children_on_vertices() -> None:
     accepted()
 
 
-def test_cage_that_hangs_on_a_mover() -> None:
+def test_children_of_moving_objects() -> None:
     parent, child = add_cube("Parent"), add_cube("Child", (5, 0, 0))
     child.parent = parent
     select(parent)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loop subdivision shown beside a cage: right by the published masks, kept up by edits, taking part in its place."""
+"""Loop subdivision shown by a child: correct by published masks, updated by edits, colliding instead of the cage."""
 
 from typing import Any
 
@@ -65,7 +65,7 @@ def test_the_refined_object_follows_the_published_masks(levels: int) -> None:
     assert len(refined.data.polygons) == 8 * 4**levels
 
 
-def test_creases_count() -> None:
+def test_creases_are_respected() -> None:
     cage = octahedron()
     creases = cage.data.attributes.new("crease_edge", "FLOAT", "EDGE")
     ring = {(0, 1), (1, 2), (2, 3), (0, 3)}
@@ -77,7 +77,7 @@ def test_creases_count() -> None:
 
 
 @pytest.mark.parametrize("kind", ["vertices", "laplacian", "rigid"])
-def test_edits_keep_the_refined_object_up_and_free(kind: str) -> None:
+def test_edits_keep_the_refined_object_current_and_free(kind: str) -> None:
     add_grid("Floor", 2, 4.0, (0, 0, -1.2))
     cage = octahedron(rotation_euler=(0.3, 0, 0.2))
     refined, settings = with_loop(cage)
@@ -104,7 +104,7 @@ def test_edits_keep_the_refined_object_up_and_free(kind: str) -> None:
     assert snapshot() == start
 
 
-def test_the_cage_may_go_through_what_its_surface_does_not() -> None:
+def test_the_cage_may_intersect_if_its_surface_does_not() -> None:
     add_grid("Floor", 2, 4.0, (0, 0, -0.9))
     cage = octahedron()
     refined, settings = with_loop(cage)
@@ -152,7 +152,7 @@ def test_materials_and_shading_are_those_of_the_cage() -> None:
     assert [p.use_smooth for p in refined.data.polygons].count(True) == 4
 
 
-def test_what_is_no_cage_of_triangles_is_refused_and_nothing_made() -> None:
+def test_other_cages_are_refused_and_nothing_is_added() -> None:
     cube = add_cube("Cube")
     before = snapshot()
     with pytest.raises(stiv.InputError, match='object "Cube", face 0: has 4 corners'):
@@ -176,7 +176,7 @@ def test_hidden_and_removed_objects() -> None:
         begin(settings)
 
 
-def test_a_cage_that_another_object_shows_is_no_surface_of_the_scene_unless_it_is_named() -> None:
+def test_a_replaced_cage_is_not_a_surface_unless_it_is_named() -> None:
     cage = octahedron()
     refined, _ = with_loop(cage)
     assert [mesh.owner.name for mesh in read_surface(bpy.context).meshes] == [refined.name]
@@ -185,7 +185,7 @@ def test_a_cage_that_another_object_shows_is_no_surface_of_the_scene_unless_it_i
     assert [mesh.owner.name for mesh in read_surface(bpy.context).meshes] == ["Cage"]
 
 
-def test_a_refined_object_gives_way_with_its_cage() -> None:
+def test_a_refined_object_yields_with_its_cage() -> None:
     cage = octahedron(location=(2.5, 0, 0))
     refined, settings = with_loop(cage)
     pusher = add_cube("Pusher")
@@ -198,7 +198,7 @@ def test_a_refined_object_gives_way_with_its_cage() -> None:
     assert check_scene(bpy.context, settings).pairs == ()
 
 
-def test_what_another_tool_made_of_a_cage_is_corrected_by_its_surface() -> None:
+def test_a_cage_moved_by_another_tool_is_corrected_by_its_surface() -> None:
     add_grid("Floor", 2, 4.0, (0, 0, -1.2))
     cage = octahedron()
     refined, settings = with_loop(cage)

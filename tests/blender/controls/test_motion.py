@@ -46,7 +46,7 @@ def test_the_nearest_selected_point_is_found(seed: int) -> None:
 
 
 @given(st.integers(0, 1000))
-def test_ways_along_edges_are_the_shortest(seed: int) -> None:
+def test_paths_along_edges_are_the_shortest(seed: int) -> None:
     """Against repeated relaxation of every edge (Bellman 1958)."""
     points, selected, edges = random_points(seed)
     expected = np.where(selected, 0.0, np.inf)
@@ -58,7 +58,7 @@ def test_ways_along_edges_are_the_shortest(seed: int) -> None:
 
 
 @given(st.integers(0, 1000))
-def test_islands_are_what_selected_edges_join(seed: int) -> None:
+def test_selected_edges_join_islands(seed: int) -> None:
     points, selected, edges = random_points(seed)
     inside = [(a, b) for a, b in edges if selected[a] and selected[b]]
     expected = []
@@ -71,7 +71,7 @@ def test_islands_are_what_selected_edges_join(seed: int) -> None:
 
 
 @pytest.mark.parametrize("falloff", FALLOFFS)
-def test_a_falloff_goes_from_all_to_nothing(falloff: str) -> None:
+def test_a_falloff_decreases_from_one_to_zero(falloff: str) -> None:
     distances = np.array([0.0, 0.2, 0.7, 1.3, 1.999, 2.0, 5.0, np.inf])
     shares = Influence(2.0, falloff).shares(distances)
     assert shares[0] == 1 and (shares[-3:] == 0).all() and (shares[:5] > 0).all() and (shares <= 1).all()
@@ -79,19 +79,19 @@ def test_a_falloff_goes_from_all_to_nothing(falloff: str) -> None:
 
 
 @pytest.mark.parametrize(("size", "falloff"), [(0.0, "SMOOTH"), (np.inf, "SMOOTH"), (np.nan, "SMOOTH"), (1.0, "ODD")])
-def test_an_influence_without_meaning_is_refused(size: float, falloff: str) -> None:
+def test_invalid_influences_are_refused(size: float, falloff: str) -> None:
     with pytest.raises(InputError):
         Influence(size, falloff)
 
 
 @given(st.floats(-3.0, 3.0), st.floats(0.0, 1.0))
-def test_a_share_of_a_rotation_is_a_rotation_by_part_of_the_angle(angle: float, share: float) -> None:
+def test_a_fraction_of_a_rotation_is_a_rotation_by_that_fraction_of_the_angle(angle: float, share: float) -> None:
     pivot, point = np.array([1.0, -2.0, 0.5]), np.array([[3.0, 1.0, 1.0]])
     moved = Motion(turn_about(pivot, angle), pivot).shared(point, np.array([share]))
     assert_allclose(moved[0], pivot + turn(share * angle)[:3, :3] @ (point[0] - pivot), atol=1e-5)
 
 
-def test_a_whole_share_is_the_whole_transform() -> None:
+def test_fraction_one_is_the_whole_transform() -> None:
     matrix = np.array([[2, 0, 0, 1], [0, 1, 0, 2], [0, 0, 0.5, 3], [0, 0, 0, 1]], float)
     points = np.random.default_rng(1).random((5, 3))
     motion = Motion(matrix, np.array([1.0, 2.0, 3.0]))
@@ -99,7 +99,7 @@ def test_a_whole_share_is_the_whole_transform() -> None:
     assert_allclose(motion.shared(points, np.zeros(5)), points)
 
 
-def test_more_than_half_a_turn_is_shared_the_long_way() -> None:
+def test_more_than_half_a_turn_takes_the_long_way() -> None:
     motion = Motion(turn(np.radians(270)), np.zeros(3), rotation=np.radians([0, 0, 270]))
     assert_allclose(motion.shared(np.array([[1.0, 0, 0]]), np.array([1 / 3])), [[0, 1, 0]], atol=1e-9)
 
@@ -137,7 +137,7 @@ def upward(height: float, **choices: Any) -> Motion:
     return Motion(matrix, np.zeros(3), **choices)
 
 
-def test_points_near_the_selection_follow_by_their_share(strip: Any) -> None:
+def test_points_near_the_selection_follow_by_their_fraction(strip: Any) -> None:
     before = places(strip)
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     assert edit.drag(upward(1, influence=Influence(4.0, "LINEAR"))).status == "reached"
@@ -150,7 +150,7 @@ def test_points_near_the_selection_follow_by_their_share(strip: Any) -> None:
     assert_array_equal(places(strip), before)
 
 
-def test_what_follows_gives_way_too(strip: Any) -> None:
+def test_following_points_yield_too(strip: Any) -> None:
     """A ceiling over the third quad, above a point that is not selected but follows."""
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.ops.mesh.primitive_cube_add(size=1, location=(2, 0, 0.8))
@@ -167,7 +167,7 @@ def test_what_follows_gives_way_too(strip: Any) -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_each_island_turns_about_its_own_middle(strip: Any) -> None:
+def test_each_island_rotates_about_its_own_centre(strip: Any) -> None:
     select(strip, lambda x: x < 1.1 or x > 8.9)
     before = places(strip)
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "rotate")
@@ -180,7 +180,7 @@ def test_each_island_turns_about_its_own_middle(strip: Any) -> None:
     assert_allclose(places(strip), expected, atol=1e-6)
 
 
-def test_each_object_turns_about_its_own_origin() -> None:
+def test_each_object_rotates_about_its_own_origin() -> None:
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     for x in (0, 10):
         bpy.ops.mesh.primitive_cube_add(location=(x, 0, 0))

@@ -30,7 +30,7 @@ TURN = turn(0.9, "X", (1, 2, 3)) @ turn(0.4, "Z") @ shift(0.3, -0.2, 0.1)
 
 
 def edited(matrix: np.ndarray, kind: str, *objects: Any) -> BlenderEdit:
-    """The goal reached and written, restored bit by bit, reached and written again."""
+    """The goal reached and written, restored exactly, reached and written again."""
     select(*objects)
     before = snapshot()
     edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
@@ -44,7 +44,7 @@ def edited(matrix: np.ndarray, kind: str, *objects: Any) -> BlenderEdit:
 
 
 def moves(matrix: np.ndarray, kind: str, *objects: Any) -> None:
-    """What Blender evaluates afterwards is what was there, moved."""
+    """The evaluation afterwards equals the start, moved."""
     bpy.context.view_layer.update()
     before = [evaluated(ob) for ob in objects]
     edited(matrix, kind, *objects)
@@ -128,7 +128,7 @@ def test_an_instancer_carries_its_instances() -> None:
     assert edit.surface == pytest.approx(moved(TURN, np.array([[1.0, 0, 0], [2, 0, 0], [1, 1, 0]])), abs=1e-6)
 
 
-def test_mesh_and_its_lattice_move_as_one() -> None:
+def test_a_mesh_and_its_lattice_move_together() -> None:
     cube, lattice = add_cube("Cube"), add_lattice("Lattice", (2, 2, 2), (0.1, 0, 0), scale=(3, 3, 3))
     lattice.data.points[0].co_deform.x -= 0.3
     add_modifier(cube, "LATTICE", object=lattice)
@@ -138,12 +138,12 @@ def test_mesh_and_its_lattice_move_as_one() -> None:
     assert evaluated(cube) == pytest.approx(moved(TURN, start), abs=1e-5)
 
 
-def test_several_selected_objects_keep_apart() -> None:
+def test_several_selected_objects_are_separate_bodies() -> None:
     """Two separate bodies, one goal: each turns about the common pivot."""
     moves(TURN, "rotate", add_cube("One"), add_cube("Two", (4, 0, 0)))
 
 
-def test_any_modifier_may_ride_along() -> None:
+def test_rigid_objects_may_have_any_modifier() -> None:
     cube = add_cube("Cube")
     add_modifier(cube, "SOLIDIFY")
     add_modifier(cube, "BEVEL")
@@ -163,7 +163,7 @@ def test_more_than_a_turn() -> None:
     )
 
 
-def test_what_meets_a_wall_shows_no_other_change_than_its_own() -> None:
+def test_an_object_at_a_wall_changes_only_along_its_motion() -> None:
     """A solve leaves turns and shifts of 1e-8, which Blender's fields would show as -0."""
     cube = add_cube("Cube")
     add_grid("Wall", 2, 3.0, location=(2, 0, 0), rotation_euler=(0, np.pi / 2, 0))
@@ -195,8 +195,8 @@ def test_growing_stops_at_a_wall() -> None:
 
 
 @pytest.mark.parametrize("factors", [(0.0, 0.0, 0.0), (1.0, 0.0, 2.0)])
-def test_objects_are_not_pressed_flat(factors: tuple[float, float, float]) -> None:
-    """What keeps its shape is not tested against itself: a scale of 0 once left every face in every other."""
+def test_scale_zero_is_refused(factors: tuple[float, float, float]) -> None:
+    """Rigid objects are not tested against themselves: with a scale of 0 all faces once intersected."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add()
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "scale")

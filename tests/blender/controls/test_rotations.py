@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rotation vectors against mathutils, which shares nothing with them."""
+"""Rotation vectors against mathutils."""
 
 import bpy  # noqa: F401
 import numpy as np
@@ -27,7 +27,7 @@ def test_rotation_matrix_and_vector_against_mathutils(angle: float, axis: tuple[
     assert np.linalg.norm(back) == pytest.approx(angle, abs=1e-7)
 
 
-def test_a_drag_may_turn_more_than_once() -> None:
+def test_a_drag_may_exceed_one_turn() -> None:
     last, axis = np.zeros(3), np.array([0.6, 0.0, 0.8])
     for degrees in range(10, 1000, 10):
         last = nearest_equivalent(rotation_vector(rotation_matrix(np.radians(degrees) * axis)), last)
@@ -45,12 +45,12 @@ def test_polar_factor_leaves_out_stretch_and_mirror() -> None:
     assert is_rotation(nearest_rotation(np.diag([1.0, 2.0, -3.0])))
 
 
-def test_about_takes_the_centre_to_its_target() -> None:
+def test_an_affine_map_takes_the_centre_to_its_target() -> None:
     matrix = affine_about(np.array([1.0, 2, 3]), rotation_matrix(np.array([0, 0, 1.0])), np.array([4.0, 5, 6]))
     assert matrix @ [1, 2, 3, 1] == pytest.approx([4, 5, 6, 1])
 
 
-def test_what_single_precision_cannot_hold_beside_the_rest_is_left_out() -> None:
+def test_components_that_vanish_in_single_precision_are_removed() -> None:
     assert remove_rounding(np.array([3.0, -1e-9, 1e-5])).tolist() == [3.0, 0.0, 1e-5]
     assert remove_rounding(np.array([3e-20, 1e-20, 0.0])).tolist() == [3e-20, 1e-20, 0.0]
     assert remove_rounding(np.array([1e-9, 0.0, -2e-6]), unit=1.0).tolist() == [0.0, 0.0, -2e-6]

@@ -61,7 +61,7 @@ def places(ob: Any) -> np.ndarray:
 
 
 def coincident(points: np.ndarray, same: np.ndarray) -> bool:
-    """Are points that had the same number at the start still in the same place, to the last bit?"""
+    """Are the copies of each point still exactly coincident?"""
     return all(len(np.unique(points[same == number], axis=0)) == 1 for number in np.unique(same))
 
 
@@ -173,7 +173,7 @@ def test_a_cut_below_a_subdivision_surface_stays_closed() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_the_guard_closes_a_seam_that_a_tool_tears_into_a_wall() -> None:
+def test_the_guard_closes_a_seam_that_a_tool_tears() -> None:
     ob = unwelded("Import", 6)
     add_cube("Wall", (0, 0, 2.5))
     same = np.unique(places(ob), axis=0, return_inverse=True)[1].reshape(-1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes moved by handles: what is written is what Blender shows, anchors keep every bit, nothing meets."""
+"""Meshes moved by handles: Blender shows the written state, anchors stay exactly, nothing intersects."""
 
 from typing import Any
 
@@ -69,7 +69,7 @@ def local(ob: Any) -> np.ndarray:
 
 @pytest.mark.parametrize("subdivided", [False, True], ids=["mesh", "cage"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_handles_reach_their_goal_and_the_rest_follows(kind: str, subdivided: bool) -> None:
+def test_handles_reach_their_goal_and_the_other_vertices_follow(kind: str, subdivided: bool) -> None:
     ob = tube(location=(0.3, 0, 0.1), rotation_euler=(0.2, 0, 0.4), scale=(1.2, 1.2, 1.2))
     if subdivided:
         add_modifier(ob, "SUBSURF", levels=1, render_levels=1)
@@ -92,7 +92,7 @@ def test_handles_reach_their_goal_and_the_rest_follows(kind: str, subdivided: bo
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_accepted_is_what_blender_stores(kind: str) -> None:
+def test_the_accepted_state_equals_blenders(kind: str) -> None:
     """Without modifiers the accepted surface and the vertices in Blender are the same numbers."""
     ob = tube(location=(10, -20, 5), rotation_euler=(0.2, 0.5, 0.4), scale=(0.7, 1.1, -1.3))
     select(ob)
@@ -177,7 +177,7 @@ def test_the_active_group_moves_if_it_is_a_handle() -> None:
     assert local(ob) == pytest.approx(before + (0.2, 0, 0), abs=1e-5)
 
 
-def test_the_rest_may_stay() -> None:
+def test_other_vertices_may_be_fixed() -> None:
     ob = tube()
     select(ob)
     before = local(ob)
@@ -189,7 +189,7 @@ def test_the_rest_may_stay() -> None:
     assert (local(ob)[members(ob, "Top"), 0] > before[members(ob, "Top"), 0] + 0.01).all()
 
 
-def test_weights_of_a_group_say_how_hard_a_handle_pulls() -> None:
+def test_weights_scale_the_stiffness_of_a_handle() -> None:
     moves = []
     for weight in (1.0, 0.1):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -204,7 +204,7 @@ def test_weights_of_a_group_say_how_hard_a_handle_pulls() -> None:
     assert 0.01 < moves[1] < 0.8 * moves[0] < 0.4
 
 
-def test_tiny_coordinates_of_anchors_keep_every_bit() -> None:
+def test_tiny_coordinates_of_anchors_stay_exactly() -> None:
     """Written by way of the world they came back changed: 1e-20 is lost beside a location of 1000."""
     ob = tube(location=(1000, 0.3, -77), rotation_euler=(0.3, 0.1, 0.2))
     for number in members(ob, "Foot"):
@@ -223,7 +223,7 @@ def test_tiny_coordinates_of_anchors_keep_every_bit() -> None:
         edit.restore()
 
 
-def test_soft_objects_that_are_not_selected_give_way() -> None:
+def test_unselected_objects_with_handles_yield() -> None:
     ob = tube()
     pusher = add_cube("Pusher", (2.0, 0, 2.5), 0.6)
     select(pusher)
@@ -254,7 +254,7 @@ def test_soft_objects_that_are_not_selected_give_way() -> None:
         ({"anchor": "Top"}, 'no vertex of "Top" can be a handle'),
     ],
 )
-def test_handles_that_cannot_be_are_refused(handles: dict, message: str) -> None:
+def test_invalid_handles_are_refused(handles: dict, message: str) -> None:
     ob = tube()
     select(ob)
     before = snapshot()

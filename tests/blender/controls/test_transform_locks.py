@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Locked transforms: kept to the bit, or refused by name."""
+"""Locked transforms: preserved exactly, or refused by name."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def begin(kind: str = "move", **settings: Any) -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, EditSettings(**settings), kind)
 
 
-def test_what_is_locked_stays_and_the_others_move() -> None:
+def test_locked_objects_stay_and_the_others_move() -> None:
     locked, other = add_cube("Locked", lock_location=ALL), add_cube("Other", (3, 0, 0))
     select(locked, other)
     edit = begin()
@@ -30,7 +30,7 @@ def test_what_is_locked_stays_and_the_others_move() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_locked_rotations_are_kept_while_it_gives_way() -> None:
+def test_locked_rotations_are_respected_on_contact() -> None:
     """A bar that would be turned by a block at one of its ends."""
     bar = add_cube("Bar", scale=(0.2, 2, 0.2), rotation_euler=(0, 0, 0.3))
     add_cube("Block", (1.5, 1.5, 0), 0.5)
@@ -68,7 +68,7 @@ def test_a_locked_rotation_is_moved_about_the_pivot_without_turning() -> None:
         ("scale", {"lock_scale": ALL, "lock_location": ALL}, "its transform is locked"),
     ],
 )
-def test_locks_that_cannot_be_kept_are_refused(kind: str, locks: dict, message: str) -> None:
+def test_locks_that_cannot_be_respected_are_refused(kind: str, locks: dict, message: str) -> None:
     select(add_cube("Cube", **locks))
     with pytest.raises(stiv.InputError, match=f'object "Cube": {message}'):
         begin(kind)
@@ -76,7 +76,7 @@ def test_locks_that_cannot_be_kept_are_refused(kind: str, locks: dict, message: 
 
 @pytest.mark.parametrize("below_parent", [False, True])
 @pytest.mark.parametrize("locks", [(True, False, False), (False, True, True), (False, False, True)])
-def test_partly_locked_locations_move_and_give_way_along_the_free_axes(
+def test_partly_locked_locations_move_and_yield_along_the_free_axes(
     locks: tuple[bool, bool, bool], below_parent: bool
 ) -> None:
     """A cube pushed down a slope of another: without locks it would slide aside along every axis."""
@@ -100,7 +100,7 @@ def test_partly_locked_locations_move_and_give_way_along_the_free_axes(
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_a_partly_locked_object_gives_way_by_itself_along_its_free_axes() -> None:
+def test_a_partly_locked_object_yields_along_its_free_axes() -> None:
     pusher = add_cube("Pusher")
     locked = add_cube("Locked", (2.5, 0.7, 0.4), lock_location=(False, True, False), rotation_euler=(0.2, 0.3, 0.4))
     select(pusher)
@@ -121,7 +121,7 @@ def test_scaling_needs_no_rotation_and_deforming_no_transform() -> None:
     assert begin(object_response="deform").apply(shift(1)).status == "reached"
 
 
-def test_a_locked_object_does_not_give_way_by_itself() -> None:
+def test_a_locked_object_does_not_yield() -> None:
     pusher, locked = add_cube("Pusher"), add_cube("Locked", (2.5, 0, 0), lock_location=ALL)
     add_grid("Floor", 1, 9.0, (0, 0, -4), lock_location=ALL)
     select(pusher)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertex groups whose weights apply to some local axes: pinned coordinates keep every bit, the others respond."""
+"""Vertex groups whose weights apply to some local axes: pinned coordinates stay exactly, the others respond."""
 
 from typing import Any
 
@@ -40,13 +40,13 @@ def fresh() -> None:
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-@pytest.mark.parametrize("thing", ["cage", "lattice"])
-def test_what_is_pinned_along_z_responds_along_x_and_y(thing: str, mode: str) -> None:
+@pytest.mark.parametrize("kind", ["cage", "lattice"])
+def test_controls_pinned_along_z_respond_along_x_and_y(kind: str, mode: str) -> None:
     """A turned, scaled sheet is pushed against a block that presses it aside along all its axes."""
     place = {"location": (0.1, 0.2, 0.8), "rotation_euler": (0.3, -0.2, 0.4)}
     sheet = add_grid("Sheet", 6, **place, scale=(1.2, 0.8, 1.5))
     ob = sheet
-    if thing == "lattice":
+    if kind == "lattice":
         ob = add_lattice("Cage", (4, 3, 2), **place, scale=(2.9, 2.2, 0.6))
         add_modifier(sheet, "LATTICE", object=ob)
     else:
@@ -59,7 +59,7 @@ def test_what_is_pinned_along_z_responds_along_x_and_y(thing: str, mode: str) ->
     group(ob, "Weights", {int(number): 1.0 for number in np.flatnonzero(before[:, 0] >= 0.1)})
     if mode == "EDIT":
         edit_mode(ob)
-        getattr(bpy.ops, "lattice" if thing == "lattice" else "mesh").select_all(action="SELECT")
+        getattr(bpy.ops, "lattice" if kind == "lattice" else "mesh").select_all(action="SELECT")
     else:
         select(ob)
     way = axes @ (-1.0, 0.1, 0.2)
@@ -99,7 +99,7 @@ def test_a_weight_along_one_axis_damps_the_response_along_it_alone(angle: float)
 
 
 @pytest.mark.parametrize("kind", ["laplacian", "arap"])
-def test_handles_pinned_along_an_axis_keep_its_coordinate(kind: str) -> None:
+def test_handles_pinned_along_an_axis_keep_that_coordinate(kind: str) -> None:
     sheet = add_grid("Sheet", 6, location=(3, 0.1, 0), rotation_euler=(0.2, 0.1, 0.3), scale=(1.1, 1.1, 1.1))
     handles = {number: 1.0 for number in range(49) if number % 7 == 0}
     group(sheet, "Handle", handles)
@@ -215,7 +215,7 @@ def test_the_live_guard_corrects_along_the_free_axes_alone() -> None:
     assert aside[1][2] < 1e-6
 
 
-def test_a_contraction_holds_what_is_pinned_along_an_axis() -> None:
+def test_a_contraction_keeps_controls_pinned_along_an_axis() -> None:
     cube = add_cube("Cube")
     group(cube, "Pins", {0: 1.0})
     select(cube)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whole edits: what is written is what Blender shows, and restoring leaves no bit changed."""
+"""Whole edits: Blender shows the written state, and restoring is exact."""
 
 import bpy
 import numpy as np
@@ -56,7 +56,7 @@ def test_a_move_into_the_floor_stops_above_it(settings: EditSettings) -> None:
 
 
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM], ids=["rigid", "deform"])
-def test_restore_changes_no_bit(settings: EditSettings) -> None:
+def test_restoring_is_exact(settings: EditSettings) -> None:
     parent = add("Parent", None, (0.1, 0.2, 0.3), rotation_euler=(0.1, 0.2, 0.3), scale=(1.3, 1.3, 1.3))
     cube = cube_above_floor(parent=parent, rotation_euler=(0.3, 0.7, 0.1), scale=(0.7, -0.9, 1.1))
     select(cube)
@@ -87,7 +87,7 @@ def test_a_drag_back_to_the_start_writes_the_start() -> None:
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_lattice_points_press_a_subdivided_mesh_on_the_floor(mode: str) -> None:
+def test_lattice_points_push_a_subdivided_mesh_onto_the_floor(mode: str) -> None:
     add_grid("Floor", 4, 4.0)
     ob = add_cube("Soft", (0, 0, 2), rotation_euler=(0.2, 0.1, 0.5))
     lattice = add_lattice("Cage", (3, 3, 3), (0, 0, 2), rotation_euler=(0.3, 0, 0), scale=(2, 2, 2.5))
@@ -122,7 +122,7 @@ def test_one_lattice_of_two_meshes() -> None:
     assert edit.surface == pytest.approx(shown, abs=1e-5)
 
 
-def test_rigid_and_controls_roles_give_way() -> None:
+def test_rigid_and_controls_roles_yield() -> None:
     add_grid("Wall", 2, 3.0, rotation_euler=(0, np.pi / 2, 0), location=(6, 0, 0))
     pusher, ball, sheet = (
         add_cube("Pusher"),
@@ -141,7 +141,7 @@ def test_rigid_and_controls_roles_give_way() -> None:
     assert evaluated(sheet)[:, 2] == pytest.approx(3)
 
 
-def test_ignored_objects_and_pairs_let_through() -> None:
+def test_ignored_objects_and_pairs_may_intersect() -> None:
     cube = cube_above_floor()
     select(cube)
     for settings in (EditSettings(roles={"Floor": "ignored"}), EditSettings(ignored_pairs=(("Cübe A", "Floor"),))):
@@ -176,7 +176,7 @@ def test_instances_are_obstacles() -> None:
     assert -2 < evaluated(cube)[:, 2].min() < -1.98
 
 
-def test_hidden_objects_are_no_obstacle_but_counted() -> None:
+def test_hidden_objects_are_not_obstacles_but_counted() -> None:
     cube = cube_above_floor()
     bpy.data.objects["Floor"].hide_set(True)
     select(cube)
@@ -193,7 +193,7 @@ def test_matrices_are_checked() -> None:
             edit.drag(bad)
 
 
-def test_with_a_basis_key_alone_the_cage_is_still_seen() -> None:
+def test_a_basis_key_alone_is_supported() -> None:
     cube = cube_above_floor()
     cube.shape_key_add(name="Basis")
     select(cube)
@@ -208,7 +208,7 @@ def test_with_a_basis_key_alone_the_cage_is_still_seen() -> None:
 
 
 @pytest.mark.parametrize("angle", [1.5 * np.pi, 2 * np.pi])
-def test_more_than_half_a_turn_goes_the_way_it_was_given(angle: float) -> None:
+def test_more_than_half_a_turn_follows_the_given_path(angle: float) -> None:
     """A bar that points along x, and a wall in the way at half a turn: the short way back would not meet it."""
     bar = add("Bar", mesh("Bar", np.array(CUBE) * (1, 0.1, 0.1) + (1.5, 0, 0), CUBE_FACES))
     add_cube("Wall", (-1.5, 0, 0), 0.5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Interference off and on again within an edit."""
+"""Collisions off and on again within an edit."""
 
 from typing import Any
 
@@ -35,7 +35,7 @@ def begin(**settings: Any) -> BlenderEdit:
 
 
 @pytest.mark.parametrize("response", ["rigid", "deform"])
-def test_off_goes_through_and_on_again_goes_on_from_the_other_side(response: str) -> None:
+def test_off_passes_through_and_on_continues_from_the_other_side(response: str) -> None:
     cube = cube_before_wall()
     start, before = snapshot(), evaluated(cube)
     edit = begin(object_response=response)
@@ -60,7 +60,7 @@ def test_off_goes_through_and_on_again_goes_on_from_the_other_side(response: str
 
 
 @pytest.mark.parametrize("response", ["rigid", "deform"])
-def test_on_again_within_the_wall_goes_back_to_where_it_was_turned_off(response: str) -> None:
+def test_on_inside_the_wall_returns_to_the_last_accepted_state(response: str) -> None:
     cube = cube_before_wall()
     edit = begin(object_response=response)
     edit.drag(shift(0.5))
@@ -80,7 +80,7 @@ def test_on_again_within_the_wall_goes_back_to_where_it_was_turned_off(response:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_off_from_the_start_may_leave_a_start_that_intersects() -> None:
+def test_off_from_the_start_accepts_a_start_that_intersects() -> None:
     cube = cube_before_wall()
     cube.location.x = 1.5
     select(cube)
@@ -105,7 +105,7 @@ def test_off_from_the_start_may_leave_a_start_that_intersects() -> None:
 
 
 def test_a_start_that_intersects_elsewhere_than_at_a_bent_quad_is_refused() -> None:
-    """Looking for bent quads whose both cuts are free went on for ever."""
+    """The search for bent quads once never ended."""
     cube = cube_before_wall()
     cube.location.x = 1.5
     cube.data.vertices[0].co.z += 1.5
@@ -116,7 +116,7 @@ def test_a_start_that_intersects_elsewhere_than_at_a_bent_quad_is_refused() -> N
         begin(object_response="deform")
 
 
-def test_what_was_turned_off_restores_every_bit() -> None:
+def test_restoring_with_collisions_off_is_exact() -> None:
     ball, lattice = add_cube("Ball"), add_lattice("Cage", (3, 3, 3), scale=(3.1, 3, 3), rotation_euler=(0.1, 0.2, 0))
     add_modifier(ball, "LATTICE", object=lattice)
     add_grid("Floor", 2, 3.0, (0, 0, -2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Far obstacles are left out of a drag, and taken in before anything can meet them."""
+"""Distant obstacles are left out of a drag, and loaded before anything can touch them."""
 
 from collections.abc import Callable
 from typing import Any
@@ -61,14 +61,14 @@ def left_out(settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008
     return set() if found is None else set(found.left_out)
 
 
-def test_what_is_far_is_left_out(row: Any) -> None:
+def test_distant_obstacles_are_left_out(row: Any) -> None:
     assert left_out() == {"Wall"}
     edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     assert {mesh.owner.name for mesh in edit.assembly.meshes} == {"Box", "Neighbour"}
     assert edit.drag(along_x(0.5)).status == "reached" and not edit.has_all_obstacles
 
 
-def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
+def test_the_box_allows_for_the_separation(row: Any) -> None:
     """The wall begins 9.5 away from the box."""
     roles = {"Neighbour": "ignored"}
     assert left_out(EditSettings(separation=1.0)) >= {"Wall"}
@@ -86,7 +86,7 @@ def test_the_separation_is_kept_from_what_is_left_out_too(row: Any) -> None:
 
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM])
 @pytest.mark.parametrize("steps", [1, 7, 60])
-def test_a_drag_toward_it_ends_as_if_it_had_been_there(row: Any, steps: int, settings: EditSettings) -> None:
+def test_a_drag_toward_a_culled_obstacle_ends_as_without_culling(row: Any, steps: int, settings: EditSettings) -> None:
     found = []
     for begin in (lambda: begin_culled_edit(bpy.context, settings, "move"), whole(settings)):
         edit = begin()
@@ -106,7 +106,7 @@ def test_a_drag_toward_it_ends_as_if_it_had_been_there(row: Any, steps: int, set
     assert_allclose(found[0], found[1], atol=0.02)
 
 
-def test_only_what_comes_near_is_taken_in(row: Any) -> None:
+def test_only_approached_obstacles_are_loaded(row: Any) -> None:
     box("Ground", 0, y=60, size=20)
     select(row)
     assert left_out() == {"Wall", "Ground"}
@@ -128,7 +128,7 @@ def names(edit: Any) -> list[str]:
     return [mesh.owner.name for mesh in edit.assembly.meshes]
 
 
-def test_everything_is_put_back_however_far_it_went(row: Any) -> None:
+def test_everything_is_restored_after_long_drags(row: Any) -> None:
     before = [np.array(ob.matrix_world) for ob in bpy.data.objects]
     for distance in (0.5, 3.0, 14.0):
         edit = begin_culled_edit(bpy.context, EditSettings(), "move")
@@ -139,7 +139,7 @@ def test_everything_is_put_back_however_far_it_went(row: Any) -> None:
         assert_array_equal([np.array(ob.matrix_world) for ob in bpy.data.objects], before)
 
 
-def test_beginnings_are_the_same_with_and_without_what_is_left_out(row: Any) -> None:
+def test_starts_are_the_same_with_and_without_culling(row: Any) -> None:
     near, all_of_it = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert near.start_digest == all_of_it.start_digest
     row.location.x = 0.25
@@ -147,7 +147,7 @@ def test_beginnings_are_the_same_with_and_without_what_is_left_out(row: Any) -> 
     assert whole(EditSettings())().start_digest != near.start_digest
 
 
-def test_interference_off_and_on_again_beyond_the_reach(row: Any) -> None:
+def test_collisions_off_and_on_again_outside_the_box(row: Any) -> None:
     edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     edit.write()
@@ -162,7 +162,7 @@ def test_interference_off_and_on_again_beyond_the_reach(row: Any) -> None:
 
 
 @pytest.mark.parametrize("tie", ["parent", "child", "modifier", "constraint", "settings"])
-def test_what_is_tied_to_anything_is_taken_in(row: Any, tie: str) -> None:
+def test_dependent_obstacles_are_never_culled(row: Any, tie: str) -> None:
     wall, settings = bpy.data.objects["Wall"], EditSettings()
     if tie == "parent":
         wall.parent = bpy.data.objects["Neighbour"]
@@ -178,14 +178,14 @@ def test_what_is_tied_to_anything_is_taken_in(row: Any, tie: str) -> None:
     assert "Wall" not in left_out(settings)
 
 
-def test_small_scenes_are_taken_in_whole(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_small_scenes_are_not_culled(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(culling, "MIN_FACES", 1000)
     assert isinstance(begin_culled_edit(bpy.context, EditSettings(), "move"), BlenderEdit)
 
 
 @pytest.fixture
 def ground(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A ball above one end of a long wavy ground, of which a part is taken in at first."""
+    """A ball above one end of a long wavy ground, of which only a part is loaded at first."""
     monkeypatch.setattr(culling, "MIN_CROPPED_FACES", 100)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=80, y_subdivisions=20, size=2)
     below = bpy.context.object
@@ -202,7 +202,7 @@ def moved(edit: Any, name: str) -> np.ndarray:
     return edit.surface[edit.assembly.vertices(names(edit).index(name))]
 
 
-def test_a_large_obstacle_is_taken_in_where_it_is_near(ground: Any) -> None:
+def test_a_large_obstacle_is_cropped(ground: Any) -> None:
     edit, entire = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert not edit.has_all_obstacles and edit.start_digest == entire.start_digest
     part, all_of_it = (each.assembly.meshes[names(each).index("Ground")] for each in (edit, entire))
@@ -216,7 +216,7 @@ def test_a_large_obstacle_is_taken_in_where_it_is_near(ground: Any) -> None:
 
 
 @pytest.mark.parametrize("steps", [1, 8, 50])
-def test_a_drag_along_a_large_obstacle_meets_every_part_of_it(ground: Any, steps: int) -> None:
+def test_a_drag_along_a_large_obstacle_touches_all_of_it(ground: Any, steps: int) -> None:
     edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     matrix = np.eye(4)
     for step in range(1, steps + 1):

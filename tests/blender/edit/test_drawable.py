@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an overlay draws lies where things are."""
+"""Data for the overlay is at the right positions."""
 
 import bpy
 import numpy as np
@@ -24,14 +24,14 @@ def test_contacts_lie_between_box_and_wall_and_block_the_way(direction: int) -> 
     assert found.blocked @ [direction, 0, 0] == pytest.approx(1.0, abs=1e-3)
 
 
-def test_without_contacts_there_is_nothing() -> None:
+def test_without_contacts_nothing_is_drawn() -> None:
     select(add_cube("Box"))
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     found = contacts_of(edit, edit.drag(shift(1)))
     assert found.points.shape == found.blocked.shape == (0, 3)
 
 
-def test_of_many_contacts_some_are_chosen() -> None:
+def test_many_contacts_are_sampled() -> None:
     count = 3 * MAX_CONTACTS
     events = Events(
         np.zeros(count, np.uint8), np.tile(np.arange(4, dtype=np.int32), (count, 1)), np.zeros(count),
@@ -45,7 +45,7 @@ def test_of_many_contacts_some_are_chosen() -> None:
     assert found.blocked == pytest.approx(np.tile([0.0, 0, -1], (len(found.points), 1)))
 
 
-def test_intersecting_triangles_are_those_of_the_faces_that_meet() -> None:
+def test_intersecting_triangles_are_those_of_the_faces() -> None:
     add_grid("Floor", 4)  # 16 faces of edge 0.5
     add_cube("Peg", (0.25, 0.25, 0), 0.1)
     triangles = triangles_of(bpy.context, check_scene(bpy.context).pairs)

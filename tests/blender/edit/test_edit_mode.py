@@ -62,7 +62,7 @@ def test_edit_mode_moves_the_selected_vertices_alone() -> None:
 
 
 @pytest.mark.parametrize("responders", ["unselected", "all"])
-def test_unselected_vertices_can_give_way(responders: str) -> None:
+def test_unselected_vertices_can_yield(responders: str) -> None:
     sheet = add_grid("Sheet", 6)
     add_cube("Block", (0, 0, 0.6), 0.5)
     edit_mode(sheet)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ends an edit from outside, or is put back since Blender shows something else than the core."""
+"""Edits that end from outside, or are restored because Blender shows another state."""
 
 import bpy
 import pytest
@@ -54,7 +54,7 @@ def test_leaving_the_mode_ends_the_edit() -> None:
         edit.write()
 
 
-def test_what_blender_shows_otherwise_is_put_back() -> None:
+def test_a_different_evaluation_is_restored() -> None:
     """A constraint added during the edit holds the object: the last state that passed comes back."""
     cube = cube_above_floor()
     select(cube)
@@ -72,7 +72,7 @@ def test_what_blender_shows_otherwise_is_put_back() -> None:
     assert edit.write().passed
 
 
-def test_what_blender_shows_meeting_is_put_back() -> None:
+def test_an_intersecting_evaluation_is_restored() -> None:
     """An obstacle driven into the way during the edit is found on Blender's own evaluation."""
     cube = cube_above_floor()
     select(cube)

@@ -36,7 +36,7 @@ def test_the_end_is_the_matrix_itself() -> None:
 
 
 @pytest.mark.parametrize("angle", [2.5, 2 * np.pi])
-def test_no_increment_is_longer_than_asked(angle: float) -> None:
+def test_no_increment_exceeds_the_limit(angle: float) -> None:
     points = np.random.default_rng(1).normal(size=(20, 3))
 
     def arc(fraction: float) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances that pairs of objects keep, measured on what Blender shows."""
+"""Minimum distances of pairs of objects, measured in Blender."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ def begin(**settings: Any) -> BlenderEdit:
 
 
 @pytest.mark.parametrize("response", ["rigid", "deform"])
-def test_each_pair_keeps_its_own_distance(response: str) -> None:
+def test_each_pair_respects_its_own_distance(response: str) -> None:
     add_grid("Floor", 3, 4.0, (0, 0, -2))
     add_grid("Wall", 3, 4.0, (2, 0, 0), rotation_euler=(0, np.pi / 2, 0))
     cube = add_cube("Cube")
@@ -34,7 +34,7 @@ def test_each_pair_keeps_its_own_distance(response: str) -> None:
     assert 0.05 * (1 - 1e-6) <= 2 - shown[:, 0].max() < 0.15
 
 
-def test_a_sheet_keeps_a_distance_from_itself() -> None:
+def test_a_sheet_respects_a_distance_from_itself() -> None:
     sheet = add_grid("Sheet", 8)
     select(sheet)
     edit_mode(sheet)
@@ -54,7 +54,7 @@ def test_a_sheet_keeps_a_distance_from_itself() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_a_cage_keeps_it_by_what_shows_it() -> None:
+def test_a_cage_respects_distances_by_its_refined_object() -> None:
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, radius=1.0)
     cage = bpy.context.active_object
     cage.name = "Cage"

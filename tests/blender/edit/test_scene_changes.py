@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Undo, redo, another frame and another file in the middle of an edit: it goes on, or ends with the scene as it was."""
+"""Undo, redo, another frame and another file during an edit: it continues, or ends with the scene unchanged."""
 
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ def cube() -> Any:
     return bpy.data.objects["Cübe A"]
 
 
-def test_undo_and_redo_during_an_edit_make_new_objects_and_it_goes_on() -> None:
+def test_an_edit_continues_after_undo_and_redo() -> None:
     cube_above_floor()
     bpy.ops.ed.undo_push(message="begin")
     add_cube("Other", (9, 9, 9))
@@ -51,7 +51,7 @@ def test_undo_and_redo_during_an_edit_make_new_objects_and_it_goes_on() -> None:
     assert snapshot() == before
 
 
-def test_an_obstacle_that_another_frame_brings_into_the_way_is_found() -> None:
+def test_an_obstacle_moved_by_another_frame_is_found() -> None:
     moving = cube_above_floor()
     floor = bpy.data.objects["Floor"]
     for frame, height in ((1, 0.0), (10, 1.5)):
@@ -73,7 +73,7 @@ def test_an_obstacle_that_another_frame_brings_into_the_way_is_found() -> None:
 
 
 @pytest.mark.parametrize("call", ["write", "restore"])
-def test_another_file_ends_the_edit_and_stays_as_it_is(tmp_path: Path, call: str) -> None:
+def test_another_file_ends_the_edit_and_is_unchanged(tmp_path: Path, call: str) -> None:
     cube_above_floor()
     path = str(tmp_path / "fremde Datei.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)

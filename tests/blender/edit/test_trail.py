@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trails of accepted states, and looking back along them."""
+"""Trails of accepted states, and searches along them."""
 
 from types import SimpleNamespace
 
@@ -22,7 +22,7 @@ def trail_of(*paths: list[int]) -> Trail:
 
 
 @given(st.lists(st.booleans(), max_size=40))
-def test_the_place_found_holds_and_the_one_after_it_fails(holding: list[bool]) -> None:
+def test_the_state_found_passes_and_the_next_one_fails(holding: list[bool]) -> None:
     states = [AcceptedState(controls(k), k, 0) for k in range(len(holding))]
     found = find_latest(states, lambda place: holding[place.call])
     if found is None:
@@ -33,7 +33,7 @@ def test_the_place_found_holds_and_the_one_after_it_fails(holding: list[bool]) -
 
 
 @given(st.integers(1, 500), st.data())
-def test_few_places_are_looked_at(count: int, data: st.DataObject) -> None:
+def test_few_states_are_tested(count: int, data: st.DataObject) -> None:
     end = data.draw(st.integers(1, count))
     states, seen = [AcceptedState(controls(k), k, 0) for k in range(count)], []
     found = find_latest(states, lambda place: seen.append(place.call) or place.call < end)
@@ -41,7 +41,7 @@ def test_few_places_are_looked_at(count: int, data: st.DataObject) -> None:
     assert len(seen) <= 2 * np.log2(count) + 3
 
 
-def test_cutting_a_trail_keeps_what_led_to_the_place() -> None:
+def test_a_truncated_trail_keeps_the_calls_before_the_state() -> None:
     trail = trail_of([1, 2], [3, 4, 5], [], [6])
     place = next(each for each in trail.states() if each.controls[0, 0] == 4)
     assert trail.goal_at(place)[0, 0] == 101
@@ -50,7 +50,7 @@ def test_cutting_a_trail_keeps_what_led_to_the_place() -> None:
     assert [int(each.controls[0, 0]) for each in trail.states()] == [0, 1, 2, 3, 4]
 
 
-def test_cutting_at_the_state_shown_leaves_all_to_do() -> None:
+def test_truncating_at_the_written_state_removes_all_calls() -> None:
     trail = trail_of([1], [2])
     assert len(trail.truncate_at(trail.states()[0])) == 2
     assert trail.calls == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that show no mesh: hair, point clouds and volumes beside what is edited."""
+"""Objects without a mesh: hair, point clouds and volumes beside edited objects."""
 
 import bpy
 import pytest
@@ -17,7 +17,7 @@ DATA = {
 
 @pytest.mark.parametrize("kind", DATA)
 @pytest.mark.parametrize("responders", ["selected", "unselected", "all"])
-def test_edits_go_on_beside_what_has_no_surface(kind: str, responders: str) -> None:
+def test_edits_work_beside_objects_without_a_surface(kind: str, responders: str) -> None:
     add_grid("Floor", 2, 3.0)
     cube, other = add_cube("Cube", (0, 0, 1.5)), add("Other", DATA[kind](), (9, 0, 0))
     select(cube)
@@ -28,7 +28,7 @@ def test_edits_go_on_beside_what_has_no_surface(kind: str, responders: str) -> N
 
 
 @pytest.mark.parametrize("kind", DATA)
-def test_what_is_selected_without_a_surface_is_carried_along(kind: str) -> None:
+def test_selected_objects_without_a_surface_move_along(kind: str) -> None:
     add_grid("Floor", 2, 3.0)
     other, cube = add("Other", DATA[kind](), (9, 0, 5)), add_cube("Cube", (0, 0, 1.5))
     select(cube, other)

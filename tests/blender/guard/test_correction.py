@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What any tool did is taken as a goal: what is shown afterwards is free, and near to what the tool did."""
+"""Results of other tools are goals: the correction is free of intersections, and close to the result."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def test_an_object_moved_through_a_wall_stops_there() -> None:
     assert box.location.y == pytest.approx(0.5, abs=0.02)
 
 
-def test_what_meets_nothing_is_left_as_it_is_bit_by_bit() -> None:
+def test_a_free_result_is_left_exactly() -> None:
     add_wall()
     box = add_cube("Box", location=(0.1, 0, 0), rotation_euler=(0.3, 0, 0))
 
@@ -101,7 +101,7 @@ def test_points_of_a_lattice_stop_at_the_wall() -> None:
     assert WALL - 0.1 < evaluated(box)[:, 0].max() < WALL
 
 
-def test_a_parent_and_its_child_are_both_followed() -> None:
+def test_a_parent_and_its_child_are_both_corrected() -> None:
     add_wall()
     parent = add_cube("Parent")
     child = add_cube("Child", (0, 3, 0), 0.5, parent=parent)
@@ -115,7 +115,7 @@ def test_a_parent_and_its_child_are_both_followed() -> None:
     assert evaluated(child)[:, 0].max() == pytest.approx(WALL, abs=0.05)
 
 
-def test_what_has_a_role_gives_way() -> None:
+def test_objects_with_a_role_yield() -> None:
     box, other = add_cube("Box"), add_cube("Other", (3, 0, 0))
     outcome = corrected(lambda: setattr(box, "location", (2, 0, 0)), roles={"Other": "rigid"}, responders="unselected")
     assert outcome.corrected
@@ -135,7 +135,7 @@ def test_a_refusal_leaves_the_tools_result() -> None:
     assert box.location.x == 9.0
 
 
-def test_cameras_are_no_concern() -> None:
+def test_cameras_are_ignored() -> None:
     add_wall()
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     bpy.context.collection.objects.link(camera)
@@ -145,7 +145,7 @@ def test_cameras_are_no_concern() -> None:
 
 
 @pytest.mark.parametrize("what", ["added", "removed", "structure", "both"])
-def test_what_no_motion_can_tell_is_named(what: str) -> None:
+def test_changes_that_no_motion_reproduces_are_named(what: str) -> None:
     box = add_grid("Box", 2)
     accepted = read_state(bpy.context)
     if what == "added":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contraction, expansion and repair of Blender's objects, looked at without the package: its exact test apart."""
+"""Contraction, expansion and repair of Blender's objects, examined without the package, except for its exact test."""
 
 import bmesh
 import bpy
@@ -55,7 +55,7 @@ def relative_rms(before, after) -> float:
     return np.sqrt(((after - before) ** 2).sum(axis=1).mean()) / np.linalg.norm(np.ptp(before, axis=0))
 
 
-def test_a_tangled_mesh_is_repaired_and_its_shape_kept_with_it() -> None:
+def test_a_tangled_mesh_is_repaired_and_its_rest_shape_stored() -> None:
     tube = add_tube(location=(3, -2, 5), scale=(2, 2, -2))
     select(tube)
     before, local = evaluated(tube), [tuple(v.co) for v in tube.data.vertices]
@@ -81,8 +81,8 @@ def test_a_cage_under_subdivision_is_repaired() -> None:
     assert relative_rms(before, evaluated(tube)) < 0.03
 
 
-def test_a_body_leaves_the_shirt_that_it_cuts() -> None:
-    """As in the paper's Figure 1: what does not move is not touched."""
+def test_a_body_leaves_the_shirt_that_it_intersects() -> None:
+    """As in the paper's Figure 1: other objects are not touched."""
     body = add_ball("Body", 1.03)
     angle = np.linspace(0, 2 * np.pi, 25)[:-1]
     rows = [(np.cos(a) * 1.02, np.sin(a) * 1.02, z) for z in np.linspace(-0.4, 0.4, 6) for a in angle]
@@ -129,7 +129,7 @@ def test_only_selected_vertices_move_in_edit_mode() -> None:
 
 
 @pytest.mark.parametrize("what", ["coincident", "too far", "held"])
-def test_what_cannot_be_repaired_stays_bit_by_bit_and_is_listed(what: str) -> None:
+def test_a_failed_repair_changes_nothing_and_lists_the_pairs(what: str) -> None:
     one = add_ball("One", levels=1)
     two = add_ball("Two", 1.0 if what == "coincident" else 0.8, levels=1)
     two.location = (0, 0, 0) if what == "coincident" else (1.0, 0.1, 0.05)
@@ -170,7 +170,7 @@ def test_a_cancelled_repair_changes_nothing() -> None:
     assert snapshot() == before
 
 
-def test_contracting_step_by_step_and_expanding_to_the_shape_kept() -> None:
+def test_contracting_step_by_step_and_expanding_to_the_rest_shape() -> None:
     tube = add_tube()
     select(tube)
     before = evaluated(tube)
@@ -188,7 +188,7 @@ def test_contracting_step_by_step_and_expanding_to_the_shape_kept() -> None:
     assert settled.status in ("corrected", "blocked", "unchanged")
 
 
-def test_expansion_all_the_way_forgets_the_shape_kept() -> None:
+def test_a_complete_expansion_removes_the_rest_shape() -> None:
     ball = add_ball("Ball")
     select(ball)
     before = evaluated(ball)
@@ -201,7 +201,7 @@ def test_expansion_all_the_way_forgets_the_shape_kept() -> None:
     assert read_rest_shape(ball) is None
 
 
-def test_what_has_no_shape_kept_with_it_gives_way_to_an_expansion_that_it_is_selected_for() -> None:
+def test_meshes_without_a_rest_shape_yield_to_an_expansion() -> None:
     ball, other = add_ball("Ball"), add_ball("Other", 1.0, (1.9, 0, 0))
     select(ball)
     contract_scene(bpy.context, ContractionSettings(steps=12, until_free=True))
@@ -223,7 +223,7 @@ def test_what_has_no_shape_kept_with_it_gives_way_to_an_expansion_that_it_is_sel
         expand_scene(bpy.context)
 
 
-def test_expansion_toward_another_object_stops_at_what_is_in_the_way() -> None:
+def test_expansion_toward_another_object_stops_at_obstacles() -> None:
     ball, shape = add_ball("Ball"), add_ball("Shape", 2.0, (9, 0, 0))
     add_cube("Wall", (2.5, 0, 0), 1.0)
     select(ball)
@@ -247,7 +247,7 @@ def test_seams_are_welded_on_request() -> None:
     assert list(bpy.data.meshes.keys()) == ["Seams"]
 
 
-def test_a_weld_that_does_not_lead_to_a_repair_is_taken_back() -> None:
+def test_the_weld_of_a_failed_repair_is_undone() -> None:
     two = [add_ball("One", levels=1), add_ball("Two", levels=1)]
     select(*two)
     before = snapshot()
@@ -278,8 +278,8 @@ def test_errors_name_the_object_and_change_nothing() -> None:
     assert snapshot() == before
 
 
-def test_what_blender_does_not_show_free_is_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Blender's own word is final: here it says no, with the repaired shape written."""
+def test_an_intersecting_repair_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blender's evaluation decides: here it rejects the written repair."""
     tube = add_tube()
     select(tube)
     before, seen = snapshot(), []
@@ -300,7 +300,7 @@ def test_what_blender_does_not_show_free_is_taken_back(monkeypatch: pytest.Monke
     assert snapshot() == contracted
 
 
-def test_an_exception_on_the_way_puts_everything_back(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_restores_everything(monkeypatch: pytest.MonkeyPatch) -> None:
     tube = add_tube()
     select(tube)
     before = snapshot()
@@ -315,7 +315,7 @@ def test_an_exception_on_the_way_puts_everything_back(monkeypatch: pytest.Monkey
         assert snapshot() == before
 
 
-def test_meshes_that_others_use_or_keys_hide_are_refused_by_name() -> None:
+def test_shared_meshes_and_shape_keys_are_refused_by_name() -> None:
     tube = add_tube()
     other = add("Other", tube.data, (9, 0, 0))
     select(tube)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Part of a mesh against a plain loop over all of its faces, edges and vertices."""
+"""Cropped meshes against a plain loop over all faces, edges and vertices."""
 
 from typing import Any
 
@@ -44,7 +44,7 @@ def read(box: Any = None) -> VisibleMesh:
 
 @pytest.mark.parametrize("box", BOXES)
 @pytest.mark.parametrize("seed", range(8))
-def test_all_that_meets_the_box_is_there_and_as_in_the_whole(seed: int, box: Any) -> None:
+def test_all_elements_that_touch_the_box_are_read(seed: int, box: Any) -> None:
     all_kinds(seed)
     low, high = map(np.array, box)
     part, whole = read(box), read()
@@ -70,14 +70,14 @@ def test_all_that_meets_the_box_is_there_and_as_in_the_whole(seed: int, box: Any
     assert {n for n in range(len(world)) if meets([n])} <= set(numbers.tolist())
 
 
-def test_what_is_far_from_the_box_is_not_there() -> None:
+def test_distant_elements_are_not_read() -> None:
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=50, y_subdivisions=50, size=50)
     part = read(((-2.5, -2.5, -1), (2.5, 2.5, 1)))
     assert 25 <= len(set(part.faces.tolist())) <= 49
     assert read(((60, 60, 60), (61, 61, 61))).local.shape == (0, 3)
 
 
-def test_a_flat_frame_leaves_nothing_out() -> None:
+def test_a_singular_frame_is_not_cropped() -> None:
     add("Flat", mesh("Flat", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), (5, 0, 0), scale=(1, 1, 0))
     assert len(read(((-1, -1, -1), (1, 1, 1))).triangles) == 1
 

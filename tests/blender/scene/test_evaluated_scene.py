@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is read against what a plain loop over Blender's evaluated objects sees."""
+"""Reading of scenes against a plain loop over Blender's evaluated objects."""
 
 import bpy
 import numpy as np
@@ -63,7 +63,7 @@ def test_curves_text_surfaces_and_metaballs_come_as_meshes() -> None:
     assert all(len(mesh.triangles) and not mesh.is_instance for mesh in read.values())
 
 
-def test_collection_instances_stand_where_they_are_shown() -> None:
+def test_collection_instances_are_placed_as_shown() -> None:
     collection = bpy.data.collections.new("Inner")
     inner = bpy.data.objects.new("Inner", mesh("Inner", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     inner.location = (0, 0, 1)

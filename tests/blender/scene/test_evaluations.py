@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Object Mode shows while in Edit Mode, and what is rendered, against Blender put into that state by hand."""
+"""Evaluations of Object Mode and the render, read in Edit Mode, against Blender in these states."""
 
 from typing import Any
 
@@ -66,7 +66,7 @@ def test_both_evaluations_are_blenders(edited: str, simplified: bool) -> None:
     check_equal(render, "ABCDFGH")
 
 
-def test_posed_armature_is_seen_from_edit_mode() -> None:
+def test_a_posed_armature_counts_in_edit_mode() -> None:
     arm = add("Arm", bpy.data.armatures.new("Arm"))
     select(arm)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -83,7 +83,7 @@ def test_posed_armature_is_seen_from_edit_mode() -> None:
     np.testing.assert_array_equal(read("viewport")["Cube"].astype(np.float32), wanted.astype(np.float32))
 
 
-def test_instances_of_what_is_rendered_otherwise() -> None:
+def test_instances_of_objects_with_another_render() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (0, 3, 0))
     add_modifier(cube, "SUBSURF", levels=1, render_levels=2)
     collection = bpy.data.collections.new("Shown")
@@ -109,7 +109,7 @@ def test_render_resolution_of_curves() -> None:
     assert len(shown) != len(rendered) == len(evaluated(curve))
 
 
-def test_nothing_is_copied_where_nothing_differs(monkeypatch: Any) -> None:
+def test_nothing_is_copied_if_nothing_differs(monkeypatch: Any) -> None:
     cube = add_cube("Cube")
     add_modifier(cube, "SUBSURF", levels=2, render_levels=2)
     add_grid("Grid", 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes that intersect and are edited all the same: what is excluded gets no more, everything else stays guarded."""
+"""Scenes that intersect and are edited all the same: excluded pairs stay, all others are guarded."""
 
 from dataclasses import replace
 
@@ -36,7 +36,7 @@ def stuck_cube() -> tuple:
     return grid, stuck, add_cube("Free", (0, 0, 3.0), 0.5)
 
 
-def test_what_intersects_is_refused_until_it_is_excluded() -> None:
+def test_intersections_are_refused_until_they_are_excluded() -> None:
     _, _, free = stuck_cube()
     select(free)
     add_cube("Other", (1.5, 0, 3.0), 0.5)
@@ -56,7 +56,7 @@ def test_what_intersects_is_refused_until_it_is_excluded() -> None:
 
 
 @pytest.mark.parametrize("way", [(0, 0, 2.0), (0, 0, -2.0), (1.0, 0.3, 0), (0, 0, 0.1)])
-def test_no_other_pairs_than_those_excluded_ever_meet(way) -> None:
+def test_only_excluded_pairs_ever_intersect(way) -> None:
     grid, _, _ = stuck_cube()
     add_modifier(grid, "SUBSURF", levels=1, render_levels=1)
     edit_mode(grid)
@@ -113,7 +113,7 @@ def read_meshes():
     return read_scene(bpy.context, evaluations=("shown", "viewport")).meshes
 
 
-def test_what_is_loose_cannot_be_excluded() -> None:
+def test_loose_elements_cannot_be_excluded() -> None:
     add_grid("Grid", 3, 1.5)
     add("Wire", mesh("Wire", [(0.2, 0.1, -1), (0.2, 0.1, 1)], [], [(0, 1)]))
     excluded, others = find_exclusions(bpy.context)
@@ -122,6 +122,6 @@ def test_what_is_loose_cannot_be_excluded() -> None:
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"pairs": [[1]], "shapes": {}}', '{"pairs": [], "shapes": []}'])
-def test_what_cannot_be_read_says_what_to_do(text: str) -> None:
+def test_unreadable_exclusions_name_the_way_out(text: str) -> None:
     with pytest.raises(stiv.InputError, match="use Clear Exclusions"):
         Exclusions.from_json(text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Edit Mode, Object Mode and the render show after edits, tested by rational arithmetic outside of the package."""
+"""Edit Mode, Object Mode and the render after edits, tested by rational arithmetic outside the package."""
 
 import random
 from itertools import pairwise
@@ -69,7 +69,7 @@ def move(**values: Any) -> str:
     return ""
 
 
-def test_what_only_object_mode_shows_is_refused_by_name() -> None:
+def test_modifiers_shown_only_in_object_mode_are_refused_by_name() -> None:
     add_wall()
     cube = add_cube("Cube")
     add_modifier(cube, "DISPLACE", strength=1.0, mid_level=0.0)
@@ -80,7 +80,7 @@ def test_what_only_object_mode_shows_is_refused_by_name() -> None:
     assert snapshot() == before and counts() == kept
 
 
-def test_posed_armature_is_refused_in_edit_mode() -> None:
+def test_a_posed_armature_is_refused_in_edit_mode() -> None:
     add_wall()
     arm = add("Arm", bpy.data.armatures.new("Arm"))
     edit_mode(arm)
@@ -123,7 +123,7 @@ def test_guard_of_the_viewport_leaves_the_render_alone() -> None:
     assert check_scene(bpy.context, EditSettings(guard="render")).pairs
 
 
-def test_what_is_only_rendered_is_in_the_way() -> None:
+def test_objects_that_are_only_rendered_are_obstacles() -> None:
     add_wall().hide_viewport = True
     cube = add_cube("Cube")
     select(cube)
@@ -132,7 +132,7 @@ def test_what_is_only_rendered_is_in_the_way() -> None:
     assert cube.location.x < 2.5 and meetings() == [0, 0, 0]
 
 
-def test_what_is_not_rendered_does_not_hinder_the_render() -> None:
+def test_objects_that_are_not_rendered_are_ignored_in_the_render() -> None:
     add_wall().hide_render = True
     cube = add_cube("Cube")
     select(cube)
@@ -203,7 +203,7 @@ def test_random_stacks_modes_and_levels(seed: int) -> None:
     assert meetings() == [0, 0, 0], (seed, error)
 
 
-def test_pairs_of_evaluations_do_not_hinder_each_other() -> None:
+def test_evaluations_of_an_object_do_not_collide() -> None:
     """Meshes of one object in several evaluations lie in each other."""
     cubes = [add_cube(name, (x, 0, 0)) for name, x in (("Cube", 0), ("Wall", 2.2))]
     for cube in cubes:
@@ -237,7 +237,7 @@ def test_the_summary_says_what_is_guarded() -> None:
     assert BlenderEdit.begin(bpy.context, EditSettings(), "move").summary.guard == "viewport"
 
 
-def test_undo_in_edit_mode_finds_nothing_of_the_copies() -> None:
+def test_undo_in_edit_mode_finds_no_copies() -> None:
     add_wall()
     cube = add_cube("Cube")
     add_modifier(cube, "SUBSURF", levels=1, render_levels=2, show_in_editmode=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stacks that are understood equal Blender's evaluation after a random deformation; all others are refused by name."""
+"""Supported modifier stacks equal Blender's evaluation after a random deformation; all others are refused by name."""
 
 from collections.abc import Callable
 from typing import Any
@@ -87,7 +87,7 @@ def test_scene_simplify_caps_the_levels() -> None:
     follows(edit, ob)
 
 
-def test_what_the_viewport_does_not_show_is_left_out() -> None:
+def test_disabled_modifiers_are_left_out() -> None:
     ob = add_cube("Cube")
     add_modifier(ob, "BEVEL", show_viewport=False)
     add_modifier(ob, "SUBSURF", levels=1)
@@ -218,7 +218,7 @@ def test_triangulation_before_subdivision_is_refused() -> None:
     refused('modifier "Tri": precedes a subdivision')
 
 
-def test_deformed_lattice_after_the_one_that_moves_is_refused() -> None:
+def test_a_deformed_lattice_after_the_moving_one_is_refused() -> None:
     ob, first, second = add_cube("Cube"), add_lattice("First", (2, 2, 2)), add_lattice("Second", (2, 2, 2))
     second.data.points[0].co_deform.x -= 0.5
     add_modifier(ob, "LATTICE", object=first)
@@ -236,7 +236,7 @@ def test_lattice_twice_in_a_stack_is_refused() -> None:
 
 
 def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Were a stack followed wrongly, the comparison with what Blender shows would find it."""
+    """The comparison with Blender's evaluation would find an error in the computation."""
     ob = add_cube("Cube")
     add_modifier(ob, "SUBSURF", "Subdivision ü", levels=1)
     from stiv.blender.controls import cage, subdivision

@@ -129,8 +129,8 @@ def test_an_object_stops_at_particle_hair() -> None:
     assert cube.location.x > 4
 
 
-def test_strands_that_move_along_are_no_obstacles_and_named() -> None:
-    """A hairy cube, hair hanging on it, and a lawn: what is selected takes its own along."""
+def test_strands_that_move_along_are_not_obstacles_and_named() -> None:
+    """A hairy cube, hair hanging on it, and a lawn: the selection takes its own along."""
     cube, wire, lawn = add_cube("Cube"), bare_curve(), particle_hair((0, 0, 3))
     wire.parent = lawn.parent = cube
     edit = pushed(cube)
@@ -141,7 +141,7 @@ def test_strands_that_move_along_are_no_obstacles_and_named() -> None:
 
 
 @pytest.mark.parametrize(("make", "name"), [(bare_curve, "Wire"), (hair_curves, "Hair"), (particle_hair, "Lawn")])
-def test_check_reports_what_strands_cut(make: Any, name: str) -> None:
+def test_check_reports_intersections_with_strands(make: Any, name: str) -> None:
     make()
     cube = add_cube("Cube", (2, 0, 0))
     found = check_scene(bpy.context)
@@ -156,7 +156,7 @@ def test_check_reports_what_strands_cut(make: Any, name: str) -> None:
     assert check_scene(bpy.context).pairs == ()  # hair grows out of what it hangs on
 
 
-def test_helper_curves_are_no_obstacles_and_named() -> None:
+def test_helper_curves_are_not_obstacles_and_named() -> None:
     wire, cube = bare_curve(), add_cube("Cube")
     add_modifier(add_cube("Bent", (0, 9, 0)), "CURVE", object=wire)
     pushed(cube)
@@ -176,7 +176,7 @@ def test_too_many_segments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     }  # fmt: skip
 
 
-def test_between_frames_strands_that_stay_are_tested_and_others_named() -> None:
+def test_static_strands_are_tested_between_frames_and_others_named() -> None:
     """A cube jumps over a wire that stays; hair that moves by itself is not followed."""
     bare_curve()
     hair = hair_curves(LINE + np.array([0, 20, 0]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A quad that bends until Blender cuts it along its other diagonal, with a post where that would go through."""
+"""A quad that bends until Blender flips its diagonal, with a post in the place of the flip."""
 
 from typing import Any
 
@@ -44,7 +44,7 @@ def read() -> Assembly:
     return assemble(meshes, ["deformable"] * len(meshes))
 
 
-def test_the_cut_that_blender_changes_is_seen_and_taken_in_once() -> None:
+def test_a_flip_is_found_and_added_once() -> None:
     quad = add_quad(0.1)
     assembly = read()
     assert find_flips(bpy.context, assembly) == ()
@@ -61,7 +61,7 @@ def test_the_cut_that_blender_changes_is_seen_and_taken_in_once() -> None:
 
 
 @pytest.mark.parametrize(("height", "post", "triangles"), [(0.1, False, 2), (0.8, False, 4), (0.8, True, 2)])
-def test_quads_bent_far_keep_both_cuts_where_both_are_free(height: float, post: bool, triangles: int) -> None:
+def test_bent_quads_keep_both_triangulations_if_both_are_free(height: float, post: bool, triangles: int) -> None:
     add_quad(height)
     if post:
         add_post()
@@ -70,7 +70,7 @@ def test_quads_bent_far_keep_both_cuts_where_both_are_free(height: float, post: 
     assert 2 + extra == triangles
 
 
-def test_the_other_cut_of_a_bent_quad_is_the_one_that_blender_changes_to() -> None:
+def test_the_second_triangulation_is_the_one_that_blender_flips_to() -> None:
     quad = add_quad(0.8)
     extended = guard_bent_quads(read())
     raise_wings(quad, 2)
@@ -88,7 +88,7 @@ def begin_with_wings(quad: Any) -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, EditSettings(), "move")
 
 
-def test_an_edit_that_would_change_the_cut_through_a_post_gives_way() -> None:
+def test_an_edit_that_would_flip_into_a_post_is_deflected() -> None:
     quad = add_quad(0)
     add_post()
     edit = begin_with_wings(quad)
@@ -101,7 +101,7 @@ def test_an_edit_that_would_change_the_cut_through_a_post_gives_way() -> None:
     assert evaluated(quad)[WINGS, 2].min() > 0.2
 
 
-def test_a_drag_past_the_post_is_held_where_the_cut_would_change_and_comes_back() -> None:
+def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:
     quad = add_quad(0)
     add_post()
     edit = begin_with_wings(quad)
@@ -117,7 +117,7 @@ def test_a_drag_past_the_post_is_held_where_the_cut_would_change_and_comes_back(
     assert heights[-1] == pytest.approx(0.5, abs=1e-6)
 
 
-def test_nothing_of_the_other_cut_is_left_after_going_back() -> None:
+def test_nothing_of_the_flip_remains_after_returning() -> None:
     quad = add_quad(0)
     add_post()
     select(quad)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv check` of files with several scenes, hidden objects, render levels and what has no surface."""
+"""`stiv check` of files with several scenes, hidden objects, render levels and objects without a surface."""
 
 import json
 import xml.etree.ElementTree as ElementTree
@@ -38,7 +38,7 @@ def second_scene() -> None:
         scene.collection.objects.link(ob)
 
 
-def test_every_scene_is_tested_unless_one_is_named(tmp_path: Path, capsys) -> None:
+def test_all_scenes_are_tested_unless_one_is_named(tmp_path: Path, capsys) -> None:
     add_cube("First")
     second_scene()
     code, file = checked(tmp_path, "--junit", str(tmp_path / "junit.xml"))
@@ -59,7 +59,7 @@ def test_every_scene_is_tested_unless_one_is_named(tmp_path: Path, capsys) -> No
     assert _check(tmp_path / "film ü.blend", ["--scene=Scene"]) == ""
 
 
-def test_hidden_objects_are_counted_and_tested_where_asked_for(tmp_path: Path, capsys) -> None:
+def test_hidden_objects_are_counted_and_tested_on_request(tmp_path: Path, capsys) -> None:
     add_cube("Shown")
     for name, place in (("Eye", (0.5, 0.4, 0.3)), ("Monitor", (0.4, 0.5, 0.3)), ("Excluded", (0.3, 0.4, 0.5))):
         add_cube(name, place, hide_render=True)
@@ -80,7 +80,7 @@ def test_hidden_objects_are_counted_and_tested_where_asked_for(tmp_path: Path, c
     assert file["untested_counts"] == {} and file["intersections"] > 0
 
 
-def test_what_is_rendered_and_not_shown_is_tested(tmp_path: Path) -> None:
+def test_objects_that_are_only_rendered_are_tested(tmp_path: Path) -> None:
     add_cube("Shown")
     add_cube("Rendered", (0.5, 0.4, 0.3)).hide_set(True)
     code, file = checked(tmp_path)
@@ -97,7 +97,7 @@ def smooth_cube_in_a_box() -> None:
 
 
 @pytest.mark.parametrize("frames", [(), ("--frames", "1:2")])
-def test_render_levels_are_tested_and_told_apart(tmp_path: Path, capsys, frames) -> None:
+def test_render_levels_are_tested_and_distinguished(tmp_path: Path, capsys, frames) -> None:
     smooth_cube_in_a_box()
     code, file = checked(tmp_path, *frames)
     assert code == 4 and all(pair["rendered"] for pair in file["pairs"])
@@ -106,7 +106,7 @@ def test_render_levels_are_tested_and_told_apart(tmp_path: Path, capsys, frames)
     assert checked(tmp_path, *frames)[0] == 0
 
 
-def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path, capsys, monkeypatch) -> None:
+def test_large_render_levels_are_noted_and_tested_on_request(tmp_path: Path, capsys, monkeypatch) -> None:
     smooth_cube_in_a_box()
     bpy.data.objects["Wall"].location.x = 1.5
     bpy.data.objects["Cube"].modifiers[0].render_levels = 4
@@ -119,7 +119,7 @@ def test_large_render_levels_are_noted_and_tested_where_asked_for(tmp_path: Path
     assert code == 0 and file["triangles"] > 3000 and file["notes"] == []
 
 
-def test_what_cannot_be_tested_is_named(tmp_path: Path, capsys, monkeypatch) -> None:
+def test_untested_objects_are_named(tmp_path: Path, capsys, monkeypatch) -> None:
     monkeypatch.setattr(strand_reading, "MAX_SEGMENTS", 0)
     add_modifier(add_cube("Cube"), "CURVE", object=add("Guide", bpy.data.curves.new("Guide", "CURVE"), (5, 0, 0)))
     for name, data in (

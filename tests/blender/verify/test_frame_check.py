@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames of a scene, and what meets between them."""
+"""Frames of a scene, and intersections between them."""
 
 import json
 from pathlib import Path
@@ -58,13 +58,13 @@ def test_the_time_of_a_crossing_is_that_of_the_first_contact() -> None:
     assert {each.kind for each in faces} == {"face"} and all(each.number in (5, 6, 9, 10) for each in faces)
 
 
-def test_an_intersection_at_a_frame_is_told_once_and_not_as_a_crossing() -> None:
+def test_an_intersection_at_a_frame_is_reported_once_and_not_as_a_crossing() -> None:
     _, bullet = bullet_and_plate()
     key_location(bullet, at_3=(0.3, 0.2, 0.05))
     assert {(kind, frame) for kind, frame, *_ in kinds(range(2, 4))} == {(INTERSECTION, 3)}
 
 
-def test_a_rigid_object_that_turns_about_itself_does_not_cross_itself() -> None:
+def test_a_rotating_rigid_object_does_not_cross_itself() -> None:
     cube = add_cube("Cube")
     for frame, angle in ((1, 0.0), (2, 3.0)):
         cube.rotation_euler = (0, 0, angle)
@@ -85,7 +85,7 @@ def test_a_deforming_mesh_crosses_another_between_frames() -> None:
     assert {(kind, objects) for kind, _, _, objects in kinds([1, 2])} == {(CROSSING, ("Plate", "Sheet"))}
 
 
-def test_what_changes_its_vertices_is_noted_and_not_followed() -> None:
+def test_meshes_that_change_their_vertices_are_noted() -> None:
     add_grid("Plate", 4, 2.0)
     cube = add_cube("Cube", (0, 0, 5))
     array = add_modifier(cube, "ARRAY", relative_offset_displace=(0, 0, 1.5))

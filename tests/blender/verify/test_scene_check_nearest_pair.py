@@ -20,7 +20,7 @@ def test_the_nearest_pair_is_found_in_world_space() -> None:
     assert sorted(found.points[:, 1]) == pytest.approx([2.0, 2.25])
 
 
-def test_what_is_ignored_is_not_measured() -> None:
+def test_ignored_objects_are_not_measured() -> None:
     add_cube("Box")
     add_cube("Near", (3, 0, 0))
     add_cube("Far", (0, 6, 0))
@@ -29,7 +29,7 @@ def test_what_is_ignored_is_not_measured() -> None:
     assert found.distance == pytest.approx(4.0)
 
 
-def test_the_surface_that_is_shown_counts() -> None:
+def test_the_visible_surface_is_measured() -> None:
     box = add_cube("Box")
     add_modifier(box, "SUBSURF", levels=3)
     add_cube("Other", (4, 0, 0))
