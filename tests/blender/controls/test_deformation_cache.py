@@ -8,7 +8,7 @@ pytest.importorskip("bpy")
 
 from stiv.blender.controls import deformation_cache
 from stiv.blender.controls.deformation_cache import cached_deformation, clear_cache
-from stiv.blender.edit.increments import MOST
+from stiv.blender.edit.increments import MAX_ENTRIES
 
 POINTS = np.arange(6.0).reshape(2, 3)
 
@@ -59,7 +59,7 @@ def test_different_functions_do_not_share_results() -> None:
 
 def test_the_oldest_deformations_are_removed() -> None:
     first = cached_deformation(made, 0)
-    for number in range(1, MOST + 1):
+    for number in range(1, MAX_ENTRIES + 1):
         cached_deformation(made, number)
-    assert len(deformation_cache._cache) == MOST
+    assert len(deformation_cache._cache) == MAX_ENTRIES
     assert cached_deformation(made, 0) is not first

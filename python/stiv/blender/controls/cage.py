@@ -10,10 +10,10 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.control_weights import ControlWeights, axes_of_weights, control_weights
+from stiv.blender.controls.control_weights import ControlWeights, axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
-from stiv.blender.controls.points import PointGoal, point_weights, to_stored
+from stiv.blender.controls.points import PointGoal, to_stored
 from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.scene.evaluations import SHOWN
@@ -42,12 +42,11 @@ def make_cage_set(
     writer = cage_writer(participant.reference, ob, frame, local, settings, found)
     deformation = subdivision_in(ob, scene, writer, evaluations) or stiv.identity(len(local))
     selected = selected_vertices(ob, participant.selected) & found.movable
-    others = settings.response_weight(False) if participant.selected else 1.0
     controls = transform_points(frame, local)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return ControlSet(
         (ob.name,), "cage", surfaces, deformation, controls,
-        point_weights(selected, settings.response_weight(True), others, max_weights), max_weights, frame,
+        response_weights(participant, selected, max_weights, settings), max_weights, frame,
         PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
         writer, weight_axes=axes_of_weights(max_weights, found.directions),
     )  # fmt: skip

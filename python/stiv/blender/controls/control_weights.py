@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from stiv.blender.controls.points import FreeDirections, PinnedDirections
+from stiv.blender.controls.control_set import Participant
+from stiv.blender.controls.points import FreeDirections, PinnedDirections, point_weights
 from stiv.blender.scene.arrays import Flags, Floats, as_matrix
 from stiv.blender.scene.vertex_groups import group_weights
 from stiv.blender.settings import EditSettings
@@ -60,6 +61,12 @@ def control_weights(ob: bpy.types.Object, settings: EditSettings) -> ControlWeig
         return ControlWeights(max_weights, None, axes)
     directions = free_directions_of(as_matrix(ob.matrix_world)[:3, :3], axes)
     return ControlWeights(np.where(directions.free, 1.0, max_weights[:, None]), directions, axes)
+
+
+def response_weights(participant: Participant, moving: Flags, max_weights: Floats, settings: EditSettings) -> Floats:
+    """Response weights of moving and other controls, by who yields; unselected participants always do."""
+    others = settings.response_weight(False) if participant.selected else 1.0
+    return point_weights(moving, settings.response_weight(True), others, max_weights)
 
 
 def free_directions_of(linear: Floats, axes: Flags) -> FreeDirections:

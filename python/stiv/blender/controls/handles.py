@@ -13,9 +13,9 @@ import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import cage_writer, open_cage, selected_vertices, subdivision_in
 from stiv.blender.controls.control_set import ControlSet, Participant, Writer
-from stiv.blender.controls.control_weights import axes_of_weights, control_weights, pinned_directions
+from stiv.blender.controls.control_weights import axes_of_weights, control_weights, pinned_directions, response_weights
 from stiv.blender.controls.joined_seams import SeamWriter, copy_to_seams, join_rows, seam_message
-from stiv.blender.controls.points import PointGoal, point_weights
+from stiv.blender.controls.points import PointGoal
 from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.mesh_reading import read_triangles
@@ -55,9 +55,8 @@ def make_handle_sets(
     writer = cage_writer(participant.reference, ob, frame, local, settings, limits)
     subdivision = subdivision_in(ob, scene, writer, evaluations)
     shown = cage if control_seams is None else copy_to_seams(cage, control_seams)
-    others = settings.response_weight(False) if participant.selected else 1.0
     max_weights, controls = found.max_weights, rest[found.vertices]
-    weights = point_weights(found.moving, settings.response_weight(True), others, max_weights)
+    weights = response_weights(participant, found.moving, max_weights, settings)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return [ControlSet(
         (ob.name,), "soft", surfaces, shown if subdivision is None else stiv.compose(subdivision, shown),

@@ -98,16 +98,8 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
     """The cage's control set with one control for the coincident vertices that a seam of its meshes follows."""
     rule = control_set.rule
     assert isinstance(rule, PointGoal)
-    mesh = bpy.data.objects[control_set.names[0]].data
-    candidates = mesh_seams(read_cage(bpy.data.objects[control_set.names[0]]), read_triangles(mesh)[0])
-    if candidates is None:
-        return control_set
     weights = _weights(control_set.deformation)
-    rows = np.repeat(on_seam, np.diff(weights.indptr))
-    follows = np.zeros(len(control_set.controls), np.bool_)
-    follows[weights.indices[rows]] = True
-    follows = np.bincount(candidates.index, follows)[candidates.index] > 0
-    control_seams = candidates.limited_to(follows)
+    control_seams = _find_control_seams(control_set, weights, on_seam)
     if control_seams is None:
         return control_set
     max_weights = np.full((len(control_seams.first), *control_set.max_weights.shape[1:]), np.inf)
@@ -127,6 +119,17 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
         note=seam_message(control_set.names[0], rule.selected, control_seams),
         weight_axes=None if control_set.weight_axes is None else control_set.weight_axes[control_seams.first],
     )
+
+
+def _find_control_seams(control_set: ControlSet, weights: stiv.Weights, on_seam: Flags) -> Seams | None:
+    """The coincident vertices of a cage that a seam of its meshes follows."""
+    ob = bpy.data.objects[control_set.names[0]]
+    candidates = mesh_seams(read_cage(ob), read_triangles(ob.data)[0])
+    if candidates is None:
+        return None
+    follows = np.zeros(len(control_set.controls), np.bool_)
+    follows[weights.indices[np.repeat(on_seam, np.diff(weights.indptr))]] = True
+    return candidates.limited_to(np.bincount(candidates.index, follows)[candidates.index] > 0)
 
 
 def _merge_rule(rule: PointGoal, selected: Flags, max_weights: Floats, control_seams: Seams) -> PointGoal:

@@ -9,9 +9,9 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.control_weights import axes_of_weights, control_weights
+from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
-from stiv.blender.controls.points import PointGoal, point_weights, to_stored
+from stiv.blender.controls.points import PointGoal, to_stored
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, transform_points
 from stiv.blender.scene.lattice_reading import read_lattice_points
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
@@ -30,8 +30,7 @@ def make_lattice_set(
     found = control_weights(ob, settings)
     max_weights = found.max_weights
     selected = _selected(ob, participant) & found.movable
-    others = settings.response_weight(False) if participant.selected else 1.0
-    weights = point_weights(selected, settings.response_weight(True), others, max_weights)
+    weights = response_weights(participant, selected, max_weights, settings)
     return ControlSet(
         (ob.name,), "lattice", surfaces, deformation, controls, weights, max_weights, frame,
         PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], found.movable, found.pinned),

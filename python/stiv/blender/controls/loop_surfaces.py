@@ -23,9 +23,7 @@ STALE = 1e-5  # of its size; greatest difference between the refined mesh and it
 
 @dataclass(frozen=True)
 class Refinement:
-    """Deformation from the cage to the refined mesh in world space, its triangles, (T, 3), and the cage face of each,
-    (T,).
-    """
+    """Deformation from the cage to the refined mesh, its triangles, (T, 3), and the cage face of each, (T,)."""
 
     deformation: stiv.Deformation
     triangles: Indices

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of objects that move together rigidly: selected objects, their children, and objects tied to them by
-modifiers.
-"""
+"""Groups of objects that move together rigidly: selected objects, their children, and objects tied to them."""
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass

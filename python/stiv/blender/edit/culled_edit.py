@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edits in large scenes: distant obstacles, and distant faces of large ones, are left out until the edit approaches
-them.
-"""
+"""Edits in large scenes, without the obstacles and faces of large obstacles that are still distant."""
 
 from __future__ import annotations
 

@@ -20,9 +20,7 @@ class SolverCall:
 
 @dataclass(frozen=True)
 class AcceptedState:
-    """Accepted controls. `call` is the number of the call, -1 for the state written last; `step` counts within the
-    call.
-    """
+    """Accepted controls, by number of the call (-1 for the state written last) and step within the call."""
 
     controls: Floats
     call: int

@@ -182,9 +182,7 @@ def _outcodes(points: Singles, low: Floats, high: Floats) -> NDArray[np.uint8]:
 
 
 def _triangles_of(mesh: bpy.types.Mesh, faces: Indices, starts: Indices) -> tuple[Indices, Indices]:
-    """Blender's triangles of some faces, (f, 3), and the face of each, (f,): n - 2 for each face, in the order of
-    faces.
-    """
+    """Blender's triangles of some faces, (f, 3), and the face of each, (f,), in the order of faces."""
     mesh.calc_loop_triangles()
     counts = starts[faces + 1] - starts[faces] - 2
     owners = np.repeat(faces, counts)

@@ -46,9 +46,7 @@ class OpenEvaluations:
     def instances(
         self, read_from: str, is_wanted: Callable[[bpy.types.Object], bool], types: Collection[str] = ("MESH",)
     ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Object, bpy.types.Object]]:
-        """Each object of these types that an evaluation shows: the instance, its owner, and the object whose data it
-        is.
-        """
+        """Each object of these types in an evaluation: the instance, its owner, and the object with its data."""
         copies = self.copies.get(read_from)
         for instance in self.depsgraph(read_from).object_instances:
             if instance.object.type not in types or not (instance.show_self or instance.is_instance):

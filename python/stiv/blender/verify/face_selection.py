@@ -51,7 +51,7 @@ def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]
             chosen = np.zeros(len(ob.data.polygons), bool)
             chosen[origins[np.array(sorted(numbers), np.int64)]] = True
             counts[name] = int(chosen.sum())
-            _select(ob, chosen)
+            (_select_in_edit_mode if ob.mode == "EDIT" else _select)(ob.data, chosen)
     if any(bpy.data.objects[name].mode == "EDIT" for name in counts):
         context.tool_settings.mesh_select_mode = (False, False, True)
     return counts
@@ -72,19 +72,19 @@ def _origins(ob: bpy.types.Object, scene: bpy.types.Scene, total: int) -> Indice
     return origins if len(origins) == total and not has_triangles else None
 
 
-def _select(ob: bpy.types.Object, chosen: NDArray[np.bool_]) -> None:
-    if ob.mode == "EDIT":
-        edited = bmesh.from_edit_mesh(ob.data)
-        edited.select_mode = {"FACE"}
-        for elements in (edited.verts, edited.edges, edited.faces):
-            for element in elements:
-                element.select = False
-        for face, is_chosen in zip(edited.faces, chosen, strict=True):
-            if is_chosen:
-                face.select_set(True)
-        bmesh.update_edit_mesh(ob.data, loop_triangles=False, destructive=False)
-        return
-    mesh = ob.data
+def _select_in_edit_mode(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
+    edited = bmesh.from_edit_mesh(mesh)
+    edited.select_mode = {"FACE"}
+    for elements in (edited.verts, edited.edges, edited.faces):
+        for element in elements:
+            element.select = False
+    for face, is_chosen in zip(edited.faces, chosen, strict=True):
+        if is_chosen:
+            face.select_set(True)
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+def _select(mesh: bpy.types.Mesh, chosen: NDArray[np.bool_]) -> None:
     corners, starts = read_faces(mesh)
     of_corners = np.repeat(chosen, np.diff(starts))
     vertices = np.zeros(len(mesh.vertices), bool)

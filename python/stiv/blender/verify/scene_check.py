@@ -117,9 +117,7 @@ def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
 def find_pairs_and_seams(
     assembly: Assembly, threads: int = 0
 ) -> tuple[tuple[FacePair, ...], list[tuple[str, Indices]]]:
-    """The intersecting pairs, and for each mesh its object's name and the pairs of faces, (k, 2), that touch only on
-    seams.
-    """
+    """The intersecting pairs; for each mesh, its object and the pairs of faces, (k, 2), that touch only on seams."""
     intersecting_triangles = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
     contacts = _edge_contacts(assembly, intersecting_triangles)
     pairs = find_face_pairs(assembly, assembly.positions, threads, intersecting_triangles[~contacts])
