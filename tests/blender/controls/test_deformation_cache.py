@@ -7,8 +7,7 @@ import pytest
 pytest.importorskip("bpy")
 
 from stiv.blender.controls import deformation_cache
-from stiv.blender.controls.deformation_cache import cached_deformation, clear_cache
-from stiv.blender.edit.increments import MAX_ENTRIES
+from stiv.blender.controls.deformation_cache import MAX_ENTRIES, cached_deformation, clear_cache
 
 POINTS = np.arange(6.0).reshape(2, 3)
 
