@@ -35,8 +35,8 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
         context.scene.stiv.excluded = excluded.to_json()
         self.report({"INFO"}, _excluded(len(excluded.pairs)))
         if others:
-            text = translate("{}: {} pairs of edges, vertices or hair left. Set its role to No Collision")
-            self.report({"WARNING"}, text.format(others[0].first.object, len(others)))
+            text = translate("{}: {} of edges, vertices or hair left. Set its role to No Collision")
+            self.report({"WARNING"}, text.format(others[0].first.object, counted(len(others), "1 pair", "{} pairs")))
         return {"FINISHED"}
 
 

@@ -259,6 +259,20 @@ def test_excluded_intersections_allow_edits_until_they_are_cleared() -> None:
         bpy.ops.stiv.move(value=(0, 0, 0.01))
 
 
+def test_pairs_that_cannot_be_excluded_are_reported_with_the_way_out(capfd: pytest.CaptureFixture[str]) -> None:
+    add("Grid", *GRID, select=False)
+    wire = add("Wire", [(0.6, 0.55, -1), (0.6, 0.55, 1)], [])
+    wire.data.clear_geometry()
+    wire.data.from_pydata([(0.6, 0.55, -1), (0.6, 0.55, 1)], [(0, 1)], [])
+    wire.data.update()
+    bpy.context.view_layer.update()
+    assert len(check_scene(bpy.context).pairs) == 1
+    assert bpy.ops.stiv.exclude_intersections() == {"FINISHED"}
+    reported = capfd.readouterr().out
+    assert "Excluded" not in reported and "0 excluded face pairs" in reported
+    assert "1 pair of edges, vertices or hair left. Set its role to No Collision" in reported
+
+
 def test_stale_exclusions_are_reported() -> None:
     grid, _ = add("Grid", *GRID, select=False), add("Spike", *SPIKE)
     bpy.ops.stiv.exclude_intersections()
