@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A release of Debian in a folder, with the Blender of its own packages: how a current window is had on any Debian."""
+"""A Debian release in a folder, with Blender from its packages: gives a current window on any Debian."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ ENVIRONMENT = ("PATH=/usr/bin:/bin:/usr/sbin:/sbin", "HOME=/root", "LC_ALL=C.UTF
 
 
 class UnknownPackagesError(Exception):
-    """The release has no package of a name that is asked for."""
+    """The release lacks a requested package."""
 
 
 def obstacle() -> str:
-    """Why no folder can be set up here, empty if it can."""
+    """Why no folder can be set up here; empty if one can."""
     if os.geteuid() != 0:
         return "setting up a Debian folder needs root"
     if shutil.which("debootstrap") is None:
@@ -30,7 +30,7 @@ def obstacle() -> str:
 
 
 def prepare(folder: Path, release: str) -> None:
-    """Fill the folder once; later calls only look whether the list of packages is still the same.
+    """Fill the folder once; later calls only compare the list of packages.
 
     Raises SubprocessError where the archive cannot be reached, UnknownPackagesError where it can and lacks a package.
     """
@@ -59,7 +59,7 @@ def prepare(folder: Path, release: str) -> None:
 
 
 def check_known(folder: Path, names: Sequence[str]) -> None:
-    """Nothing is fetched for this. Raises UnknownPackagesError with what apt says."""
+    """Check the names without fetching. Raises UnknownPackagesError with apt's message."""
     command = in_folder(folder, ["apt-get", "-qq", "--simulate", "install", "--no-install-recommends", *names])
     done = subprocess.run(command, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode:
@@ -67,7 +67,7 @@ def check_known(folder: Path, names: Sequence[str]) -> None:
 
 
 def bootstrap(release: str, folder: Path) -> None:
-    """The least of a release."""
+    """Install the smallest set of packages."""
     command = ["debootstrap", "--variant=minbase", release, folder]
     done = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode:
@@ -77,7 +77,7 @@ def bootstrap(release: str, folder: Path) -> None:
 
 @contextmanager
 def system_mounts(folder: Path) -> Iterator[None]:
-    """The process table inside the folder while needed; what was mounted before stays."""
+    """Mount the process table inside the folder while needed; earlier mounts stay."""
     target = folder / "proc"
     needed = not os.path.ismount(target)
     if needed:

@@ -31,7 +31,7 @@ def cage_in_edit_mode(window: Window) -> Steps:
 
 
 def lattice_in_edit_mode(window: Window) -> Steps:
-    """Points of a lattice pushed into the wall take the ball with them, up to the wall."""
+    """Points of a lattice pushed into the wall move the ball with them, up to the wall."""
     yield from prepared(window, scenes.add_ball_in_lattice, "Lattice", "EDIT")
     before = scenes.evaluated_extent("Ball")
     yield from start(window)
@@ -51,7 +51,7 @@ def lattice_in_edit_mode(window: Window) -> Steps:
 
 
 def lattice_in_object_mode(window: Window) -> Steps:
-    """The lattice object moved as a whole, responding by its points."""
+    """The lattice object moved as a whole, responding with its points."""
     yield from prepared(window, scenes.add_ball_in_lattice, "Lattice")
     bpy.context.scene.stiv.object_response = "deform"
     yield from start(window)

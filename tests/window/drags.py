@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags in Object Mode: up to the wall and back, cancelled, by typed values, along axes; keys that are taken."""
+"""Drags in Object Mode: up to the wall and back, cancelled, by typed values, along axes; default keys."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from simulation import Steps, Window
 
 
 def rigid_drag(window: Window) -> Steps:
-    """A box against a wall: stops there, one undo step, redo gives the same bits."""
+    """A box against a wall: stops there, one undo step, redo reproduces the bits."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel(INTO_WALL))
@@ -29,7 +29,7 @@ def rigid_drag(window: Window) -> Steps:
 
 
 def rigid_return(window: Window) -> Steps:
-    """The mouse comes back, and so does the box."""
+    """The mouse returns, and so does the box."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel(INTO_WALL))
@@ -76,7 +76,7 @@ def typed_value(window: Window) -> Steps:
 
 
 def typed_into_wall(window: Window) -> Steps:
-    """A typed value that goes through the wall ends in front of it."""
+    """A typed value through the wall ends in front of it."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.type("5")
@@ -87,7 +87,7 @@ def typed_into_wall(window: Window) -> Steps:
 
 
 def axis_lock(window: Window) -> Steps:
-    """X keeps the box on the axis, Shift+X keeps it off, three times lets go."""
+    """X locks the box to the axis, Shift+X to the plane, and a third press unlocks it."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     window.key("X")

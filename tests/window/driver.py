@@ -104,7 +104,7 @@ class Driver:
 
 
 def leave(code: int) -> None:
-    """End at once: a window that is closed normally asks whether to save."""
+    """End at once: a window that closes normally asks to save."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(code)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The extension under test: the zip that was installed into this Blender, with the core out of its own wheel."""
+"""The extension under test: the zip installed into this Blender, with the core from its own wheel."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def module(name: str) -> Any:
 
 
 def problem() -> str:
-    """Why what would be driven is not the installed zip, empty if it is."""
+    """Why the extension under test is not the installed zip; empty if it is."""
     if NAME not in bpy.context.preferences.addons:
         return f"{NAME} is not enabled"
     missing = module("native_module").problem()

@@ -77,7 +77,7 @@ def typed_expression(window: Window) -> Steps:
 
 
 def local_axes(window: Window) -> Steps:
-    """The same axis key again takes the object's own axes."""
+    """The same axis key again switches to the object's own axes."""
     yield from prepared(window, scenes.add_box, "Box")
     box().rotation_euler.z = math.radians(30.0)
     yield from window.settle()
@@ -93,7 +93,7 @@ def local_axes(window: Window) -> Steps:
 
 
 def precision(window: Window) -> Steps:
-    """Shift held: a tenth of the way of the mouse."""
+    """Shift held: a tenth of the mouse's motion."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((1.0, 0.0, 0.0)), shift=True)
@@ -147,7 +147,7 @@ def repeat_last(window: Window) -> Steps:
 
 
 def interference_switched(window: Window) -> Steps:
-    """I lets the box go through the wall, and I again takes it back to where it was free."""
+    """I lets the box pass through the wall; I again restores its last clear position."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((1.0, 0.0, 0.0)))

@@ -13,7 +13,7 @@ BEYOND_WALL = (3.8, 0.0, 0.0)
 
 
 def guarded(window: Window, build: object, active: str, mode: str = "OBJECT") -> Steps:
-    """A scene as others have it, watched over."""
+    """A scene of `scenes` with the guard turned on."""
     bpy.context.scene.stiv.live_guard = False
     yield from prepared(window, build, active, mode)
     bpy.context.scene.stiv.live_guard = True
@@ -23,7 +23,7 @@ def guarded(window: Window, build: object, active: str, mode: str = "OBJECT") ->
 
 
 def at_rest(window: Window) -> Steps:
-    """Wait until the guard has looked at everything."""
+    """Wait until the guard is at rest."""
     watcher = extension.module("guard.watcher")
     yield from window.settle()
     yield from window.until(lambda: not bpy.app.timers.is_registered(watcher.observe_and_act), "the guard at rest")
@@ -48,7 +48,7 @@ def steps() -> list[str]:
 
 
 def guard_move(window: Window) -> Steps:
-    """Blender's G into the wall: raw while it runs, corrected at its end, undone and redone in one step."""
+    """Blender's G into the wall: uncorrected while it runs, corrected at its end, undone and redone in one step."""
     yield from guarded(window, scenes.add_box, "Box")
     before = steps()
     yield from window.rest_at((0.0, 0.0, 0.0))
@@ -74,7 +74,7 @@ def guard_move(window: Window) -> Steps:
 
 
 def guard_through_wall(window: Window) -> Steps:
-    """Through the wall and beyond: there is no way, so that the box stays in front of it."""
+    """Through the wall and beyond: no path exists, and the box stays in front of it."""
     yield from guarded(window, scenes.add_box, "Box")
     yield from with_tool(window, "G", BEYOND_WALL)
     expect_near(box_x(), FURTHEST, NEAR, "the box in front of the wall")

@@ -14,7 +14,7 @@ RADIUS = 60  # pixels of the brush
 
 
 def sculpting(window: Window) -> None:
-    """Sculpt Mode with the brush that takes a part of the surface along with the mouse."""
+    """Sculpt Mode with the grab brush."""
     with window.override():
         bpy.ops.object.mode_set(mode="SCULPT")
         grab_with_own_brush()
@@ -27,7 +27,7 @@ def sculpting(window: Window) -> None:
 
 
 def grab_with_own_brush() -> None:
-    """Debian's Blender comes without its brushes."""
+    """Debian's Blender has no brushes."""
     brush = bpy.data.brushes.get("Grab") or bpy.data.brushes.new("Grab", mode="SCULPT")
     setattr(brush, "sculpt_tool" if hasattr(brush, "sculpt_tool") else "sculpt_brush_type", "GRAB")
     brush.asset_mark()
@@ -44,7 +44,7 @@ def stroke(window: Window, target: tuple[float, float, float]) -> Steps:
 
 
 def guard_sculpt_stroke(window: Window) -> Steps:
-    """A grab from the ball into the wall: raw during the stroke, out of the wall after it, one undo step."""
+    """A grab from the ball into the wall: uncorrected during the stroke, corrected after it, one undo step."""
     yield from guarded(window, scenes.add_ball, "Ball")
     before = scenes.evaluated_extent("Ball")
     sculpting(window)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard turned on where surfaces intersect already, and turned off."""
+"""The live guard turned on in an intersecting scene, and turned off."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from simulation import Steps, Window
 
 
 def guard_intersecting(window: Window) -> Steps:
-    """Turned on where surfaces intersect already: it says so, writes nothing, and takes over once they are free."""
+    """Turned on in an intersecting scene: it reports it, writes nothing, and starts once the scene is clear."""
     watcher = extension.module("guard.watcher")
     bpy.context.scene.stiv.live_guard = False
     yield from prepared(window, scenes.add_box, "Box")
@@ -32,7 +32,7 @@ def guard_intersecting(window: Window) -> Steps:
 
 
 def open_tab(window: Window) -> Steps:
-    """Show the extension's tab; a sidebar that is not drawn yet takes no category."""
+    """Show the extension's tab, after the sidebar is drawn."""
     window.area.spaces.active.show_region_ui = True
     yield from window.settle()
     next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
@@ -41,7 +41,7 @@ def open_tab(window: Window) -> Steps:
 
 
 def guard_leaves_nothing(window: Window) -> Steps:
-    """Turned off, there is no timer and no message left; another tool is not corrected."""
+    """After it is turned off, no timer and no message stay, and results are not corrected."""
     watcher = extension.module("guard.watcher")
     yield from guarded(window, scenes.add_box, "Box")
     bpy.context.scene.stiv.live_guard = False

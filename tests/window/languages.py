@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Header and status bar of a drag in the languages that there are catalogues for."""
+"""Header and status bar of a drag in the languages of the catalogues."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SAYS = {"de_DE": "Umschalt: Präzision", "ja_JP": "Shift: 精密"}  # for "Shift
 
 
 def in_language(code: str) -> object:
-    """A scenario: a drag in that language; what it says is looked at on its picture."""
+    """A scenario: a drag in that language, with a picture of its texts."""
 
     def scenario(window: Window) -> Steps:
         view = bpy.context.preferences.view

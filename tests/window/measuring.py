@@ -79,7 +79,7 @@ def watch_all(watch: Stopwatch) -> None:
 
 
 def measured(window: Window, key: str, step: tuple[int, int]) -> Steps:
-    """A drag from the middle of the view: medians from the event to the drawn frame, what they are made of, and Esc."""
+    """A drag from the middle of the view: medians from the event to the drawn frame, their parts, and Esc."""
     centre = window.pixel((0.0, 0.0, 0.0)) if key == "M" else window.pixel(tuple(bpy.context.object.dimensions / 2))
     for offset in (0, 1, 0):
         window.move(centre[0] + offset, centre[1])

@@ -65,7 +65,7 @@ def ended(window: Window) -> Steps:
 
 
 def expect_free(window: Window) -> None:
-    """The exact test on what Blender evaluates finds nothing."""
+    """Expect no intersections in Blender's evaluation."""
     with window.override():
         assert bpy.ops.stiv.check() == {"FINISHED"}
     found = bpy.context.window_manager.stiv_check.summary
@@ -73,15 +73,15 @@ def expect_free(window: Window) -> None:
 
 
 def expect_near(value: float, expected: float, tolerance: float, what: str) -> None:
-    """Compare with a message that says what was compared."""
+    """Compare; the message names the quantity."""
     assert abs(value - expected) <= tolerance, f"{what}: {value!r}, expected {expected!r} within {tolerance!r}"
 
 
 def box() -> bpy.types.Object:
-    """The box; looked up at each use, since undo makes new objects."""
+    """The box; looked up at each use, since undo creates new objects."""
     return bpy.data.objects["Box"]
 
 
 def box_x() -> float:
-    """Where the box is; looked up at each use, since undo makes new objects."""
+    """Position of the box; looked up at each use, since undo creates new objects."""
     return bpy.data.objects["Box"].location.x

@@ -11,13 +11,13 @@ from simulation import Steps, Window
 
 
 def strip_y(at_x: float) -> float:
-    """How far the strip is moved along y at x."""
+    """Displacement of the strip along y at x."""
     content = bmesh.from_edit_mesh(bpy.data.objects["Strip"].data)
     return max(vertex.co.y for vertex in content.verts if abs(vertex.co.x - at_x) < 0.05) - 0.2
 
 
 def proportional(window: Window) -> Steps:
-    """O lets neighbours follow, the wheel and the page keys say how far, Shift+O how."""
+    """O moves neighbours too, the wheel and the page keys change the size, Shift+O the falloff."""
     yield from prepared(window, scenes.add_strip, "Strip", "EDIT")
     content = bmesh.from_edit_mesh(bpy.context.object.data)
     for vertex in content.verts:
@@ -54,7 +54,7 @@ def proportional(window: Window) -> Steps:
 
 
 def proportional_lattice(window: Window) -> Steps:
-    """Points of a lattice follow those selected; the ball in it stops at the wall."""
+    """Neighbouring points of a lattice move with the selection; the ball in it stops at the wall."""
     yield from prepared(window, scenes.add_ball_in_lattice, "Lattice", "EDIT")
     bpy.context.scene.tool_settings.use_proportional_edit = True
     yield from start(window)

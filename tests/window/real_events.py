@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags by keyboard and mouse of the display itself, as a user's come; Blender must not simulate events then."""
+"""Drags by keyboard and mouse of the display, like those of a user; Blender must not simulate events."""
 
 from __future__ import annotations
 

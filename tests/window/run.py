@@ -61,7 +61,7 @@ def main() -> int:
 
 
 def set_up(folder: Path, release: str) -> str:
-    """Why the folder could not be filled (no network, no right to mount), empty if it is."""
+    """Why the folder could not be filled (no network, no right to mount); empty if it was."""
     try:
         debian_folder.prepare(folder, release)
     except (subprocess.SubprocessError, OSError) as error:
@@ -100,7 +100,7 @@ def copy_sources(folder: Path) -> None:
 
 
 def install(folder: Path, archive: Path) -> None:
-    """Let Blender validate the zip and install it, for a user that has never had it."""
+    """Let Blender validate the zip and install it for a new user."""
     home = folder / INSIDE.relative_to("/")
     shutil.rmtree(home / "user", ignore_errors=True)
     (home / "user").mkdir(parents=True)
@@ -113,7 +113,7 @@ def install(folder: Path, archive: Path) -> None:
 
 
 def sessions(names: list[str]) -> list[tuple[bool, list[str]]]:
-    """Which runs of Blender there are to be: with simulated events or the display's, and their scenarios."""
+    """The runs of Blender, with simulated events or those of the display, and their scenarios."""
     simulated = [name for name in names if name != REAL]
     both = [(True, simulated)] if simulated or not names else []
     return both + ([(False, [REAL])] if REAL in names or not names else [])
@@ -146,7 +146,7 @@ def keep_pictures(folder: Path, pictures: Path) -> None:
 
 
 def read_failures(folder: Path) -> dict[str, str | None]:
-    """The failure of each scenario, empty where it passed; "driver" for an end that was not reached."""
+    """The failure of each scenario, empty if it passed; "driver" if Blender ended early."""
     path = folder / INSIDE.relative_to("/") / "results/results.json"
     if not path.is_file():
         return {"driver": "no results: the driver did not start"}
@@ -158,7 +158,7 @@ def read_failures(folder: Path) -> dict[str, str | None]:
 
 
 def report(failures: dict[str, str | None]) -> int:
-    """Print a line a scenario; 1 if one failed."""
+    """Print a line for each scenario; 1 if one failed."""
     for name, failure in failures.items():
         print(f"{'FAILED' if failure else 'passed'}  {name}")
         if failure:

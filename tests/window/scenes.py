@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small scenes for the window: something to drag, and a wall whose face is at x = WALL_FACE."""
+"""Small scenes for the window: an object to drag, and a wall whose face is at x = WALL_FACE."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HALF = 0.5  # half size of the dragged object along x
 
 
 def clear() -> None:
-    """Remove every object, in Object Mode, and give the scene its default settings back."""
+    """Remove every object, in Object Mode, and reset the scene's settings."""
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     for obj in list(bpy.data.objects):
@@ -77,7 +77,7 @@ def add_box() -> Any:
 
 
 def add_pair() -> Any:
-    """Two boxes, one above the other in the view, both to be selected."""
+    """Two boxes, one above the other in the view, for a selection of both."""
     upper = add_mesh("Upper", lambda content: bmesh.ops.create_cube(content, size=0.4), (0.0, 1.0, 0.0))
     add_mesh("Lower", lambda content: bmesh.ops.create_cube(content, size=0.4), (0.0, -1.0, 0.0))
     return upper

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random events during drags: nothing may crash, intersect or stay behind, whatever is pressed when."""
+"""Random events during drags: no event may cause a crash, an intersection or leftovers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ENDS = ("RET", "LEFTMOUSE", "ESC", "RIGHTMOUSE")
 
 
 class Sequence:
-    """One of them; the same number gives the same events."""
+    """One sequence; the same number gives the same events."""
 
     def __init__(self, window: Window, number: int):
         """Choose by number."""
@@ -69,7 +69,7 @@ class Sequence:
             assert self.state() == before, self.described("cancelling did not put everything back")
 
     def act(self) -> None:
-        """One event, sometimes one from outside of the drag."""
+        """One event, sometimes from outside the drag."""
         chance = self.random.random()
         if chance < 0.45:
             self.glance()
@@ -87,7 +87,7 @@ class Sequence:
         self.window.move(x, y, shift=self.random.random() < 0.1, ctrl=self.random.random() < 0.1)
 
     def press(self, key: str) -> None:
-        """A key, with Shift at times."""
+        """A key, sometimes with Shift."""
         shift = self.random.random() < 0.2
         self.log.append(f"{'Shift+' if shift else ''}{key}")
         self.window.key(key, shift=shift)
@@ -99,7 +99,7 @@ class Sequence:
         action()
 
     def undo_key(self) -> None:
-        """Ctrl+Z, which a drag does not hear."""
+        """Ctrl+Z, which a drag ignores."""
         self.window.key("Z", ctrl=True)
 
     def save(self) -> None:
@@ -108,7 +108,7 @@ class Sequence:
             bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "copy.blend"), copy=True)
 
     def delete_wall(self) -> None:
-        """The obstacle goes."""
+        """Delete the obstacle."""
         self.disturbed = True
         self.remove("Wall")
 
@@ -124,7 +124,7 @@ class Sequence:
             bpy.data.objects.remove(bpy.data.objects[name])
 
     def leave_mode(self) -> None:
-        """Tab, by a script: the drag would take the key."""
+        """Toggle Edit Mode by a script, since the drag would use the key Tab."""
         self.disturbed = True
         with self.window.override():
             if bpy.context.mode != "OBJECT":
@@ -144,7 +144,7 @@ class Sequence:
         return last
 
     def expect_free(self, when: str) -> None:
-        """The exact test on what Blender evaluates now."""
+        """The exact test of Blender's current evaluation."""
         from stiv.blender import check_scene
 
         found = check_scene(bpy.context)
@@ -164,7 +164,7 @@ class Sequence:
         return found
 
     def described(self, what: str) -> str:
-        """A failure with what led to it."""
+        """A failure with the events before it."""
         return f"{what}, in {self.scene[1]} after: {', '.join(self.log)}"
 
 

@@ -105,7 +105,7 @@ class Window:
         yield from self.until(lambda: self._draws > drawn, "a drawing", limit)
 
     def settle(self, ticks: int = SETTLE) -> Steps:
-        """Let Blender work."""
+        """Wait for some ticks of Blender."""
         for _ in range(ticks):
             yield
 
@@ -117,16 +117,16 @@ class Window:
             yield
 
     def pixel(self, point: tuple[float, float, float]) -> tuple[int, int]:
-        """Where a world position is seen, in pixels of the window."""
+        """The pixel of a world position in the window."""
         seen = location_3d_to_region_2d(self.region, self.area.spaces.active.region_3d, point)
         return self.region.x + round(seen[0]), self.region.y + round(seen[1])
 
     def event(self, kind: str, value: str, **modifiers: Any) -> None:
-        """One event where the mouse is."""
+        """One event at the position of the mouse."""
         self.send(kind, value, self.mouse, **modifiers)
 
     def _simulate(self, kind: str, value: str, mouse: tuple[int, int], **modifiers: Any) -> None:
-        """By Blender's own means, which must have been started for it."""
+        """Simulate it with Blender's own function, which needs a command-line option."""
         self.handle.event_simulate(type=kind, value=value, x=mouse[0], y=mouse[1], **modifiers)
 
     def key(self, kind: str, text: str = "", **modifiers: bool) -> None:
@@ -156,7 +156,7 @@ class Window:
         yield from self.settle()
 
     def rest_at(self, point: tuple[float, float, float]) -> Steps:
-        """Put the mouse over a world position; Blender needs a few different moves to know where it is."""
+        """Move the mouse over a world position; Blender needs several moves to track it."""
         x, y = self.pixel(point)
         for offset in (0, 1, 0):
             self.move(x + offset, y)

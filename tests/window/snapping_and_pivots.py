@@ -12,7 +12,7 @@ from simulation import Steps, Window
 
 
 def snap_to_steps(window: Window) -> Steps:
-    """Ctrl held: whole steps; a turn by steps of five degrees."""
+    """Ctrl held: snapping to increments; a rotation in increments of five degrees."""
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((0.83, 0.27, 0.0)), ctrl=True)
@@ -26,7 +26,7 @@ def snap_to_steps(window: Window) -> Steps:
 
 
 def snap_to_vertex(window: Window) -> Steps:
-    """The nearest corner of the box goes to the block's corner: as near as it may, since both keep their distance."""
+    """The closest corner of the box moves to the block's corner, up to the minimum distance."""
     yield from prepared(window, scenes.add_target, "Box")
     tools = bpy.context.scene.tool_settings
     tools.snap_elements, tools.use_snap = {"VERTEX"}, True
@@ -41,7 +41,7 @@ def snap_to_vertex(window: Window) -> Steps:
 
 
 def snap_to_face(window: Window) -> Steps:
-    """The lower side of the box is to lie on the block's upper face, and stops before it."""
+    """The lower side of the box moves onto the block's upper face, and stops before it."""
     yield from prepared(window, scenes.add_target, "Box")
     tools = bpy.context.scene.tool_settings
     tools.snap_elements, tools.use_snap = {"FACE"}, True
@@ -69,7 +69,7 @@ def pivot_at_cursor(window: Window) -> Steps:
 
 
 def individual_origins(window: Window) -> Steps:
-    """Each object turns about its own origin."""
+    """Each object rotates about its own origin."""
     yield from prepared(window, scenes.add_pair, "Upper")
     bpy.context.scene.tool_settings.transform_pivot_point = "INDIVIDUAL_ORIGINS"
     bpy.data.objects["Lower"].select_set(True)
