@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A stand-in for `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
+"""A replacement of `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass
 class FakeEdit:
-    """`statuses`: what the next solves say; `failing`: name of a call -> exception that it raises.
+    """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
     `furthest`: how far one solve goes.
     """
@@ -27,7 +27,7 @@ class FakeEdit:
     controls = ()
 
     def begun(self, request: Any) -> "FakeEdit":
-        """Stands for the beginning of an edit, the first and each that is requested later ("again")."""
+        """Replaces the beginning of an edit, of the first and of each that is requested later ("again")."""
         for name in ("begin", "again") if self.requests else ():
             if name in self.failing:
                 raise self.failing[name]

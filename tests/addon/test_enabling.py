@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators for scripts without the extension; test_examples runs the guide's script in a process of its own."""
+"""Operators for scripts without the extension; test_examples runs the guide's script in a separate process."""
 
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Props of a library: those that Blender lets be placed in a scene are moved like any other object."""
+"""Linked props: those that Blender can move are edited like any other object."""
 
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ def linked_set(tmp_path: Path) -> Any:
 
 
 def overridden(linked: Any, editable: bool) -> Any:
-    """The prop as a library override, alone selected."""
+    """The prop as a library override, the only selected object."""
     scene, view_layer = bpy.context.scene, bpy.context.view_layer
     props = linked.override_hierarchy_create(scene, view_layer, do_fully_editable=editable)
     if linked.name in scene.collection.children:

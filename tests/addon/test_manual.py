@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""F1 leads to a place in the user guide that is there, for each operator."""
+"""F1 leads to an entry in the user guide for each operator."""
 
 import re
 from pathlib import Path

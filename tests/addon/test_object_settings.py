@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deformations, handles and weights chosen in the panel, carried out by the operators."""
+"""Deformations, handles and weights of the panel in edits by the operators."""
 
 import json
 from pathlib import Path
@@ -122,7 +122,7 @@ def test_the_minimum_distance_is_automatic_until_one_is_chosen() -> None:
 
 
 def test_the_panel_of_deformation_draws_handles_and_weights(bar: Any) -> None:
-    """Drawn into a stand-in: Blender reports a wrong property only in a window."""
+    """Drawn into a replacement of the layout: Blender reports a wrong property only in a window."""
     from stiv_addon.panels.objects import STIV_PT_deformation
 
     drawn: list[str] = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Preferences, pie menu and keys: there, in use, and gone again."""
+"""Preferences, pie menu and keys: registered, used, and removed."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 class Layout:
-    """Stands for Blender's layout: remembers what was put into it."""
+    """Replaces Blender's layout, and records its contents."""
 
     def __init__(self) -> None:
         self.put: list[str] = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on registers without the package `stiv`. Its choices and defaults are those of the package even so."""
+"""The choices and defaults of the add-on, which registers without the package `stiv`, are those of the package."""
 
 import bpy
 import pytest

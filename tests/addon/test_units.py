@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lengths in the header read as Blender's own: in the scene's unit, without rounding noise."""
+"""Lengths in the header look like Blender's: in the scene's unit, without rounding noise."""
 
 import math
 

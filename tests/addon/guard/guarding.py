@@ -15,7 +15,7 @@ FURTHEST = 1.5  # of the box's centre: the wall's face is at 2, the box is 1 wid
 
 
 def watched_scene() -> Iterator[None]:
-    """A box, selected, in front of a wall, watched over; the undo history begins with it."""
+    """A selected box in front of a wall, with the guard on; the undo history begins with it."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 0), scale=(1, 4, 4))
     bpy.context.object.name = "Wall"

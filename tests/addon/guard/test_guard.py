@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard in Blender: what tools, scripts and operators did is corrected where it has to be."""
+"""The live guard in Blender: it corrects results of tools, scripts and operators that intersect."""
 
 from collections.abc import Iterator
 

@@ -43,7 +43,7 @@ def test_without_an_accepted_state_the_scene_is_tested_and_not_written(guard: Gu
 
 
 def test_a_step_at_a_reused_address_is_new_after_history() -> None:
-    """The redo panel takes the tool's step back and makes another, which may get the same address."""
+    """The redo panel undoes the tool's step and adds another, which may get the same address."""
     other = (2, "0x3", "start")
     assert action(WATCHING.after_history(other), replace(MOVED, step=BEFORE)) is Action.REPLACE
     assert action(WATCHING.after_history(None), replace(MOVED, step=BEFORE)) is Action.WAIT

@@ -39,7 +39,7 @@ def rig_box(in_edit_mode: bool = True) -> None:
 
 
 def watched_again(change: Any) -> None:
-    """The scene changed while the guard is off; then it is on, with Box alone selected."""
+    """The scene changed while the guard was off; then it is on, with Box as the only selected object."""
     bpy.context.scene.stiv.live_guard = False
     change()
     bpy.ops.object.select_all(action="DESELECT")
@@ -57,7 +57,7 @@ def positions() -> np.ndarray:
 
 
 def shown_in_status_bar() -> tuple[list[str], list[str], bool]:
-    """Labels and buttons that the guard draws, and whether they are red."""
+    """The guard's labels and buttons, and whether they are red."""
     drawn: tuple[list[str], list[str]] = ([], [])
     row = SimpleNamespace(
         alert=False, label=lambda text, icon: drawn[0].append(text), operator=lambda name: drawn[1].append(name)
@@ -107,7 +107,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored(change: A
 
 
 def test_a_scene_with_a_moved_rig_is_not_clear_without_a_test() -> None:
-    """The object Rig has no surface: what it does to the box was not looked at."""
+    """The object Rig has no surface; its effect on the box was once not tested."""
 
     def scale_by_rig() -> None:
         rig_box(in_edit_mode=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard in Blender: when it watches, what it leaves alone, and that it leaves nothing behind."""
+"""The live guard in Blender: when it watches, what it ignores, and its cleanup."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -66,7 +66,7 @@ def test_a_second_observation_does_nothing() -> None:
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
 def test_its_own_reading_is_not_a_change(mode: str) -> None:
-    """Blender marks a mesh that was read in Edit Mode as changed: the guard looked at it once a second, for ever."""
+    """Blender marks a mesh that was read in Edit Mode as changed; the guard once tested it every second."""
     bpy.ops.object.mode_set(mode=mode)
     for _ in range(2):
         look()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The modal half of the operators, which Blender without a window cannot run: with a context made of plain values."""
+"""The modal part of the operators with a context of plain values, since Blender needs a window to run it."""
 
 import sys
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from stiv_addon.transform.frame import Frame  # noqa: E402
 
 
 class Area:
-    """A 3D view: its header, and how often it was to be drawn."""
+    """A 3D view: its header, and the number of redraws."""
 
     type = "VIEW_3D"
 

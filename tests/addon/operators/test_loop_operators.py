@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loop subdivision by the operators, kept up with its cage by whatever changes that."""
+"""Loop subdivision by the operators, and its updates after changes of the cage."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ def shown(name: str = "Cage.loop") -> np.ndarray:
 
 
 def expected(cage: Any, levels: int = 2) -> np.ndarray:
-    """Of the cage in Object Mode, by the package without Blender."""
+    """The refined positions of the cage in Object Mode, by the package without Blender."""
     triangles = [list(polygon.vertices) for polygon in cage.data.polygons]
     edges = [tuple(edge.vertices) for edge in cage.data.edges]
     positions = np.array([tuple(vertex.co) for vertex in cage.data.vertices])

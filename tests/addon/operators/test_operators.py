@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators in Blender: registration, and values through `execute` against a stand-in of the edit."""
+"""The operators in Blender: registration, and values through `execute` with a replacement of the edit."""
 
 import json
 import sys
@@ -76,7 +76,7 @@ class RecordingEdit:
 
 @pytest.fixture(autouse=True)
 def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """A cube, selected and active, and the stand-in."""
+    """A selected and active cube, and the replacements."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of objects with a separation of their own, kept in the file and by the operators."""
+"""Pairs of objects with their own minimum distance, stored in the file and respected by the operators."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture(autouse=True)
 def scene() -> None:
-    """A box, selected, above a floor; another box far off."""
+    """A selected box above a floor, and another box far away."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     for name, z in (("Floor", -2.0), ("Far", 9.0), ("Box", 0.0)):
         bpy.ops.mesh.primitive_cube_add(size=2.0, location=(0, 0, z - (name == "Floor")))

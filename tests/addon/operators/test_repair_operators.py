@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check, repair, contract, expand and settle as a script calls them, with the core behind them."""
+"""Check, repair, contract, expand and settle as a script calls them, with the core."""
 
 import json
 from types import SimpleNamespace
@@ -149,7 +149,7 @@ def test_a_worker_solves_in_a_thread_and_returns_errors() -> None:
 
 
 class InWindow(ReshapeOperator):
-    """The repair operator as a window runs it, with a stand-in for the window."""
+    """The repair operator as a window runs it, with a replacement of the window."""
 
     bl_label = "Repair"
     max_deviation = 0.05
@@ -164,7 +164,7 @@ class InWindow(ReshapeOperator):
 
 
 class Manager:
-    """Of windows; counts timers that are running."""
+    """A window manager that counts running timers."""
 
     def __init__(self) -> None:
         self.timers, self.windows, self.stiv_last_edit = 0, (), ""
@@ -182,7 +182,7 @@ class Manager:
 
 
 class Context:
-    """Blender's own, but for the window manager."""
+    """Blender's own context with another window manager."""
 
     def __init__(self) -> None:
         self.window_manager, self.window = Manager(), None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whole edits by the operators: values in, and what Blender evaluates afterwards out."""
+"""Whole edits by the operators, compared with Blender's evaluation afterwards."""
 
 from typing import Any
 
@@ -39,7 +39,7 @@ def smooth_cage() -> Any:
 
 
 def ball_in_lattice() -> Any:
-    """The lattice, active and alone selected."""
+    """The lattice, active and the only selected object."""
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.5)
     ball = bpy.context.active_object
     ball.name = "Ball"
@@ -68,7 +68,7 @@ def edit_right_half() -> None:
 
 
 def positions(name: str) -> np.ndarray:
-    """World positions of an object as Blender evaluates it, (n, 3)."""
+    """World positions of an object in Blender's evaluation, (n, 3)."""
     obj = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = obj.to_mesh()
     result = np.array([obj.matrix_world @ vertex.co for vertex in mesh.vertices])

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture(autouse=True)
 def scene() -> None:
-    """Two boxes through each other."""
+    """Two intersecting boxes."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(size=1)
     bpy.ops.mesh.primitive_cube_add(size=1, location=(0.5, 0.25, 0.25))

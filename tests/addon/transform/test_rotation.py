@@ -19,7 +19,7 @@ PIVOT = np.array([0.2, 0.1, -0.3])
 
 
 def turned(view: View, quarter_turns: int, constraint: AxisLock) -> np.ndarray:
-    """The matrix after the pointer went around the pivot."""
+    """The matrix after a motion of the pointer around the pivot."""
     centre = view.project(PIVOT)
     pointer = Pointer.at((centre[0] + 100.0, centre[1]), centre)
     for i in range(1, 3 * abs(quarter_turns) + 1):
