@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near to the goal edits come: the loop against the plain stop at the first contact, and against one constraint.
+"""Distance of edits from their goals: the loop, a stop at the first contact, and a single constraint.
 
-E = 1/2 |f(p) - f(goal)|^2 of the ways to answer fourteen edits of seven families: truncation at the first contact;
-Algorithm 1, with one constraint for all and none kept from round to round; the loop as it is; the loop, then settled.
-Prints ratios to the truncation and their geometric means, and for the rigid body, whose least E can be found by other
-means, the ratio to that. `python -m benchmarks.energy [--json FILE]`
+E = 1/2 |f(p) - f(goal)|^2 for fourteen edits of seven families with four methods: truncation at the first
+contact; Algorithm 1 with one constraint for all contacts and no accumulation; the default loop; the default
+loop, settled. Prints ratios to the truncation and their geometric means. For the rigid body, whose minimum
+can be found by other means, prints the ratio to the minimum. `python -m benchmarks.energy [--json FILE]`
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from blend_fixtures.scenes.families import Edit, all_edits
 
 @dataclass(frozen=True)
 class Energies:
-    """What the ways leave of one edit, in world units squared, and what the loop cost."""
+    """Energies of one edit by all methods, in world units squared, and the cost of the loop."""
 
     edit: str
     status: str
     truncated: float
-    single: float  #: one constraint, nothing kept
+    single: float  #: one constraint, no accumulation
     full: float
     settled: float
     rounds: int
     settling_rounds: int
     intersections: int
-    optimum: float | None = None  #: the least E there is, where known
+    optimum: float | None = None  #: the minimum, if known
 
 
 def truncated_energy(edit: Edit, separation: float) -> float:
-    """E when the edit simply stops at the first contact."""
+    """E if the edit stops at the first contact."""
     goal = edit.deformation.surface(edit.goal)
     start = edit.deformation.surface(edit.controls)
     fraction = min(stiv.Detector(edit.surface).earliest_time(start, goal, separation), 1.0)
@@ -47,7 +47,7 @@ def truncated_energy(edit: Edit, separation: float) -> float:
 
 
 def rotated(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vectors (n, 3) turned by a rotation vector (Rodrigues' formula)."""
+    """Vectors (n, 3) rotated by a rotation vector (Rodrigues' formula)."""
     angle = float(np.linalg.norm(turn))
     axis = turn / angle if angle > 0 else np.array([0.0, 0.0, 1.0])
     across, along = np.cross(axis, vectors), (vectors @ axis)[:, None] * axis
@@ -55,10 +55,10 @@ def rotated(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[
 
 
 def least_energy_above_wall(edit: Edit, separation: float) -> float:
-    """The least E of a rigid body above the plane z = 0, which `edit` pushes it into, by random search.
+    """The minimum of E for a rigid body that `edit` pushes into the plane z = 0, by random search.
 
-    For a given rotation the best place is that of the goal, raised to where the lowest vertex keeps the separation: so
-    only the rotation is searched for, by an evolution strategy of one parent [Rechenberg 1973, the 1/5 rule].
+    For a given rotation, the best position is the goal, raised until the lowest vertex is at the separation. Only the
+        rotation is therefore searched, by an evolution strategy with one parent [Rechenberg 1973, the 1/5 rule].
     """
     body = edit.surface.vertex_body == 0
     goal = edit.deformation.surface(edit.goal)[body]
@@ -84,7 +84,7 @@ def least_energy_above_wall(edit: Edit, separation: float) -> float:
 
 
 def measure(edit: Edit) -> Energies:
-    """Answer one edit in all ways."""
+    """Solve one edit by all methods."""
     session = stiv.EditSession(edit.surface, edit.deformation, edit.controls, stiv.EditOptions(**edit.options))
     result = session.edit(edit.goal)
     settled = session.settle()
@@ -106,12 +106,12 @@ def measure(edit: Edit) -> Energies:
 
 
 def mean_ratio(results: list[Energies], what: str) -> float:
-    """Geometric mean of one way's energy over that of the truncation."""
+    """Geometric mean of one method's energy relative to the truncation."""
     return float(np.exp(np.mean([np.log(getattr(r, what) / r.truncated) for r in results])))
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     arguments = parser.parse_args()

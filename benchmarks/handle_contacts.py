@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edits by handles against thousands of contacts, on one thread: a sheet is pressed onto a fixed ground of small hills.
+"""Edits by handles against thousands of contacts, on one thread: a sheet is pressed onto fixed ground with
+small hills.
 
-`python -m benchmarks.handle_contacts [--only NAME] [--json FILE]`: Laplacian editing of 40,000 vertices with 500 and
-3,000 soft handles, in a patch and scattered, and 1,600 vertices as rigid as possible; 16 rounds at most.
+`python -m benchmarks.handle_contacts [--only NAME] [--json FILE]`: Laplacian editing of 40,000 vertices with
+500 and 3,000 soft handles, in a patch and scattered, and 1,600 as-rigid-as-possible vertices; at most 16
+rounds.
 """
 
 from __future__ import annotations
@@ -20,13 +22,13 @@ import stiv
 from blend_fixtures.scenes.primitives import grid, triangulated
 from blend_fixtures.scenes.shape import joined
 
-ROUNDS = 16  #: from the second on, contacts are constraints of their own where they are few enough
-PRESS = 0.05  #: how far the goal lies below the tops of the hills, in widths of the sheet
+ROUNDS = 16  #: from the second on, few contacts are separate constraints
+PRESS = 0.05  #: depth of the goal below the tops of the hills, in widths of the sheet
 
 
 @dataclass(frozen=True)
 class Case:
-    """A sheet of cells x cells squares, its deformation, and where its handles are."""
+    """A sheet of cells x cells squares, its deformation, and its handles."""
 
     name: str
     make: Callable[..., stiv.Deformation]
@@ -37,7 +39,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Row:
-    """One edit. Processor seconds; `response` is by the clock, of one thread."""
+    """One edit, in processor seconds; `response` is the wall time of one thread."""
 
     name: str
     vertices: int
@@ -45,7 +47,7 @@ class Row:
     contacts: int  #: events of the first step, from the start to the goal
     rounds: int
     status: str
-    energy: float  #: in parts of that of the start
+    energy: float  #: relative to that of the start
     setup: float
     seconds: float
     response: float
@@ -95,7 +97,7 @@ def measure(case: Case) -> Row:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="", help="cases whose name and number of handles begin so")
     parser.add_argument("--json", type=Path, help="file to write the figures to")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags of a ball as rigid as possible into a sheet, on one thread: the longest drag beside the median.
+"""Drags of an as-rigid-as-possible ball into a sheet, on one thread: the longest drag and the median.
 
-`python -m benchmarks.handle_drags [--drags N]`: the cap below is the handles, the cap above is fixed. First 20 drags
-straight down, then N (500) toward random places, in a new session. Prints processor seconds and rounds.
+`python -m benchmarks.handle_drags [--drags N]`: the lower cap is the handle, the upper cap is fixed. First 20
+drags go straight down, then N (500) toward random positions, in a new session. Prints processor seconds and
+rounds.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from blend_fixtures.scenes.shape import joined
 
 Floats = NDArray[np.float64]
 STRIDE = 0.075  #: of the straight drags
-FARTHEST = 0.15  #: step of a random drag, along each axis
+FURTHEST = 0.15  #: step of a random drag, along each axis
 
 
 def ball_above_sheet() -> tuple[stiv.EditSession, stiv.Surface, Floats]:
@@ -39,22 +40,22 @@ def ball_above_sheet() -> tuple[stiv.EditSession, stiv.Surface, Floats]:
 
 
 def straight_offsets(count: int = 20) -> Iterator[Floats]:
-    """Where the handles go, down through the sheet."""
+    """Offsets of the handles, down through the sheet."""
     for k in range(count):
         yield np.array([0, 0, -STRIDE * (k + 1)])
 
 
 def random_offsets(count: int, seed: int = 4) -> Iterator[Floats]:
-    """Steps toward one random place after the other, most of them below the sheet."""
+    """Steps toward consecutive random positions, most of them below the sheet."""
     chance, offset = np.random.default_rng(seed), np.zeros(3)
     for _ in range(count):
         target = np.array([*chance.uniform(-0.6, 0.6, 2), chance.uniform(-1.6, -0.6)])
-        offset = offset + np.clip(target - offset, -FARTHEST, FARTHEST)
+        offset = offset + np.clip(target - offset, -FURTHEST, FURTHEST)
         yield offset
 
 
 def print_row(name: str, offsets: Iterator[Floats]) -> None:
-    """Drag, and print what the drags took."""
+    """Drag, and print the cost of the drags."""
     session, surface, start = ball_above_sheet()
     seconds, rounds, energy = [], [], []
     for offset in offsets:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What deformations by handles cost on one thread: setting up, a surface, a constraint, the metric.
+"""Cost of deformations by handles on one thread: set-up, a surface, a constraint, the metric.
 
-A wavy sheet of 40,000 vertices under Laplacian editing with few, 500 and 3,000 handles, soft and hard, and one of 6,400
-as rigid as possible. `python -m benchmarks.handle_solves [--json FILE]`
+A wavy sheet of 40,000 vertices under Laplacian editing with few, 500 and 3,000 handles, soft and hard, and an
+as-rigid-as-possible sheet of 6,400. `python -m benchmarks.handle_solves [--json FILE]`
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ COSTS = ("setup", "surface", "constraint", "metric")
 
 @dataclass(frozen=True)
 class HandleCosts:
-    """Processor milliseconds; the least of some repeats, but for what is made once a session."""
+    """Processor milliseconds, the minimum over repeats; set-up is measured once."""
 
     deformation: str
     vertices: int
@@ -38,7 +38,7 @@ class HandleCosts:
 
 
 def milliseconds(work: Callable[[], object], repeats: int = 1) -> float:
-    """The least processor time of some calls."""
+    """The minimum processor time over several calls."""
     found = []
     for _ in range(repeats):
         begin = time.process_time()
@@ -48,7 +48,7 @@ def milliseconds(work: Callable[[], object], repeats: int = 1) -> float:
 
 
 def measure(name: str, make: Callable[..., stiv.Deformation], cells: int, handle_count: int) -> HandleCosts:
-    """A patch of handles in the middle of the sheet, moved up; its rim is fixed."""
+    """Measure a patch of handles in the centre of the sheet, moved up; the boundary is fixed."""
     sheet = triangulated(grid(cells, cells))
     vertices = sheet.vertices + np.sin(7 * sheet.vertices[:, :1]) * (0, 0, 0.05)
     triangles = sheet.triangles()
@@ -68,7 +68,7 @@ def measure(name: str, make: Callable[..., stiv.Deformation], cells: int, handle
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     arguments = parser.parse_args()

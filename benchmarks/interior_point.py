@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converged answers of another method: an interior-point solver with ipctk's barrier and its continuous detection.
+"""Converged solutions of another method: an interior-point solver with ipctk's barrier and continuous
+detection.
 
-Minimised is, over the controls p that may respond,
+It minimises, over the controls p that may respond,
 
     1/2 |f(p) - f(goal)|^2 + kappa sum b(d(f(p)), dhat)
 
-with the normalised clamped log barrier [Li et al. 2020, 2023], by projected Newton steps that end before the first
-contact, over falling dhat down to our separation, and there over halved kappa until the energy stops falling. It keeps
-no distance but that of the barrier, and damps nothing: its answers may be nearer than ours can be. For deformations
-that are linear in their controls. Needs ipctk and SciPy.
+with the normalised clamped log barrier [Li et al. 2020, 2023], by projected Newton steps that end before the
+first contact. dhat decreases down to our separation; then kappa is halved until the energy stops decreasing.
+The method has no minimum distance except that of the barrier, and no damping, so it can end closer to the
+goal than ours. It supports deformations that are linear in their controls. Needs ipctk and SciPy.
 """
 
 from __future__ import annotations
@@ -36,24 +37,24 @@ DENSE_SHARE = 0.1  #: of entries that are not zero, from which on the Newton mat
 
 @dataclass(frozen=True)
 class Optimum:
-    """Where it ended."""
+    """Result of the solver."""
 
     energy: float
     controls: Array
     steps: int
     seconds: float  #: of the processor
-    converged: bool  #: before its time was over
+    converged: bool  #: within the time limit
 
 
 def responding(edit: Edit) -> NDArray[np.int64]:
-    """Controls that have weight and move something."""
+    """Controls with weight that move a vertex."""
     weights = np.asarray(edit.options.get("weights", np.ones(len(edit.controls))), float)
     used = np.asarray(abs(jacobian(edit)).sum(axis=0)).ravel() > 0
     return np.flatnonzero((weights > 0) & used)
 
 
 def jacobian(edit: Edit) -> Any:
-    """M (n, m) of f(p) = M p + c, sparse, by differences; exact for a linear map but for rounding."""
+    """The sparse matrix M (n, m) of f(p) = M p + c, by differences; exact up to rounding."""
     rest = edit.deformation.surface(edit.controls)
     columns = []
     for control in range(len(edit.controls)):
@@ -88,7 +89,7 @@ class InteriorPoint:
         self._steps, self._moves = 0, int(moves.sum())
 
     def solve(self, controls: Array) -> Optimum:
-        """From free controls (m, 3)."""
+        """Solve from intersection-free controls (m, 3)."""
         began = time.process_time()
         p = controls.copy()
         levels = [level * self._diagonal for level in LEVELS if level * self._diagonal > 1.5 * self._separation]
@@ -152,7 +153,7 @@ class InteriorPoint:
         return p
 
     def _direction(self, potential: Any, contacts: Any, surface: Array) -> tuple[Array, float]:
-        """The Newton step (m', 3), and how steeply the objective falls along it."""
+        """The Newton step (m', 3), and the slope of the objective along it."""
         gradient = potential.gradient(contacts, self._mesh, surface) + (surface - self._goal).reshape(-1)
         hessian = potential.hessian(contacts, self._mesh, surface, self._ipctk.PSDProjectionMethod.CLAMP)
         pulled = self._expand.T @ gradient
@@ -174,7 +175,7 @@ class InteriorPoint:
         return q
 
     def _longest_step(self, p: Array, direction: Array, surface: Array) -> float:
-        """Up to one, to the longest motion, and to the first contact."""
+        """The largest step up to 1, the longest motion, and the first contact."""
         whole = self._surface(self._along(p, direction, 1.0))
         reach = np.linalg.norm(whole - surface, axis=1).max()
         step = min(1.0, LONGEST_STEP * self._diagonal / max(reach, 1e-300))
@@ -186,6 +187,6 @@ class InteriorPoint:
 
 
 def separation_of(edit: Edit) -> float:
-    """What a session keeps in an edit's scene."""
+    """The separation of a session in an edit's scene."""
     options = stiv.EditOptions(**edit.options)  # type: ignore[arg-type]
     return stiv.EditSession(edit.surface, edit.deformation, edit.controls, options).separation

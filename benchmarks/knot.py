@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A knotted tube under Laplacian editing, pulled tight: its foot is fixed, its top is a handle dragged up.
 
-Prints milliseconds a move (of the clock and of the processor), intersections found in any state, and how far the top
-came. `python -m benchmarks.knot [--threads 2] [--moves 200] [--rings 600] [--sides 10] [--json FILE]`
+Prints milliseconds per move (wall and processor time), intersections in any state, and the travel of the top.
+`python -m benchmarks.knot [--threads 2] [--moves 200] [--rings 600] [--sides 10] [--json FILE]`
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from blend_fixtures.scenes.sweeps import trefoil
 
 @dataclass(frozen=True)
 class KnotDrag:
-    """What dragging the top of the knot came to; lengths in world units."""
+    """Result of dragging the top of the knot; lengths in world units."""
 
     triangles: int
     handles: int
     moves: int
     setup_seconds: float
-    median_ms: float  #: a move, by the clock
+    median_ms: float  #: wall time per move
     median_processor_ms: float
     slowest_ms: float
     moves_with_contact: int
@@ -50,7 +50,7 @@ def knot_session(rings: int, sides: int, threads: int) -> tuple[stiv.EditSession
 
 
 def drag_knot(rings: int = 600, sides: int = 10, moves: int = 200, lift: float = 2.0, threads: int = 2) -> KnotDrag:
-    """Lift the top by `lift` in so many moves, and measure."""
+    """Lift the top by `lift` in `moves` moves, and measure."""
     begin = time.perf_counter()
     session, foot = knot_session(rings, sides, threads)
     setup = time.perf_counter() - begin
@@ -86,7 +86,7 @@ def drag_knot(rings: int = 600, sides: int = 10, moves: int = 200, lift: float =
 
 
 def main() -> None:
-    """Print the figures, and write them as JSON if asked."""
+    """Print the figures, and optionally write them as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--threads", type=int, default=2, help="threads of the core (default: 2)")
     parser.add_argument("--moves", type=int, default=200, help="mouse moves (default: 200)")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What it costs to read out the least distance: processor milliseconds of scenes of about 100,000 triangles.
+"""Cost of the least distance: processor milliseconds for scenes of about 100,000 triangles.
 
-Two balls side by side; an ellipsoid in a ball; and two concentric balls, where every triangle is as near as any other.
-`python -m benchmarks.least_distance`
+Two balls side by side; an ellipsoid in a ball; and two concentric balls, whose triangles are all equally
+close. `python -m benchmarks.least_distance`
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from blend_fixtures.scenes.shape import Shape, joined
 
 
 def scenes() -> dict[str, list[Shape]]:
-    """Bodies by the name of what they make."""
+    """Bodies of each scene, by name."""
     large, small = icosphere(6).turned((0.1, 0.2, 0.3)), icosphere(5).turned((0.3, 0.5, 0.1))
     return {
         "side by side": [large, small.moved((2.05, 0, 0))],

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near to the goal edits come: our defaults, the published method, a stop at the first contact, converged answers.
+"""Distance of edits from their goals: our defaults, the published method, a stop at the first contact, and
+convergence.
 
-E = 1/2 |f(p) - f(goal)|^2 of fourteen edits of seven families over that of the stop: by the defaults, and settled until
-nothing changes; by `EditOptions.paper`, a constraint for each patch (LCP or linear equations) or one for all; by
-`EditOptions.paper_frozen`. `--converged` adds the best that an interior-point method finds from the start and from our
-answer (interior_point.py; needs ipctk and SciPy). Every answer passes the exact test; of the paper's, `fraction` says
-how much of its last step passed it. `python -m benchmarks.paper_preset [--converged SECONDS] [--json FILE]`
+E = 1/2 |f(p) - f(goal)|^2 of fourteen edits of seven families, relative to the stop: by the defaults, and
+settled until nothing changes; by `EditOptions.paper` with a constraint per patch (LCP or linear equations) or
+one for all; by `EditOptions.paper_frozen`. `--converged` adds the minimum of an interior-point method from
+the start and from our solution (interior_point.py; needs ipctk and SciPy). Every solution passes the exact
+test; for the paper's method, `fraction` gives the accepted part of its last step. `python -m
+benchmarks.paper_preset [--converged SECONDS] [--json FILE]`
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ CALLS = 30  #: of settle, at most
 
 @dataclass(frozen=True)
 class Answer:
-    """What an edit came to."""
+    """Result of an edit."""
 
     energy: float
     rounds: int
@@ -44,33 +46,33 @@ class Answer:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One edit, answered in all ways; energies in world units squared."""
+    """One edit by all methods; energies in world units squared."""
 
     edit: str
     stopped: float
     ours: Answer
     settled: float
-    settling_calls: int  #: CALLS: it was still changing
+    settling_calls: int  #: CALLS: still changing at the end
     paper: dict[str, Answer] = field(default_factory=dict)
-    converged: float | None = None  #: the least of the interior-point method; None: not asked for, or not linear
+    converged: float | None = None  #: minimum of the interior-point method; None: not requested, or not linear
     converged_in_time: bool = False
 
     def relative(self) -> dict[str, float]:
-        """Energies over that of the stop."""
+        """Energies relative to the stop."""
         energies = {"ours": self.ours.energy, "settled": self.settled}
         energies |= {name: answer.energy for name, answer in self.paper.items()}
         return {name: energy / self.stopped for name, energy in energies.items()}
 
 
 def answer(edit: Edit, options: stiv.EditOptions) -> Answer:
-    """Carry out one edit."""
+    """Solve one edit."""
     result = stiv.edit(edit.surface, edit.deformation, edit.controls, edit.goal, options)
     pairs = stiv.find_intersections(result.surface, edit.surface)
     return Answer(result.energy, result.rounds, result.fraction, result.status, len(pairs))
 
 
 def compare(edit: Edit, seconds: float) -> Comparison:
-    """Answer one edit in all ways; `seconds` for each run of the interior-point method, 0: none."""
+    """Solve one edit by all methods; `seconds` limits each run of the interior-point method, 0: none."""
     options = stiv.EditOptions(**edit.options)  # type: ignore[arg-type]
     session = stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
     first = session.edit(edit.goal)
@@ -93,7 +95,7 @@ def compare(edit: Edit, seconds: float) -> Comparison:
 
 
 def converged(edit: Edit, separation: float, starts: list[Array], seconds: float) -> tuple[float | None, bool]:
-    """Return the least energy of the interior-point method from several controls, and whether all ended in time."""
+    """Return the minimum energy of the interior-point method from several starts, and whether all ended in time."""
     if seconds == 0 or edit.name.startswith("rigid"):
         return None, False
     interior_point = importlib.import_module("benchmarks.interior_point")
@@ -112,7 +114,7 @@ def line(comparison: Comparison) -> str:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--converged", type=float, default=0, metavar="SECONDS", help="for each interior-point run")
     parser.add_argument("--json", type=Path, help="file to write the figures to")

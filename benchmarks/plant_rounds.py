@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long a round of the plant edit takes, split by step, with the counters that do not depend on the machine.
+"""Duration of a round of the plant edit, split by step, with machine-independent counters.
 
-A round is one pass of the loop: a detection and, unless it finds nothing, the response to it. An edit's time, its
-acceptance included, is shared out evenly over its rounds. On a machine that is busy with other work too, the
-processor's time says more than the clock's.
+A round is one pass of the loop: a detection and, if it finds events, the response. The time of an edit,
+including acceptance, is divided evenly among its rounds. On a busy machine, processor time is more meaningful
+than wall time.
 
     python benchmarks/plant_rounds.py [--threads 1] [--edits N] [--json FILE]
 
-The scene and its edits are those of the fixture plant_in_vase (13,759 vertices, 26,782 triangles: the size of the
-example of Figure 8 in the paper, which reports 40.6 to 48.6 ms a round), solved by the core without Blender.
+The scene and its edits are those of the fixture plant_in_vase (13,759 vertices, 26,782 triangles: the size of
+the example of Figure 8 in the paper, which reports 40.6 to 48.6 ms a round), solved by the core without
+Blender.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ COUNTERS = ("rounds", "detections", "candidate_pairs", "pairs_tested", "events",
 
 
 def plant_session(threads: int) -> stiv.EditSession:
-    """The shoots in their lattice, whose points are the controls, above the vase, an obstacle."""
+    """Shoots in a lattice, whose points are the controls, above the vase, an obstacle."""
     fixture = plant_in_vase()
     grid = fixture.lattices[0]
     shoots, vase = (mesh.shape for mesh in fixture.meshes)
@@ -56,7 +57,7 @@ def plant_session(threads: int) -> stiv.EditSession:
 
 
 def goal_of(step: Step, controls: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where a step wants all controls: moved, or scaled about their median."""
+    """The goal of a step: all controls moved, or scaled about their median."""
     value = np.array(step["values"]["value"])
     if step["operator"] == "move":
         return controls + value
@@ -65,7 +66,7 @@ def goal_of(step: Step, controls: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def run(threads: int, edits: int) -> list[dict[str, Any]]:
-    """Timings in seconds and counters of each of the first `edits` edits."""
+    """Timings in seconds and counters of the first `edits` edits."""
     session = plant_session(threads)
     steps = [step for step in plant_in_vase().steps for _ in range(step["repeat"])]
     results = []
@@ -87,7 +88,7 @@ def run(threads: int, edits: int) -> list[dict[str, Any]]:
 
 
 def summary(results: list[dict[str, Any]]) -> dict[str, Any]:
-    """Medians over the edits that met resistance, in milliseconds a round, and sums of the counters of all edits."""
+    """Medians over the edits with contacts, in milliseconds per round, and sums of the counters of all edits."""
     busy = [result for result in results if result["counters"]["rounds"] > 0]
 
     def median(seconds: Callable[[dict[str, Any]], float]) -> float:
@@ -109,7 +110,7 @@ def summary(results: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Runs the benchmark and prints its summary."""
+    """Run the benchmark and print its summary."""
     parser = argparse.ArgumentParser(description="Milliseconds a round of the plant edit.")
     parser.add_argument("--threads", type=int, default=1, help="threads of the core (default: 1)")
     parser.add_argument("--edits", type=int, default=10_000, help="how many of the edits (default: all)")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What repair makes of surfaces that intersect, and at what cost: the tangles of the scene library and meshes of files.
+"""Results and cost of repair, for the tangles of the scene library and meshes from files.
 
-`python -m benchmarks.repair [--models FOLDER] [--json FILE]`: every OBJ of the folder is welded first. Deviations are
-root mean squares over the vertices, in diagonals of the bounding box; times are CPU seconds of one thread.
+`python -m benchmarks.repair [--models FOLDER] [--json FILE]`: every OBJ of the folder is welded first.
+Deviations are root mean squares over the vertices, in diagonals of the bounding box; times are CPU seconds of
+one thread.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class Row:
     contracted: str
     pairs_before: int
     fewest_pairs: int
-    pairs_left: int  #: by an exact test of its own
+    pairs_left: int  #: by a separate exact test
     steps: int
     rounds: int
     deviation: float
@@ -40,14 +41,14 @@ class Row:
 
 
 def models(folder: Path) -> Iterator[Tangle]:
-    """Every OBJ of the folder in order of names."""
+    """All OBJ files of the folder, sorted by name."""
     for path in sorted(folder.glob("*.obj")):
         mesh = read_mesh(path)
         yield Tangle(path.stem, stiv.Surface(mesh.triangles, len(mesh.vertices)), np.asarray(mesh.vertices, float))
 
 
 def measure(tangle: Tangle, weld: bool = False) -> Row:
-    """Repair once."""
+    """Measure one repair."""
     options = stiv.RepairOptions(weld=weld, edit=stiv.EditOptions(threads=1))
     begin = time.process_time()
     result = stiv.repair(tangle.surface, tangle.positions, options)
@@ -69,7 +70,7 @@ def measure(tangle: Tangle, weld: bool = False) -> Row:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--models", type=Path, help="folder of OBJ files to repair as well, after welding")
     parser.add_argument("--json", type=Path, help="file to write the figures to")

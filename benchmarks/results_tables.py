@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Write the tables of benchmarks/results/README.md from the JSON files beside it.
 
-Each table stands between `<!-- begin NAME -->` and `<!-- end NAME -->`. `python -m benchmarks.results_tables`
+Each table is enclosed in `<!-- begin NAME -->` and `<!-- end NAME -->`. `python -m benchmarks.results_tables`
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _pairs(rows: dict[tuple[str, str, int], Any], preset: str, what: str) -> str
 
 
 def table1() -> str:
-    """Sizes of steps, contacts, energies and times of Table 1's sessions."""
+    """Step sizes, contacts, energies and times of the sessions of Table 1."""
     lines = []
     for scene in SCENES:
         rows = {
@@ -79,7 +79,7 @@ def table1() -> str:
 
 
 def settled() -> str:
-    """Energies of answers settled until nothing changes."""
+    """Energies of solutions settled until nothing changes."""
     lines = [
         [
             scene["scene"],
@@ -94,7 +94,7 @@ def settled() -> str:
 
 
 def whole_drags() -> str:
-    """Energies of whole drags over those of a stop at the first contact."""
+    """Energies of whole drags relative to a stop at the first contact."""
     content = loaded("whole_drags")
     order = sorted(content["drags"], key=lambda drag: SCENES.index(drag["scene"]))
     lines = [
@@ -111,7 +111,7 @@ def whole_drags() -> str:
 
 
 def fourteen() -> str:
-    """Energies of the fourteen edits over those of a stop at the first contact."""
+    """Energies of the fourteen edits relative to a stop at the first contact."""
     content = loaded("paper_preset")
     lines = []
     for edit in content["edits"]:
@@ -125,7 +125,7 @@ def fourteen() -> str:
 
 
 def detection() -> str:
-    """Times of one detection, ours and the peer's in all of its settings, one thread."""
+    """Times of one detection on one thread, ours and the peer's in all of its settings."""
     lines = []
     for step in loaded("detection")["steps"]:
         best = {name: sum((peer["broad"], min(peer["narrow"].values()))) for name, peer in step["peer"].items()}
@@ -197,7 +197,7 @@ TABLES: dict[str, Callable[[], str]] = {
 
 
 def filled(text: str) -> str:
-    """The text with each table anew."""
+    """The text with updated tables."""
     for name, make in TABLES.items():
         block = re.compile(rf"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
         text, count = block.subn(lambda match, make=make: match[1] + make() + "\n" + match[2], text)  # type: ignore[misc]
@@ -207,7 +207,7 @@ def filled(text: str) -> str:
 
 
 def main() -> None:
-    """Write README.md anew."""
+    """Update README.md."""
     path = FOLDER / "README.md"
     path.write_text(filled(path.read_text(encoding="utf-8")), encoding="utf-8")
 

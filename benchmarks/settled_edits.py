@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 1's edits against converged answers: ours and the paper's, each settled until nothing changes.
+"""The edits of Table 1 and converged solutions: ours and the paper's, each settled until nothing changes.
 
-Of every so many edits with contacts: E = 1/2 |f(p) - f(goal)|^2 by the defaults, by `EditOptions.paper`, of both
-settled, and the least of these edit by edit; sums over that of the paper's answers.
-`python -m benchmarks.settled_edits [--scenes NAME ...] [--calls N] [--json FILE]`
+For a sample of the edits with contacts: E = 1/2 |f(p) - f(goal)|^2 by the defaults, by `EditOptions.paper`,
+of both settled, and their minimum per edit; sums relative to the paper's solutions. `python -m
+benchmarks.settled_edits [--scenes NAME ...] [--calls N] [--json FILE]`
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ WAYS = ("ours", "ours settled", "paper", "paper settled", "best")
 
 @dataclass(frozen=True)
 class Scene:
-    """Mean energies of one scene's sample over that of the paper's answers."""
+    """Mean energies of one scene's sample relative to the paper's solutions."""
 
     scene: str
     edits: int
     energies: dict[str, float]
     ours_over_best: float  #: geometric mean over the edits
-    paper_nearer: int  #: edits in which the paper's answer is nearer to the goal than ours
-    still_changing: int  #: settlings that ended with their number of calls
+    paper_nearer: int  #: edits in which the paper's solution is closer to the goal than ours
+    still_changing: int  #: settlings that reached their limit of calls
 
 
 def measure(name: str, calls: int) -> Scene:
-    """Answer every so many edits of one scene in all ways."""
+    """Solve a sample of the edits of one scene by all methods."""
     recorded, figures = record(table_sessions()[name], {"threads": 1}, lambda note: None)
     tasks = [(part.stage, task) for part in recorded for task in part.tasks]
     touching = [task for task, figure in zip(tasks, figures, strict=True) if figure.touches]
@@ -68,7 +68,7 @@ def measure(name: str, calls: int) -> Scene:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", nargs="+", choices=[*EVERY], default=[*EVERY], help="default: all")
     parser.add_argument("--calls", type=int, default=8, help="of settle, at most (default: 8)")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers settled until nothing changes: what a solver's early end costs, apart from which answer it heads for."""
+"""Solutions settled until nothing changes, to separate the cost of early termination from the choice of minimum."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import stiv
 
 Array = NDArray[np.float64]
 MOST_CALLS = 50
-LEAST_GAIN = 1e-6  #: a call that lowers the energy by less of it than this changes nothing
+LEAST_GAIN = 1e-6  #: relative decrease of the energy below which a call changes nothing
 
 
 @dataclass(frozen=True)
@@ -20,11 +20,11 @@ class Settled:
     """Where settling ended."""
 
     energy: float
-    calls: int  #: MOST_CALLS: it was still changing
+    calls: int  #: MOST_CALLS: still changing at the end
 
 
 def settle(session: stiv.EditSession, energy: float, most: int = MOST_CALLS) -> Settled:
-    """Settle the last edit of a session, which came to `energy`, until nothing changes."""
+    """Settle the last edit of a session, which has this `energy`, until nothing changes."""
     for call in range(1, most + 1):
         result = session.settle()
         if result.energy > (1 - LEAST_GAIN) * energy:
@@ -34,13 +34,13 @@ def settle(session: stiv.EditSession, energy: float, most: int = MOST_CALLS) -> 
 
 
 def settle_from(session: stiv.EditSession, controls: Array, goal: Array, most: int = MOST_CALLS) -> Settled:
-    """Settle from accepted controls of any origin toward a goal, (m, 3) each."""
+    """Settle from any accepted controls toward a goal, (m, 3) each."""
     session.restore(controls, goal)
     return settle(session, session.drag(goal).energy, most)
 
 
 def stopped_energy(surface: stiv.Surface, start: Array, goal: Array, separation: float) -> float:
-    """E where the straight step between two surfaces, (N, 3) each, stops before it comes within the separation."""
+    """E if the straight step between two surfaces, (N, 3) each, stops at the separation."""
     time = min(stiv.Detector(surface).earliest_time(start, goal, separation), 1.0)
     return 0.5 * float(((1 - time) * (goal - start) ** 2 * (1 - time)).sum())
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Times of impact of single pairs: right or wrong by exact arithmetic, and what a query costs.
+"""Times of impact of single pairs: correctness by exact arithmetic, and the cost of a query.
 
-Random and awkward queries of ten sorts (the long form of tests/detection/test_random_queries.py), and the
-published ones of Wang et al. 2021 if their folder is named. Early: how much before the exact time. Microseconds per
-query on one thread: over a whole array, and the median and maximum over arrays that repeat one query.
+Random and adversarial queries of ten kinds (the long form of tests/detection/test_random_queries.py), and the
+published ones of Wang et al. 2021 if their folder is named. Early: how much before the exact time.
+Microseconds per query on one thread: over a whole array, and the median and maximum over arrays that repeat
+one query.
 
 `python -m benchmarks.time_of_impact [--count N] [--seed S] [--queries FOLDER]`
 """
@@ -29,7 +30,7 @@ COPIES = 64
 
 @dataclass
 class Account:
-    """What came of some queries."""
+    """Results of several queries."""
 
     count: int = 0
     contacts: int = 0
@@ -39,7 +40,7 @@ class Account:
     early: list[float] = field(default_factory=list)
 
     def add(self, found: float, truth: Fraction | None) -> None:
-        """Compare one time with the exact one, None where there is no contact."""
+        """Compare a time with the exact one; None: no contact."""
         self.count += 1
         self.contacts += truth is not None
         if truth is None:
@@ -60,12 +61,12 @@ class Account:
 
 
 def impacts(kind: str, points: Points) -> NDArray[np.float64]:
-    """Return what the library says."""
+    """Return the times found by the library."""
     return stiv.time_of_impact(kind, points[:, :4], points[:, 4:], threads=1)
 
 
 def seconds(kind: str, points: Points, repeats: int) -> float:
-    """Return the least time of a call for the whole array."""
+    """Return the minimum time of a call for the whole array."""
     best = float("inf")
     for _ in range(repeats):
         start = time.perf_counter()
@@ -75,7 +76,7 @@ def seconds(kind: str, points: Points, repeats: int) -> float:
 
 
 def random_queries(count: int, seed: int) -> None:
-    """Print a line for each sort and kind."""
+    """Print a line for each kind of query and pair."""
     for sort in SORTS:
         for kind in ("vf", "ee"):
             points, account = make(sort, count, seed), Account()
@@ -85,7 +86,7 @@ def random_queries(count: int, seed: int) -> None:
 
 
 def published_queries(folder: Path) -> None:
-    """Print the accounts of all files together."""
+    """Print the combined account of all files."""
     account, whole, single = Account(), 0.0, []
     for path in sorted(folder.glob("*/*/*.csv")):
         kind = KINDS[path.parent.name]

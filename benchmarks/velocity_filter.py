@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A subdivision face pressed into waves: the response by its cage against a filter of each vertex's velocity.
+"""A subdivision face pressed into waves: the response through its cage, and a velocity filter.
 
-The filter is made in the manner of Bridson, Fedkiw and Anderson (2002), for comparison only: each contact on the way
-changes the velocities of its own vertices, by an inelastic impulse along its normal, pass after pass until there is
-none; what is still in contact then keeps its velocity of the first contact's time. It is the paper's Figure 7.
+The filter follows Bridson, Fedkiw and Anderson (2002), for comparison only: each contact changes the
+velocities of its own vertices by an inelastic impulse along its normal, in repeated passes until there are no
+contacts. Vertices that remain in contact then stop at the time of the first contact. This is the paper's
+Figure 7.
 
-Prints what both leave: exact intersections, the share of the motion that is kept, and how rough the face has become.
+Prints for both: exact intersections, the achieved fraction of the motion, and the roughness of the face.
 `python -m benchmarks.velocity_filter [--json FILE] [--npz FILE]`
 """
 
@@ -26,9 +27,9 @@ PASSES = 200
 
 
 def filtered(surface: stiv.Surface, start: Array, goal: Array, moves: NDArray[np.bool_], separation: float) -> Array:
-    """Positions (N, 3) after the filter; only vertices that `moves` marks have their velocity changed."""
+    """Positions (N, 3) after the filter, which changes only the velocities of vertices marked in `moves`."""
     end = goal.copy()
-    mass = moves.astype(float)  # inverse masses: what stands still is infinitely heavy
+    mass = moves.astype(float)  # inverse masses: static vertices are infinitely heavy
     for _ in range(PASSES):
         events = stiv.find_interference(surface, start, end, separation)
         if len(events.time) == 0:
@@ -39,7 +40,7 @@ def filtered(surface: stiv.Surface, start: Array, goal: Array, moves: NDArray[np
 
 
 def _apply_impulses(events: stiv.Events, start: Array, end: Array, mass: Array, separation: float) -> None:
-    """One pass, contact after contact by time: the approach left is taken away, and the separation given."""
+    """One pass over the contacts by time: removes the remaining approach, and restores the separation."""
     for k in np.argsort(events.time, kind="stable"):
         vertices, weights, normal = events.vertices[k], events.weights[k], events.normal[k]
         gap = normal @ (weights @ end[vertices])  # along the normal at contact, at the end of the step
@@ -50,7 +51,7 @@ def _apply_impulses(events: stiv.Events, start: Array, end: Array, mass: Array, 
 
 
 def vertex_normals(positions: Array, triangles: NDArray[np.int32]) -> Array:
-    """Unit normals (N, 3), by the areas of the triangles around."""
+    """Unit normals (N, 3), weighted by the areas of the adjacent triangles."""
     a, b, c = positions[triangles].transpose(1, 0, 2)
     total = np.zeros_like(positions)
     for corner in range(3):
@@ -60,9 +61,10 @@ def vertex_normals(positions: Array, triangles: NDArray[np.int32]) -> Array:
 
 
 def roughness(positions: Array, triangles: NDArray[np.int32]) -> float:
-    """Root mean square over vertices of the second difference of normals: their mean around a vertex less its own.
+    """Root mean square over vertices of the second difference of normals: the mean around a vertex minus its
+        own.
 
-    A number of radians, about; a smooth surface of the same bend has a quarter of it at half the edge length.
+    Approximately in radians; at half the edge length, a smooth surface with the same bend has a quarter of it.
     """
     normals = vertex_normals(positions, triangles)
     ends = np.unique(np.sort(np.concatenate([triangles[:, [k, k - 1]] for k in range(3)]), axis=1), axis=0)
@@ -76,7 +78,7 @@ def roughness(positions: Array, triangles: NDArray[np.int32]) -> float:
 
 
 def compare(share: float = 1.0) -> tuple[dict[str, dict[str, float]], dict[str, Array]]:
-    """Figures and positions of the start, of what is wanted (a share of the motion), of ours, and of the filter."""
+    """Figures and positions of the start, the goal (a fraction of the motion), our result, and the filter's."""
     scene = stage()
     session = stiv.EditSession(scene.surface, scene.deformation, scene.controls)
     goal = scene.controls + share * (scene.edits[0](scene.controls) - scene.controls)
@@ -99,7 +101,7 @@ def compare(share: float = 1.0) -> tuple[dict[str, dict[str, float]], dict[str, 
 
 
 def main() -> None:
-    """Print the comparison, and write it if asked."""
+    """Print the comparison, and optionally write it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     parser.add_argument("--npz", type=Path, help="file to write the positions to")

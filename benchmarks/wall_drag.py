@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A box and a faceted sphere dragged along a wall while the mouse goes 2 units into it, and back.
+"""A box and a faceted sphere dragged along a wall while the mouse moves 2 units into it, and back.
 
-Prints travel along the wall, sideways drift, how far the shape left the wall before the mouse did, and how near it came
-to its start. `python -m benchmarks.wall_drag [--json FILE]`
+Prints the travel along the wall, the sideways drift, the distance from the wall while the mouse is inside,
+and the final distance from the start. `python -m benchmarks.wall_drag [--json FILE]`
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ DEPTH = 2.0
 
 @dataclass(frozen=True)
 class WallDrag:
-    """What a drag along a wall came to; lengths in world units."""
+    """Result of a drag along a wall; lengths in world units."""
 
     shape: str
-    travel: float  #: along the wall, of 2.0 that the mouse went
+    travel: float  #: along the wall, of the mouse's 2.0
     drift: float  #: largest sideways motion
     gap_at_wall: float  #: largest height above the wall while the mouse was inside it
     return_error: float  #: largest distance from the start at the end, over all vertices
@@ -46,7 +46,7 @@ def shapes() -> dict[str, Shape]:
 
 
 def goals() -> NDArray[np.float64]:
-    """Offsets of the mouse, (200, 3): along and into the wall, then straight back out."""
+    """Offsets of the mouse, (200, 3): along and into the wall, then straight back."""
     steps = np.arange(1, MOVES + 1) / MOVES
     there = np.stack([DEPTH * steps, 0 * steps, -DEPTH * steps], axis=1)
     back = np.stack([DEPTH + 0 * steps, 0 * steps, -DEPTH * (1 - steps)], axis=1)
@@ -78,7 +78,7 @@ def drag_along_wall(name: str) -> WallDrag:
         if number == MOVES - 1:
             travel = moved[0]
         if offset[2] < -0.25:
-            contact = number >= 20  # a few moves after the first touch
+            contact = number >= 20  # a few moves after the first contact
             gap = max(gap, result.surface[:count, 2].min() if contact else 0.0)
     expected = mover.vertices + goals()[-1]
     error = float(np.abs(result.surface[:count] - expected).max())
@@ -87,7 +87,7 @@ def drag_along_wall(name: str) -> WallDrag:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="file to write the figures to")
     arguments = parser.parse_args()

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deep goals: each stage of Table 1's sessions as one edit to the end of its whole drag, which lies far inside.
+"""Deep goals: each stage of Table 1's sessions as one edit to the end of its whole drag, deep inside the
+obstacle.
 
-The goal is where all edits of a stage would take its controls with nothing in the way. E = 1/2 |f(p) - f(goal)|^2 over
-that of a stop at the first contact, by the ways to answer:
+The goal is the end of all edits of a stage without obstacles. E = 1/2 |f(p) - f(goal)|^2, relative to a stop
+at the first contact, by these methods:
 
     paper, frozen  one edit by `EditOptions.paper` and `EditOptions.paper_frozen`
     one edit       by the defaults
     settled        the same, settled until nothing changes
-    dragged        the defaults again, as a mouse goes there: edit by edit of the stage, each goal absolute
-    best           the least of these, and of the paper's answer and the dragged one settled in the same way
+dragged        the defaults, dragged like a mouse through the edits of the stage, with absolute goals
+    best           the minimum of these, and of the settled results of the paper and of the drag
 
 `python -m benchmarks.whole_drags [--scenes NAME ...] [--json FILE]`
 """
@@ -33,21 +34,21 @@ WAYS = ("paper", "frozen", "one edit", "settled", "dragged", "best")
 
 @dataclass(frozen=True)
 class Drag:
-    """One stage's whole drag; energies over that of a stop at the first contact."""
+    """Whole drag of one stage; energies relative to a stop at the first contact."""
 
     scene: str
     stage: str
-    step: float  #: farthest motion asked of a vertex, in diagonals of what may move
+    step: float  #: largest requested motion of a vertex, in diagonals of the movable surface
     stopped: float  #: energy, world units squared
     energies: dict[str, float]
     rounds: dict[str, int]
-    contacts: float  #: a round of our one edit
+    contacts: float  #: per round of our single edit
     still: bool  #: settling ended because nothing changed
     intersections: int
 
 
 def goals(stage: Stage) -> list[Array]:
-    """Where the controls would be after each edit of a stage, with nothing in the way."""
+    """Controls after each edit of a stage without obstacles."""
     places = [stage.controls]
     for edit in stage.edits:
         places.append(edit(places[-1]))
@@ -55,7 +56,7 @@ def goals(stage: Stage) -> list[Array]:
 
 
 def measure(name: str, stage: Stage, calls: int) -> tuple[Drag | None, Array]:
-    """Answer a stage's drag in all ways; None where nothing is met. And where the dragged controls end."""
+    """Solve a stage's drag by all methods (None without contacts); also returns the dragged controls."""
     ends = goals(stage)
     start, goal = (stage.deformation.surface(p) for p in (stage.controls, ends[-1]))
     dragged = solver_of(stage, {})
@@ -97,7 +98,7 @@ def one_edit(stage: Stage, goal: Array, preset: Preset) -> stiv.EditResult:
 
 
 def drags(session: Session, calls: int) -> Iterator[Drag]:
-    """The whole drags of a session, stage by stage, each from where the one before was dragged to."""
+    """The whole drags of a session, stage by stage, each from the dragged result of the previous one."""
     stages = session.stages()
     stage = next(stages)
     while True:
@@ -120,7 +121,7 @@ def line(drag: Drag) -> str:
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     sessions = table_sessions()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", nargs="+", choices=[*sessions], default=[*sessions], help="default: all")

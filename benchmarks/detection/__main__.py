@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Detection of one step, our detector beside ipctk, and how it grows.
+"""Detection of one step, our detector and ipctk, and its scaling.
 
-Milliseconds, the least of the repeats, all measured in turn: processor time for one thread, the clock's for more.
+Milliseconds, the minimum over alternating repeats: processor time for one thread, wall time for more.
 
-    build      a new detector and its first find: every event with its own time
-    first      a full detection by a detector that has its trees: every event with its own time
-    again      a further find from the same start, to a nearer end: the next round of one edit
-    all        ipctk given everything: LBVH and the quicker of its narrow phases, for the earliest time only
-    at best    the same in its quickest setting: static pairs filtered, or culled to what moves (..sessions.peer_mesh)
-    mesh       culling and ipctk's own mesh for that, made once a drag: not in "all" nor "at best"
+build      a new detector and its first search: every event with its time
+    first      a full detection by a detector with trees: every event with its time
+    again      a further search from the same start to a closer end: the next round of an edit
+    all        ipctk on the complete mesh: LBVH and the faster of its narrow phases, for the earliest time only
+    at best    the same in its fastest setting: static pairs filtered, or culled to the moving surface
+    mesh       culling and ipctk's own mesh, once per drag: included neither in "all" nor in "at best"
 
-all/build compares cold starts: our connectivity and trees are new; (all+mesh)/build counts those of ipctk too.
+all/build compares cold starts with new connectivity and trees; (all+mesh)/build includes those of ipctk.
 
-`python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--vectors avx512 avx2 baseline] [--models FOLDER]
-[--json FILE]`. ipctk comes with tools/requirements/bench.txt; without it its columns stay empty. `--vectors` limits our
-vector code to that of older processors; the peer keeps its own.
+`python -m benchmarks.detection [--scenes NAME ...] [--threads 1 2] [--vectors avx512 avx2 baseline] [--models
+FOLDER] [--json FILE]`. tools/requirements/bench.txt includes ipctk; without it, its columns are empty.
+`--vectors` limits our vector code to that of older processors; ipctk is not limited.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How time and memory of one detection grow with the number of triangles, each size in a process of its own."""
+"""Growth of the time and memory of one detection with the number of triangles, each size in its own process."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ CUTS = (20, 40, 79, 158, 224)  #: 24 cuts^2 triangles: 9,600 to 1.2 million
 
 @dataclass(frozen=True)
 class Size:
-    """One size: milliseconds of a full detection, and the most memory that its process held."""
+    """One size: milliseconds of a full detection, and the peak memory of its process."""
 
     triangles: int
     hits: int
     first: float
     megabytes: float  #: of the interpreter, the arrays of the scene and the detector
-    before: float  #: of these, what was held before the detector was made
+    before: float  #: of these, the memory before the detector was created
 
 
 def _held() -> float:
@@ -41,7 +41,7 @@ def one_size(cuts: int, threads: int, repeats: int) -> Size:
 
 
 def all_sizes(threads: int, repeats: int) -> list[Size]:
-    """Measure each size in a process of its own, so that its memory is its own."""
+    """Measure each size in its own process, to separate the memory."""
     context = multiprocessing.get_context("spawn")
     sizes = []
     for cuts in CUTS:

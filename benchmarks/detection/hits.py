@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which pairs really meet in a step: ours and Tight-Inclusion's hits, each looked at again in exact arithmetic.
+"""Pairs that really collide in a step: our hits and Tight-Inclusion's, checked in exact arithmetic.
 
-Both report every pair that meets, so those of them that exact arithmetic confirms are all that meet.
+Both report every colliding pair, so the hits confirmed by exact arithmetic are all of them.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ Pair = tuple[str, tuple[int, ...]]
 class Hits:
     """Numbers of pairs at separation 0."""
 
-    exact: int  #: meet by exact arithmetic
+    exact: int  #: collide in exact arithmetic
     ours: int
-    ours_false: int  #: of ours, those that do not meet
+    ours_false: int  #: our hits that do not collide
     ours_missed: int
     tight_inclusion: int
     tight_inclusion_false: int
@@ -43,7 +43,7 @@ class Hits:
 
 
 def count_hits(step: Step, ipctk: ModuleType) -> Hits:
-    """Ask both, and exact arithmetic on every pair that either reports."""
+    """Run both, and exact arithmetic on every reported pair."""
     events = stiv.Detector(step.triangles, threads=1).find(step.start, step.end)
     ours = {_named(kind, row) for kind, row in zip(events.kind_names, events.vertices.tolist(), strict=True)}
     peer = Peer(ipctk, step, 1)
@@ -62,7 +62,7 @@ def count_hits(step: Step, ipctk: ModuleType) -> Hits:
 
 
 def _named(kind: str, row: list[int]) -> Pair:
-    """The same name for a pair whichever way round its face and edges are given."""
+    """A canonical key of a pair, for any order of its face and edges."""
     first = 1 if kind == "vf" else 2
     sides = [tuple(sorted(row[:first])), tuple(sorted(row[first:]))]
     return kind, sum(sides if kind == "vf" else sorted(sides), ())

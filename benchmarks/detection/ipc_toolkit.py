@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow phases.
+"""The peer: detection of one step by ipctk [Ferguson et al. 2020], its fastest broad phase with both narrow
+phases.
 
-Its documentation lets a user give it less than everything: see benchmarks.sessions.peer_mesh for the settings.
+Its documentation describes how to reduce its input; see benchmarks.sessions.peer_mesh for the settings.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ NARROW_PHASES = ("additive", "tight inclusion")
 
 
 class Peer:
-    """One step prepared for ipctk: its mesh and column-major positions, which are not part of what is timed."""
+    """One step prepared for ipctk: its mesh and column-major positions, which are not timed."""
 
     def __init__(self, ipctk: ModuleType, step: Step, threads: int, setting: str = "everything") -> None:
         ipctk.set_num_threads(threads)
@@ -28,17 +29,17 @@ class Peer:
         self._candidates = ipctk.Candidates()
 
     def build_mesh(self) -> None:
-        """Cull and order the triangles as the setting says, and make the peer's mesh of them."""
+        """Cull and order the triangles for the setting, and create the peer's mesh."""
         given = peer_mesh(self._ipctk, self._step, self._setting)
         self._mesh, self._start, self._end = given.mesh, given.start, given.end
 
     def find_candidates(self) -> None:
-        """Broad phase: all pairs of vertices and faces, and of edges, whose swept boxes overlap."""
+        """Broad phase: all vertex-face and edge-edge pairs whose swept boxes overlap."""
         self._candidates = self._ipctk.Candidates()
         self._candidates.build(self._mesh, self._start, self._end, 0, self._ipctk.LBVH())
 
     def earliest_time(self, narrow_phase: str) -> float:
-        """Narrow phase over the candidates found: the earliest time only, later pairs being cut short."""
+        """Narrow phase over the candidates: only the earliest time; later pairs are skipped."""
         time: float = self._candidates.compute_collision_free_stepsize(
             self._mesh, self._start, self._end, 0, self._narrow[narrow_phase]
         )
@@ -50,7 +51,7 @@ class Peer:
         return len(self._candidates.fv_candidates) + len(self._candidates.ee_candidates)
 
     def hits(self, narrow_phase: str) -> Iterator[tuple[str, list[int]]]:
-        """Candidates that meet within the step, each asked on its own (slow): kind and the four vertices."""
+        """Candidates that collide within the step, each tested separately (slow): kind and the four vertices."""
         mesh, ccd = self._mesh, self._narrow[narrow_phase]
         for kind, candidates in (("vf", self._candidates.fv_candidates), ("ee", self._candidates.ee_candidates)):
             for pair in candidates:
@@ -60,7 +61,7 @@ class Peer:
 
 
 def load() -> ModuleType | None:
-    """ipctk, or None after saying how to get it."""
+    """ipctk, or None after printing how to install it."""
     try:
         import ipctk
     except ImportError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Times of one step: our detector in its three states and the peer's parts in turn, the least of the repeats."""
+"""Times of one step: our detector in its three states and the parts of the peer, the minimum over repeats."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ PATIENCE = 3.0  #: a narrow phase this many times slower than the best one so fa
 
 @dataclass
 class PeerFigures:
-    """What the peer took for one step in one of its settings; milliseconds."""
+    """Times of the peer for one step in one of its settings, in milliseconds."""
 
-    mesh: float  #: culling, and making its mesh: once a drag
+    mesh: float  #: culling, and creating its mesh: once per drag
     broad: float
     narrow: dict[str, float]
     earliest: dict[str, float]  #: time found, by narrow phase
-    candidates: int  #: pairs of vertex and face or two edges whose swept boxes overlap
+    candidates: int  #: vertex-face and edge-edge pairs whose swept boxes overlap
 
     @property
     def best(self) -> tuple[str, float]:
-        """The quicker narrow phase and the milliseconds of a whole detection with it, the mesh being there."""
+        """The faster narrow phase and the milliseconds of a whole detection with it, without creating the mesh."""
         name = min(self.narrow, key=lambda narrow: self.narrow[narrow])
         return name, self.broad + self.narrow[name]
 
 
 @dataclass
 class Figures:
-    """What one step took on a number of threads; times in milliseconds, None where a peer is not installed."""
+    """Times of one step on a number of threads, in milliseconds; None if a peer is not installed."""
 
     scene: str
     triangles: int
@@ -48,20 +48,20 @@ class Figures:
     vectors: str  #: our vector code, see native/include/stiv/vector_target.hpp
     hits: int
     earliest: float  #: time of the first event, inf if there is none
-    build: float  #: a new detector and its first find
-    first: float  #: a find of a kept detector from a start that it has not seen: one full detection
-    again: float  #: a further find from the same start to a nearer end: the next round of an edit
-    peer: dict[str, PeerFigures] = field(default_factory=dict)  #: by its settings; empty where it is not installed
+    build: float  #: a new detector and its first search
+    first: float  #: a search of an existing detector from a new start: one full detection
+    again: float  #: a further search from the same start to a closer end: the next round of an edit
+    peer: dict[str, PeerFigures] = field(default_factory=dict)  #: by its settings; empty if it is not installed
 
     @property
     def peer_best(self) -> tuple[str, float]:
-        """The peer's quickest setting and the milliseconds of a whole detection in it."""
+        """The peer's fastest setting and the milliseconds of a whole detection with it."""
         setting = min(self.peer, key=lambda name: self.peer[name].best[1])
         return setting, self.peer[setting].best[1]
 
 
 class Stopwatch:
-    """The least time of each thing measured, milliseconds: of the processor for one thread, of the clock for more."""
+    """The minimum time of each measurement in milliseconds: processor time for one thread, wall time for more."""
 
     def __init__(self, threads: int) -> None:
         self._clock = time.process_time if threads == 1 else time.perf_counter
@@ -75,7 +75,7 @@ class Stopwatch:
 
 
 def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) -> Figures:
-    """Time everything `repeats` times in turn, so that what else the machine does falls on all alike."""
+    """Time everything `repeats` times alternately, so that other load affects all measurements equally."""
     watch = Stopwatch(threads)
     settings = settings_of(LinearStep(step.triangles, step.start, step.end)) if ipctk else ()
     peers = {setting: Peer(ipctk, step, threads, setting) for setting in settings} if ipctk else {}
@@ -86,7 +86,9 @@ def measure(step: Step, threads: int, repeats: int, ipctk: ModuleType | None) ->
     earliest: dict[str, dict[str, float]] = {setting: {} for setting in peers}
     for _ in range(repeats):
         watch.run("build", lambda: stiv.Detector(step.triangles, threads=threads).find(step.start, step.end))
-        detector.find(step.start - 3 * motion, step.start - 2 * motion)  # an edit before: nothing of this one is known
+        detector.find(
+            step.start - 3 * motion, step.start - 2 * motion
+        )  # a previous edit: nothing of this one is cached
         watch.run("first", lambda: detector.find(step.start, step.end))
         watch.run("again", lambda: detector.find(step.start, nearer))
         for setting, peer in peers.items():

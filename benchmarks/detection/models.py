@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Steps of meshes from files: each shrunk upon by a shell, and each pair one inside the other, as far as they go."""
+"""Steps of meshes from files: a shell shrunk onto each mesh, and one mesh of each pair grown inside the other."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from blend_fixtures.scenes.detection_steps import Step, rounded_box
 from stiv.mesh_files import read_mesh
 
 Array = NDArray[np.float64]
-CONTACT, BEYOND = 0.98, 1.012  #: the step starts at this share of the size of first contact and grows to that one
+CONTACT, BEYOND = 0.98, 1.012  #: the step grows from this fraction of the size of first contact to that size
 
 
 def free_triangles(vertices: Array, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The triangles that no other one meets; what a mesh as shipped has of self-intersections is left out."""
+    """The triangles that intersect no other one; self-intersections of the original mesh are omitted."""
     pairs = stiv.find_intersections(vertices, triangles)
     return np.delete(triangles, np.unique(pairs), axis=0)
 
@@ -28,7 +28,7 @@ def _centred(vertices: Array) -> Array:
 
 
 def growing_inside(name: str, inner: tuple[Array, NDArray[np.int32]], outer: tuple[Array, NDArray[np.int32]]) -> Step:
-    """A step in which the inner mesh grows about the middle of the outer one, a little beyond first contact."""
+    """A step in which the inner mesh grows about the centre of the outer one, slightly beyond first contact."""
     (inside, inner_triangles), (outside, outer_triangles) = inner, outer
     triangles = np.concatenate([inner_triangles, outer_triangles + np.int32(len(inside))])
     detector = stiv.Detector(triangles)
@@ -38,14 +38,14 @@ def growing_inside(name: str, inner: tuple[Array, NDArray[np.int32]], outer: tup
         return np.concatenate([size * unit, outside])
 
     size, time = 0.5 * float(np.linalg.norm(outside, axis=1).min()), np.inf
-    while time > 1:  # small steps, as the swept boxes of a large one meet too many others
+    while time > 1:  # small steps, because the swept boxes of a large one overlap too many others
         time = detector.earliest_time(sized(size), sized(1.03 * size))
         size *= 1 + 0.03 * min(time, 1.0)
     return Step(name, triangles, sized(CONTACT * size), sized(BEYOND * size))
 
 
 def steps(folder: Path) -> list[Step]:
-    """All steps that the meshes of a folder give, in order of their names."""
+    """All steps from the meshes of a folder, sorted by name."""
     meshes: dict[str, tuple[Array, NDArray[np.int32]]] = {}
     for path in sorted(folder.glob("*.obj")):
         mesh = read_mesh(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of the race, one line a step."""
+"""The table of the race, one line per step."""
 
 from __future__ import annotations
 

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact static test beside ipctk, libigl and CGAL on the same meshes, one thread.
+"""The exact static test compared with ipctk, libigl and CGAL on the same meshes, one thread.
 
-Milliseconds of processor time, the least of the repeats, all measured in turn.
+Milliseconds of processor time, the minimum over alternating repeats.
 
     new        find_intersections from plain triangles: connectivity, trees, all pairs
-    surface    the same of a Surface: trees, all pairs
-    kept       IntersectionTest, which has its trees: all pairs
-    ipctk      has_intersections: whether there is one, not exact
+surface    the same for a Surface: trees, all pairs
+    reused     IntersectionTest with existing trees: all pairs
+ipctk      has_intersections: whether there is any, not exact
     libigl     find_self_intersections: all pairs
     igl first  the same, which ends at the first
     CGAL       self_intersections: all pairs
 
-`python -m benchmarks.intersections [--models FOLDER] [--json FILE]`; ipctk and libigl come with
-tools/requirements/bench.txt, CGAL with Debian's libcgal-dev and `make peers`.
+`python -m benchmarks.intersections [--models FOLDER] [--json FILE]`; tools/requirements/bench.txt
+includes ipctk and libigl; CGAL needs Debian's libcgal-dev and `make peers`.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from stiv.mesh_files import read_mesh
 
 from . import peers
 
-COLUMNS = ("new", "surface", "kept", "ipctk", "libigl", "igl first", "CGAL")
+COLUMNS = ("new", "surface", "reused", "ipctk", "libigl", "igl first", "CGAL")
 SCENES = ("pressed", "vase", "soup", "knot", "shell", "panel")
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """What is tested."""
+    """A mesh to test."""
 
     name: str
     vertices: NDArray[np.float64]
@@ -47,7 +47,7 @@ class Mesh:
 
 
 def meshes(folder: Path | None) -> Iterator[Mesh]:
-    """Starts of the steps that detection is measured on, and the files of a folder as shipped."""
+    """Starts of the steps of the detection benchmark, and the unchanged files of a folder."""
     for name in SCENES:
         step = STEPS[name]()
         yield Mesh(step.name, step.start, step.triangles)
@@ -58,14 +58,14 @@ def meshes(folder: Path | None) -> Iterator[Mesh]:
 
 
 def measure(mesh: Mesh, repeats: int, cgal: Path) -> dict[str, object]:
-    """Milliseconds by column, and the number of pairs that each of the exact ones finds."""
+    """Milliseconds by column, and the number of pairs found by each exact method."""
     watch = Stopwatch(1)
     surface = stiv.Surface(mesh.faces, vertex_count=len(mesh.vertices))
     kept = stiv.IntersectionTest(surface, threads=1)
     runs: dict[str, Callable[[], object] | None] = {
         "new": lambda: stiv.find_intersections(mesh.vertices, mesh.faces, threads=1),
         "surface": lambda: stiv.find_intersections(mesh.vertices, surface, threads=1),
-        "kept": lambda: kept.find(mesh.vertices),
+        "reused": lambda: kept.find(mesh.vertices),
         "ipctk": peers.ipc_toolkit(mesh.vertices, mesh.faces),
         "libigl": peers.libigl(mesh.vertices, mesh.faces),
         "igl first": peers.libigl(mesh.vertices, mesh.faces, first_only=True),
@@ -84,17 +84,17 @@ def measure(mesh: Mesh, repeats: int, cgal: Path) -> dict[str, object]:
 
 
 def print_row(mesh: Mesh, least: dict[str, float], pairs: dict[str, float]) -> None:
-    """One line; the ratio is that of the quickest exact peer for all pairs to our test with kept trees."""
+    """One line; the ratio compares the fastest exact peer for all pairs with our test with existing trees."""
     times = " ".join(f"{least[name]:9.1f}" if name in least else f"{'-':>9}" for name in COLUMNS)
     others = [name for name in ("ipctk", "libigl", "igl first", "CGAL") if name in least]
     ratios = [least[name] / least["surface"] for name in others]
-    kept = [least[name] / least["kept"] for name in others]
+    kept = [least[name] / least["reused"] for name in others]
     ratio = f"{min(ratios):7.1f} {min(kept):7.1f}" if ratios else f"{'-':>7} {'-':>7}"
     print(f"{mesh.name:18} {len(mesh.faces):9,} {pairs['stiv']:8,} | {times} | {ratio}", flush=True)
 
 
 def main() -> None:
-    """Print the table, and write it as JSON if asked."""
+    """Print the table, and optionally write it as JSON."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=5, help="default: 5")
     parser.add_argument("--models", type=Path, help="folder of .obj files to test too")

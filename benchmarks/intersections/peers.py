@@ -20,12 +20,12 @@ CGAL = Path("build/bench/benchmarks/intersections/cgal_self_intersections")
 
 @cache
 def missing(name: str, way: str) -> None:
-    """Say how to get a peer that is not there, once."""
+    """Print once how to install a missing peer."""
     print(f"{name} is not there, its column stays empty: {way}")
 
 
 def ipc_toolkit(vertices: Array, faces: Faces) -> Callable[[], object] | None:
-    """`has_intersections`: whether an edge meets a face, in floating point; ends at the first."""
+    """`has_intersections`: whether any edge intersects a face, in floating point; stops at the first."""
     try:
         import ipctk
     except ImportError:
@@ -50,13 +50,13 @@ def libigl(vertices: Array, faces: Faces, *, first_only: bool = False) -> Callab
 
 
 class Cgal:
-    """`self_intersections`: all pairs, exact predicates; timed by the program itself."""
+    """`self_intersections`: all pairs, exact predicates; the program measures its own time."""
 
     def __init__(self, program: Path, vertices: Array, faces: Faces) -> None:
         self._program, self._vertices, self._faces = program, vertices, faces
 
     def run(self, repeats: int) -> dict[str, float] | None:
-        """Milliseconds ("all", "first") and the number of pairs; None where the program is not built."""
+        """Milliseconds ("all", "first") and the number of pairs; None if the program is not built."""
         if not self._program.exists():
             missing("CGAL", "install Debian's libcgal-dev, then `make peers`")
             return None

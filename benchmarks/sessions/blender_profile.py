@@ -32,9 +32,9 @@ def blender_profile(
 ) -> list[dict[str, Any]]:
     """One row a scene, by the clock. Raises InputError where there are no .blend files.
 
-    Frames are those of one thread, each solved to its end; "dragged" are the same drags as a user sees them, for each
-    number of threads (see `dragged_rows`).
-    frames_of: opens a .blend and runs the script beside it; the `FrameTime` of each frame.
+    Frames are those of one thread, each solved to its end; "dragged" are the same drags as a user sees them,
+    for each number of threads (see `dragged_rows`). frames_of: opens a .blend and runs the script beside it;
+    the `FrameTime` of each frame.
     """
     rows = []
     for name in names:
@@ -65,7 +65,8 @@ def blender_profile(
 
 
 def shares_with_blender(frames: Sequence[Any], total: float) -> dict[str, float]:
-    """How all time divides: the parts of the pipeline, Blender's evaluation, the rest of writing, the rest of all.
+    """How all time divides: the parts of the pipeline, Blender's evaluation, the rest of writing, the rest of
+    all.
 
     The core's timings are taken as shares of the time of solving, which includes what calls the core.
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dressing's shirt by Blender's own cloth simulation with collisions, beside ours: from the same states, as many
-frames as edits, the same wants.
+"""The dressing's shirt by Blender's own cloth simulation with collisions, beside ours: from the same states,
+as many frames as edits, the same wants.
 """
 
 from __future__ import annotations

@@ -33,10 +33,11 @@ def simulate_cloth(
     shrink: float = 0.0,
     distance: float = 1e-3,
 ) -> ClothRun:
-    """Replace the open file by a scene of a cloth and a body that goes evenly to `body_end`, (m, 3), and simulate it.
+    """Replace the open file by a scene of a cloth and a body that goes evenly to `body_end`, (m, 3), and
+    simulate it.
 
-    Meshes are positions (n, 3) and triangles (f, 3). The cloth is without weight, collides with itself too, and its
-    fabric shrinks evenly by the share `shrink`. `distance` is kept between them, in world units.
+    Meshes are positions (n, 3) and triangles (f, 3). The cloth is without weight, collides with itself too,
+    and its fabric shrinks evenly by the share `shrink`. `distance` is kept between them, in world units.
     """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene

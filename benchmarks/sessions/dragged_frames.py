@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user sees of a drag: an edit script dragged as the add-on does it, while the mouse moves on by the clock.
+"""What a user sees of a drag: an edit script dragged as the add-on does it, while the mouse moves on by the
+clock.
 
-A step that repeats is one drag. The mouse is where the script's repetitions say at each moment, SPEED of them a second,
-then it rests until nothing is left to solve for, and the drag is confirmed. A tick comes every TICK seconds, or as soon
-as the last one is over. There is no window: Blender's evaluation is in the time, its drawing is not.
+A step that repeats is one drag. The mouse is where the script's repetitions say at each moment, SPEED of them
+a second, then it rests until nothing is left to solve for, and the drag is confirmed. A tick comes every TICK
+seconds, or as soon as the last one is over. There is no window: Blender's evaluation is in the time, its
+drawing is not.
 """
 
 from __future__ import annotations
@@ -109,8 +111,8 @@ def dragged_stages(
 ) -> list[DraggedStage]:
     """Drags a script through the open scene; steps that reshape are run between, and not timed.
 
-    settings_of: a scene's, as of a drag of the add-on. new_drag: the add-on's drag of a kind, with what begins an edit
-    of the scene and the goal of a place of the mouse. Raises InputError as `replay`.
+    settings_of: a scene's, as of a drag of the add-on. new_drag: the add-on's drag of a kind, with what
+    begins an edit of the scene and the goal of a place of the mouse. Raises InputError as `replay`.
     """
     stages = []
     for number, step in enumerate(script.steps):

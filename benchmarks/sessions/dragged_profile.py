@@ -33,10 +33,11 @@ def _stage(stage: Any) -> dict[str, Any]:
 
 
 def dragged_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a scene and number of threads, milliseconds: ticks, new pictures while the mouse moves, the rest of all.
+    """A line a scene and number of threads, milliseconds: ticks, new pictures while the mouse moves, the rest
+    of all.
 
-    "ticks", "apart" and "behind" each as worst / 95 % / median: how long a tick holds the interface, how far apart in
-    time new states are shown while the mouse moves, and how long ago it was where they are.
+    "ticks", "apart" and "behind" each as worst / 95 % / median: how long a tick holds the interface, how far
+    apart in time new states are shown while the mouse moves, and how long ago it was where they are.
     """
     head = f"{'as dragged':10} {'threads':>7} {'ticks':>17} {'apart':>17} {'behind':>17} {'settling':>8} {'begin':>6}"
     return "\n".join([head, *(_line(row["scene"], part) for row in rows for part in row["dragged"])])

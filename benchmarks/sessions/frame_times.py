@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long each frame of a session takes in Blender: an edit script run as drags, Blender's evaluation included.
+"""How long each frame of a session takes in Blender: an edit script run as drags, Blender's evaluation
+included.
 
-A step that repeats is one drag: begun once, then a frame for each repetition, which solves toward the absolute goal,
-writes, lets Blender evaluate, reads back and tests. A step that reshapes (contract, expand, ...) is one operator call.
+A step that repeats is one drag: begun once, then a frame for each repetition, which solves toward the
+absolute goal, writes, lets Blender evaluate, reads back and tests. A step that reshapes (contract, expand,
+...) is one operator call.
 """
 
 from __future__ import annotations
@@ -62,8 +64,8 @@ def frame_times(script: EditScript, settings_of: Callable[[Any], EditSettings]) 
 
 
 def goal_matrix(step: EditStep, repetition: float, pivot: Floats) -> Floats:
-    """The absolute transform (4, 4) of a drag after so many repetitions of a move or a scaling about `pivot` (3,),
-    of which the last may be a part.
+    """The absolute transform (4, 4) of a drag after so many repetitions of a move or a scaling about `pivot`
+    (3,), of which the last may be a part.
     """
     matrix = np.eye(4)
     value = np.array(step.values["value"])

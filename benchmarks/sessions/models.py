@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures 9 and 1 with models from a folder: the Stanford bunny in Newell's teapot, and an ogre dressed.
 
-Each model is welded and repaired first. Of the ogre its largest connected part takes part, the body: the others, eyes,
-teeth and a loincloth, stick in it, and are no part of the session.
+Each model is welded and repaired first. Of the ogre its largest connected part takes part, the body: the
+others, eyes, teeth and a loincloth, stick in it, and are no part of the session.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ LARGEST_PART_OF = ("ogre.obj",)
 
 
 def models(folder: Path, threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
-    """One row a figure and number of threads, as of the table; figures whose files are absent are left out, and said.
+    """One row a figure and number of threads, as of the table; figures whose files are absent are left out,
+    and said.
 
     Raises InputError for a folder that is none, and for a model that cannot be repaired.
     """

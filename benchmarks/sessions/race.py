@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The edits of the table's sessions against the strongest simple answer: go until the first contact, found by ipctk.
+"""The edits of the table's sessions against the strongest simple answer: go until the first contact, found by
+ipctk.
 
-ipctk [Ferguson et al. 2020] brings a broad phase on linear trees and additive continuous detection; it must be
-installed. Both answer the same edits from the same accepted states. The share of the wanted motion kept is
+ipctk [Ferguson et al. 2020] brings a broad phase on linear trees and additive continuous detection; it must
+be installed. Both answer the same edits from the same accepted states. The share of the wanted motion kept is
 1 - |q - q~| / |q0 - q~|.
 
-The second opponent is our own loop with ipctk's detection in it: it comes to the same states, and its time is that of
-our edit with each of our detections at the price that ipctk has for the step that is wanted. ipctk is favoured by that:
-what it is asked for is the earliest time alone, which lets it leave most candidates after a look.
+The second opponent is our own loop with ipctk's detection in it: it comes to the same states, and its time is
+that of our edit with each of our detections at the price that ipctk has for the step that is wanted. ipctk is
+favoured by that: what it is asked for is the earliest time alone, which lets it leave most candidates after a
+look.
 
-ipctk is given everything, and culled to what moves and what is near that (peer_mesh.py): the table has the quicker of
-both for each edit. Culling and the mesh made of it are not in its time.
+ipctk is given everything, and culled to what moves and what is near that (peer_mesh.py): the table has the
+quicker of both for each edit. Culling and the mesh made of it are not in its time.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run the edits of a session, and the same edits again by other options.
 
-Time is the processor's, of all threads together, and the clock's beside it: where other work shares the machine, only
-the first says much.
+Time is the processor's, of all threads together, and the clock's beside it: where other work shares the
+machine, only the first says much.
 """
 
 from __future__ import annotations
@@ -83,8 +83,8 @@ def record(session: Any, options: dict[str, Any], report: Report) -> tuple[list[
 def repeat(recorded: Sequence[RecordedStage], preset: Preset, options: dict[str, Any]) -> list[EditFigures]:
     """The recorded edits once more, each from its recorded start, by other options.
 
-    Where the answer before is that start, the session just goes on: pairs that were close are at hand, as they were
-    when it was recorded.
+    Where the answer before is that start, the session just goes on: pairs that were close are at hand, as
+    they were when it was recorded.
     """
     figures = []
     for part in recorded:

@@ -12,7 +12,7 @@ import stiv
 from benchmarks.sessions.running import EditFigures, Preset, RecordedStage, Report, record, repeat
 from blend_fixtures.scenes.sessions import catalogue
 
-#: Vertices, triangles, collisions, regions, iterations and total ms with many constraints and with one. [Table 1]
+# : Vertices, triangles, collisions, regions, iterations and total ms with many constraints and with one. [Table 1]
 PUBLISHED: dict[str, dict[str, Any]] = {
     "plant": {"vertices": 13759, "triangles": 26782, "collisions": 36.21, "regions": 4.07,
               "iterations": (1.56, 2.20), "ms_per_edit": (75.52, 89.31)},
@@ -43,12 +43,13 @@ PARTS = {
 def table1(
     names: Sequence[str], threads: Sequence[int], report: Report, kinds: Sequence[str] = tuple(KINDS)
 ) -> list[dict[str, Any]]:
-    """One row a scene, preset, kind of constraint and number of threads; the paper's own figures are not among them.
+    """One row a scene, preset, kind of constraint and number of threads; the paper's own figures are not
+    among them.
 
     kinds: of KINDS; "many" is always among the rows by our defaults.
 
-    The edits are those that come when the session is solved by our defaults; every other row answers the same edits,
-    each from the same accepted state, so that energies compare.
+    The edits are those that come when the session is solved by our defaults; every other row answers the same
+    edits, each from the same accepted state, so that energies compare.
     """
     sessions = catalogue.table_sessions()
     rows = []
