@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contraction of a surface toward its skeleton, and expansion back with interference."""
+"""Contraction of a surface toward its skeleton, and expansion with collisions."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from stiv.surface import Surface, as_surface
 
 @dataclass(frozen=True)
 class ContractionOptions:
-    """How a contraction goes on. Every default is the one recommended."""
+    """Options of a contraction. The defaults are recommended."""
 
-    smoothing: float = 1.0  #: w of the first step, whatever the size of the shape
-    growth: float = 2.0  #: factor on w from step to step, above 1
+    smoothing: float = 1.0  #: weight w of the first step, independent of the size of the shape
+    growth: float = 2.0  #: factor of w from step to step, above 1
     max_steps: int = 16
-    tolerance: float = 2.0  #: stops at so many times the fewest pairs so far, at least 1
+    tolerance: float = 2.0  #: stops when the pairs exceed this multiple of their minimum, at least 1
 
 
 @dataclass(frozen=True)
 class ContractionResult:
-    """What a contraction came to."""
+    """Result of a contraction."""
 
-    positions: NDArray[np.float64]  #: (m, 3) of the step that left the fewest pairs; the start if none left fewer
-    free: bool  #: nothing intersects there
+    positions: NDArray[np.float64]  #: (m, 3) after the step with the fewest pairs; the start if no step reduced them
+    free: bool  #: whether the surface there is free of intersections
     pairs: list[int]  #: number of intersecting pairs at the start and after each step
 
 
@@ -49,12 +49,12 @@ def contraction_step(
 
     surface    Surface, or its triangles (F, 3)
     positions  (N, 3)
-    start      (N, 3) shape that the contraction began with, which gives weights and areas; None: `positions`
-    smoothing  w: how strong the step is, above 0, the same for any size; double it from step to step
-    moves      (N,) of bool: vertices that move; None: all
+    start      (N, 3) shape before the contraction, which determines weights and areas; None: `positions`
+    smoothing  w, the strength of the step, above 0 and independent of size; double it from step to step
+    moves      (N,) bool: vertices that may move; None: all
 
-    Constrained Laplacian smoothing [Au et al., Skeleton extraction by mesh contraction, 2008]: shrinks along the
-    normals, thin parts first, while what has shrunk holds on to its place. Intersections may come and go.
+    Constrained Laplacian smoothing [Au et al., Skeleton extraction by mesh contraction, 2008]. It shrinks along the
+    normals, thin parts first, and attracts shrunk parts to their position. Intersections may appear and disappear.
     """
     q = as_floats(positions, "positions", (None, 3))
     whole = as_surface(surface, len(q))
@@ -79,16 +79,16 @@ def contract(
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
 ) -> ContractionResult:
-    """Contract until the exact test finds nothing that intersects, or until intersections grow.
+    """Contract until the exact test finds no intersections, or until they increase.
 
     surface           Surface, or its triangles (F, 3)
     positions         (m, 3) controls: the positions of all vertices, if there is no deformation
     deformation       from the controls to the surface; None: every vertex is a control
-    cage              Surface of the controls, or its triangles (C, 3): what is smoothed; needed with a deformation
-    moves             (m,) of bool: controls that move; None: all
-    single_precision  controls are rounded as float32 will store them, before they are tested
-    storage           frames in which they are stored, as in EditOptions; empty: world coordinates for all
-    cancel, progress  as for EditSession.edit; a cancelled contraction gives the start, and no counts of pairs
+    cage              Surface of the controls, or its triangles (C, 3), which is smoothed; required with a deformation
+    moves             (m,) bool: controls that may move; None: all
+    single_precision  whether controls are rounded to float32 before they are tested
+    storage           frames of stored controls, as in EditOptions; empty: world coordinates for all
+    cancel, progress  as for EditSession.edit; a cancelled contraction returns the start, without counts of pairs
     """
     p = as_floats(positions, "positions", (None, 3))
     whole, mesh = as_caged(surface, deformation, cage, len(p))
@@ -112,14 +112,14 @@ def expand(
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
 ) -> EditResult:
-    """Take a surface free of intersections toward any `target` with the same vertices, with interference on.
+    """Move a surface free of intersections toward any `target` with the same vertices, with collisions.
 
     surface            Surface, or its triangles (F, 3)
     positions, target  (m, 3) controls each: the positions of all vertices, if there is no deformation
     deformation        from the controls to the surface; None: every vertex is a control
     cancel, progress   as for EditSession.edit
 
-    One edit, then settling: what a contraction is undone with. Raises StartIntersectsError if `positions` intersect.
+    One edit, then settling; used to undo a contraction. Raises StartIntersectsError if `positions` intersect.
     """
     p = as_floats(positions, "positions", (None, 3))
     whole = as_surface(surface, len(p) if deformation is None else deformation.vertex_count)
@@ -131,30 +131,30 @@ def expand(
 def as_caged(
     surface: Surface | ArrayLike, deformation: Deformation | None, cage: Surface | ArrayLike | None, controls: int
 ) -> tuple[Surface, Surface]:
-    """Return the surface and the mesh of its controls: the surface itself, if there is no deformation."""
+    """Return the surface and the mesh of its controls, which is the surface itself without a deformation."""
     if deformation is None:
         if cage is not None:
-            raise InputError("cage: goes with a deformation, and there is none")
+            raise InputError("cage: there is no deformation; leave out the cage")
         whole = as_surface(surface, controls)
         return whole, whole
     if cage is None:
-        raise InputError("cage: the triangles of the controls are needed with a deformation")
+        raise InputError("cage: a deformation needs the triangles of its controls")
     return as_surface(surface, deformation.vertex_count), as_surface(cage, controls)
 
 
 def as_marks(moves: ArrayLike | None, count: int) -> list[int]:
-    """Return `moves`, (count,) of bool, as the core takes it."""
+    """Return `moves`, (count,) bool, in the form of the core."""
     if moves is None:
         return []
     marks = np.asarray(moves)
     if marks.dtype != bool or marks.shape != (count,):
-        raise InputError(f"moves: expected ({count},) of bool, not {marks.shape} of {marks.dtype}")
+        raise InputError(f"moves: expected ({count},) bool, not {marks.shape} {marks.dtype}")
     result: list[int] = marks.astype(int).tolist()
     return result
 
 
 def native_contraction(options: ContractionOptions) -> Any:
-    """Return the options as the core takes them."""
+    """Return the options in the form of the core."""
     native = _native.ContractionOptions()
     for option in fields(options):
         value = getattr(options, option.name)

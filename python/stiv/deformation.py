@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Deformations: maps q = f(p) from controls, (m, 3), to the positions of a surface, (n, 3).
 
-Controls and positions are float64, in world space and in the caller's unit of length. What a row of controls means is
-the deformation's affair: a vertex, a cage vertex, a lattice point; for rigid bodies two rows, centre and rotation
-vector.
+Controls and positions are float64, in world space and in the caller's unit of length. A row of controls is a vertex, a
+cage vertex or a lattice point. A rigid body has two rows: its center and its rotation vector.
 """
 
 from collections.abc import Sequence
@@ -32,7 +31,7 @@ __all__ = [
 
 
 def identity(vertex_count: int) -> Deformation:
-    """Return q = p: one control a vertex.
+    """Return q = p, with one control per vertex.
 
     Raises InputError if `vertex_count` is negative.
     """
@@ -42,12 +41,11 @@ def identity(vertex_count: int) -> Deformation:
 def linear(matrix: Any, offset: ArrayLike | None = None) -> Deformation:
     """Return q = M p + c, with the same weights for x, y and z.
 
-    matrix  M, (n, m): Weights; or a sparse matrix of SciPy, or anything else with `indptr`, `indices`, `data` and
-            `shape` in the sense of its CSR format; or a tuple of these four; or a dense array. Weights of one control
-            in one row add up.
+    matrix  M, (n, m): Weights, a sparse matrix of SciPy, any object with `indptr`, `indices`, `data` and `shape` in
+            CSR format, a tuple of these four, or a dense array. Several weights of one control in a row are added.
     offset  c, (n, 3), length; None: zero
 
-    Raises InputError naming the row: lists that do not fit together, a control out of range, a number not finite.
+    Raises InputError naming the row: inconsistent lists, a control out of range, a number that is not finite.
     """
     weights = as_weights(matrix, "matrix")
     rows = weights.shape[0]
@@ -63,7 +61,7 @@ def linear_weights(deformation: Deformation) -> tuple[Weights, Floats | None]:
     """
     parts = _native.linear_parts(deformation)
     if parts is None:
-        raise InputError("deformation: it is not linear, so it has no weights")
+        raise InputError("deformation: only linear deformations have weights")
     rows, offset = parts
     return Weights(*rows), offset if len(offset) else None
 
@@ -71,11 +69,11 @@ def linear_weights(deformation: Deformation) -> tuple[Weights, Floats | None]:
 def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Deformation:
     """Return the deformation q = outer(inner(...(p))).
 
-    The last one acts first: `compose(subdivision, lattice)` subdivides what the lattice deforms. Each has as many
-    controls as the next one has vertices. Weights stand for the linear deformation without offset that they describe.
-    The last one may be a deformation by handles (`laplacian`, `arap`); all others must have sparse weights.
+    The last one acts first: `compose(subdivision, lattice)` subdivides the mesh that the lattice deforms. Each has as
+    many controls as the next one has vertices. Weights are linear deformations without offset. The last one may be a
+    deformation by handles (`laplacian`, `arap`). All others need sparse weights.
 
-    Raises InputError if numbers do not fit or a deformation is of another kind.
+    Raises InputError if numbers do not match, or for another kind of deformation.
     """
     chain = [linear(part) if isinstance(part, Weights) else part for part in (outer, *inner)]
     result = chain[-1]
@@ -85,10 +83,10 @@ def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Defo
 
 
 def rigid(vertices: ArrayLike) -> Deformation:
-    """Return the motion of a rigid body: q_i = centre + R r_i.
+    """Return the motion of a rigid body: q_i = center + R r_i.
 
-    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the centre, and the rotation vector (axis times angle,
-    radians) that R belongs to. At `rigid_rest_controls(vertices)` nothing is moved.
+    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the center, and the rotation vector
+    of R (axis times angle in radians). At `rigid_rest_controls(vertices)`, all vertices are at rest.
 
     vertices  (n, 3) world positions at rest, length
 
@@ -98,18 +96,18 @@ def rigid(vertices: ArrayLike) -> Deformation:
 
 
 def rigid_rest_controls(vertices: ArrayLike) -> Floats:
-    """Return the controls, (2, 3), at which `rigid(vertices)` moves nothing: the mean of the vertices, and zero."""
+    """Return the controls, (2, 3), of `rigid(vertices)` at rest: the mean of the vertices, and zero."""
     return _native.rigid_rest_controls(as_floats(vertices, "vertices", (None, 3)))
 
 
 def scaling(vertices: ArrayLike, rotation: ArrayLike) -> Deformation:
-    """Return an object's scaling along its own axes: q_i = centre + R diag(s) R' r_i.
+    """Return an object's scaling along its own axes: q_i = center + R diag(s) R^T r_i.
 
-    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the centre, and the scale factors s, 1 as it is. At
-    `scaling_rest_controls(vertices)` nothing is moved.
+    r_i = vertices_i - mean of the vertices. Controls are (2, 3): the center and the scale factors s. At
+    `scaling_rest_controls(vertices)`, all vertices are at rest.
 
     vertices  (n, 3) world positions at rest, length
-    rotation  R, (3, 3): its columns are the object's axes in world space, of length 1 and at right angles
+    rotation  R, (3, 3): its columns are the object's axes in world space, orthonormal
 
     Raises InputError naming a vertex that is not finite, or if `rotation` is not a rotation.
     """
@@ -118,20 +116,20 @@ def scaling(vertices: ArrayLike, rotation: ArrayLike) -> Deformation:
 
 
 def scaling_rest_controls(vertices: ArrayLike) -> Floats:
-    """Return the controls, (2, 3), at which `scaling(vertices, ...)` moves nothing: the mean of the vertices, and 1."""
+    """Return the controls, (2, 3), of `scaling(vertices, ...)` at rest: the mean of the vertices, and 1."""
     return _native.scaling_rest_controls(as_floats(vertices, "vertices", (None, 3)))
 
 
 def concatenate(parts: Sequence[tuple[Deformation, ArrayLike]], start: ArrayLike) -> Deformation:
     """Return several deformations side by side on one surface.
 
-    Controls are stacked in the order of the parts; each part responds by its own metric.
+    Controls are stacked in the order of the components. Each component responds in its own metric.
 
     parts  pairs of a deformation and the vertices (k,) of the whole surface that it moves, in its own order
-    start  (N, 3) positions of the whole surface, length; vertices of no part stay there
+    start  (N, 3) positions of the whole surface, length; all other vertices stay there
 
-    Raises InputError naming part and vertex: an index out of range, a vertex moved twice, a part whose number of
-    vertices does not fit its deformation.
+    Raises InputError naming component and vertex: an index out of range, a vertex in two components, or a number of
+    vertices that does not match the deformation.
     """
     whole = as_floats(start, "start", (None, 3))
     native = [

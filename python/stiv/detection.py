@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finding interference along linear steps."""
+"""Continuous collision detection along linear steps."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,12 +18,12 @@ from stiv.surface import Surface, as_surface
 class Events:
     """Interference events as arrays, sorted by kind and vertices.
 
-    With the weights w of an event, sum w = 0 and sum w_k x_k(time) is the separation vector, from the second to the
-    first side.
+    For the weights w of an event, sum w = 0, and sum w_k x_k(time) is the vector from the closest point of the second
+    side to that of the first.
     """
 
     kind: NDArray[np.uint8]
-    """(K,) 0 where a vertex meets a face (vertices v, a, b, c), 1 where two edges meet (a0, a1, b0, b1)."""
+    """(K,) 0 for a vertex and a face (vertices v, a, b, c), 1 for two edges (a0, a1, b0, b1)."""
     vertices: Indices
     """(K, 4)"""
     time: Floats
@@ -31,9 +31,9 @@ class Events:
     weights: Floats
     """(K, 4): (1, -a, -b, -c) or (1-s, s, -(1-u), -u)"""
     normal: Floats
-    """(K, 3) unit; normal . (relative displacement) <= 0; zero where none can be told"""
+    """(K, 3) contact normals of length 1; normal . (relative displacement) <= 0; zero if undefined"""
     start_distance: Floats
-    """(K,) distance of the two primitives at the start of the step"""
+    """(K,) distance of the primitives at the start of the step"""
 
     def __len__(self) -> int:
         """Return the number of events."""
@@ -46,14 +46,14 @@ class Events:
 
 
 def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: float = 0.0, *, threads: int = 0) -> Floats:
-    """Return when each of M pairs first comes within `separation`, (M,) float64: in [0, 1], inf where it never does.
+    """Return the time of impact of M pairs of primitives, (M,) float64: in [0, 1], inf without impact.
 
-    kind        "vf": vertex, then the three of a face; "ee": two of one edge, then two of the other
+    kind        "vf": a vertex, then the three of a face; "ee": the two of one edge, then of the other
     start, end  (M, 4, 3): the four vertices before and after a linear motion
-    separation  at least 0, in the units of the positions; distances are those of the whole primitives
+    separation  at least 0; impact is where the distance of the primitives first falls to it
     threads     0: one for each processor
 
-    Conservative: never later than the true time, 0 where a pair starts within the separation.
+    Conservative: never later than the true time, and 0 for a pair that starts within the separation.
     Raises InputError naming the row for wrong shapes, numbers that are not finite, and coordinates that are neither 0
     nor of magnitude 1e-70 to 1e70.
     """
@@ -70,20 +70,20 @@ def time_of_impact(kind: str, start: ArrayLike, end: ArrayLike, separation: floa
 
 
 class Detector:
-    """Finds interference along steps of one surface; keeps its trees between calls.
+    """Finds interference along steps of one surface. Caches its trees between calls.
 
-    What rests from call to call costs next to nothing, and so does a step from the same start to a nearby end: the next
-    round of an edit. Events are those of a new detector, bit for bit.
+    Vertices that rest between calls cost almost nothing, and so does a step from the same start to a nearby end, as in
+    the next round of an edit. Events equal those of a new detector bit by bit.
 
     surface       Surface, or triangles (F, 3) over as many vertices as the first step has
-    broad_phase   "bvh": trees; "hash_grid": cells of equal size; "brute_force": all pairs, the oracle
-    narrow_phase  "conservative": advancement by separating planes, never late; "polynomial": as in the paper, roots of
-                  cubics (or of degree six, for a separation) less 1/100, which misses contacts on edges and corners
-                  and in a common plane
+    broad_phase   "bvh": bounding volume hierarchies; "hash_grid": a uniform grid; "brute_force": all pairs, for tests
+    narrow_phase  "conservative": conservative advancement with separating planes, never late; "polynomial": as in the
+                  paper, roots of polynomials of degree 3 (6 with a separation) minus 1/100, which misses contacts on
+                  edges and corners and in a common plane
     threads       0: one for each processor; results are the same for any number
 
-    Left out are pairs that share a vertex, pairs of which no vertex moves, and pairs of bodies that do not meet.
-    Contiguous arrays of float64 are read where they are, without a copy: nothing may write to them during a call.
+    Pairs that share a vertex, static pairs and ignored pairs of bodies are not tested. Contiguous float64 arrays are
+    read in place, so no other thread may write to them during a call.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Detector:
         narrow_phase: str = "conservative",
         threads: int = 0,
     ) -> None:
-        """Check the arguments; trees are built at the first step."""
+        """Check the arguments. The first step builds the trees."""
         self._broad_phase = as_choice(broad_phase, "broad_phase", _native.BroadPhase)
         self._narrow_phase = as_choice(narrow_phase, "narrow_phase", _native.NarrowPhase)
         self._threads = as_count(threads, "threads")
@@ -115,7 +115,7 @@ class Detector:
     def earliest_time(
         self, start: ArrayLike, end: ArrayLike, separation: float = 0.0, min_clearance_ratio: float = 0.5
     ) -> float:
-        """Return the time of the earliest event, inf if there is none; cheaper than `find`."""
+        """Return the time of the earliest event, inf if there is none. Faster than `find`."""
         first, last = self._positions(start, end)
         with _naming_rows(first, last):
             return self._ready(len(first)).earliest_time(first, last, *_proximity(separation, min_clearance_ratio))
@@ -134,8 +134,8 @@ class Detector:
 
 @contextmanager
 def _naming_rows(start: Floats, end: Floats) -> Iterator[None]:
-    """Says in which array the core met a number that is not finite. It looks at what changed since the last step alone,
-    which in a further round of a local edit costs a part of looking at all.
+    """Adds the name of the array to errors on numbers that are not finite. The core only checks rows that changed since
+    the last step, which is faster.
     """
     try:
         yield
@@ -158,9 +158,9 @@ def find_interference(
     narrow_phase: str = "conservative",
     threads: int = 0,
 ) -> Events:
-    """Return all events of one step; see Detector, which keeps its trees for the next.
+    """Return all events of one step. For several steps, `Detector` is faster.
 
-    triangles   (F, 3), or a Surface; vertices of no triangle take part as points
+    triangles   (F, 3), or a Surface; vertices without a triangle are points
     start, end  (N, 3) positions
     """
     first = as_floats(start, "start", (None, 3))

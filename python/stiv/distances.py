@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near surfaces are to each other, at rest."""
+"""The least distance between the bodies of a surface."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from stiv.surface import Surface, as_surface
 
 @dataclass(frozen=True)
 class LeastDistance:
-    """Where two triangles of a surface are nearest to each other."""
+    """The closest points of two triangles of a surface."""
 
-    distance: float  #: 0 where they intersect
+    distance: float  #: 0 if they intersect
     triangles: tuple[int, int]  #: smaller index first
-    bodies: tuple[str, str]  #: names of the bodies that they belong to
-    points: Floats  #: (2, 3) on each of them; where they intersect, the nearest points of their borders
+    bodies: tuple[str, str]  #: names of their bodies
+    points: Floats  #: (2, 3) the closest point of each; of their boundaries if they intersect
 
 
 def least_distance(vertices: ArrayLike, surface: Surface | ArrayLike, *, within: bool = False) -> LeastDistance | None:
     """Return the least distance between triangles of different bodies at ``vertices``, (N, 3); None without a pair.
 
-    surface  triangles, (F, 3), or a Surface; pairs of bodies that do not meet are left out
-    within   also pairs of one body, but those that share a vertex
+    surface  triangles, (F, 3), or a Surface, without its ignored pairs of bodies
+    within   also test pairs within a body that share no vertex
 
     Raises InputError naming the row: a coordinate that is not finite, an index out of range, a wrong shape or dtype.
     """
@@ -38,7 +38,7 @@ def least_distance(vertices: ArrayLike, surface: Surface | ArrayLike, *, within:
 
 
 def least_distance_of(values: tuple[Any, ...] | None, surface: Surface) -> LeastDistance | None:
-    """Return what the core found, with names."""
+    """Return the result of the core, with names."""
     if values is None:
         return None
     distance, (first, second), points = values

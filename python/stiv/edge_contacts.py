@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seams with T-junctions: triangles that touch in edges alone, where a vertex of one lies on an edge of the other.
+"""T-junctions: triangles that touch only along edges, where a vertex of one lies on an edge of the other.
 
-In rational arithmetic, since what is asked for are exact coincidences: fillings of text have such edges.
+Uses rational arithmetic, because only exact coincidence counts. Filled text has such edges.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 from stiv.arrays import Floats, Indices
 
 Point = tuple[Fraction, Fraction, Fraction]
-NEAR = 1e-5  # of the size of a pair: farther apart, no vertex is on an edge
-DEEP = 1e-3  # barycentric coordinate of a point that is inside of a triangle whatever rounding does
+NEAR = 1e-5  # in sizes of a pair: a vertex farther from an edge is not on it
+DEEP = 1e-3  # barycentric coordinates above this are inside a triangle despite rounding
 INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
 
 
 def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
-    """Which pairs of triangles, (k, 2), that meet have nothing in common but parts of an edge of each, (k,).
+    """Return which intersecting pairs of triangles, (k, 2), only share points of an edge of each, (k,) bool.
 
     positions  (n, 3) of one mesh
     triangles  (f, 3)
 
-    Edges that cross in a point inside of both are no seam. A triangle without area is an edge.
+    Edges that cross at a point inside both are no seam. A triangle without area counts as an edge.
     """
     corners = positions[triangles[pairs]].astype(np.float64)  # (k, 2, 3, 3)
     found = _vertex_near_edge(corners)
@@ -38,32 +38,32 @@ def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: In
 
 
 def _vertex_near_edge(corners: Floats) -> NDArray[np.bool_]:
-    """Which pairs, (k,), have a vertex of one near an edge of the other, to within rounding."""
+    """Return which pairs have a vertex of one near an edge of the other, (k,) bool."""
     near = np.zeros(len(corners), np.bool_)
     size = np.ptp(corners.reshape(len(corners), 6, 3), axis=1).max(axis=1, initial=0.0)
     for one, other in ((0, 1), (1, 0)):
         for corner in range(3):
             for edge in range(3):
                 start, end = corners[:, other, edge], corners[:, other, (edge + 1) % 3]
-                along, arm = end - start, corners[:, one, corner] - start
+                along, offset = end - start, corners[:, one, corner] - start
                 length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-                share = np.clip((arm * along).sum(axis=1) / length, 0, 1)
-                near |= np.linalg.norm(arm - share[:, None] * along, axis=1) <= NEAR * size
+                fraction = np.clip((offset * along).sum(axis=1) / length, 0, 1)
+                near |= np.linalg.norm(offset - fraction[:, None] * along, axis=1) <= NEAR * size
     return near
 
 
 def _overlap_clearly(corners: Floats) -> NDArray[np.bool_]:
-    """Which pairs, (k,), lie on each other, with a point of one deep inside of the other: most that are doubled."""
+    """Return which pairs clearly overlap, with a point of one well inside the other, (k,) bool."""
     overlap = np.zeros(len(corners), np.bool_)
     for one, other in ((0, 1), (1, 0)):
         a, u, v = (corners[:, other, 0], *(corners[:, other, k] - corners[:, other, 0] for k in (1, 2)))
         normal = np.cross(u, v)
         area = np.maximum((normal**2).sum(axis=1), np.finfo(float).tiny)
         for inside in INSIDE:
-            arm = inside @ corners[:, one] - a
-            second = (np.cross(arm, v) * normal).sum(axis=1) / area
-            third = (np.cross(u, arm) * normal).sum(axis=1) / area
-            height = np.abs((arm * normal).sum(axis=1)) / area**0.75
+            offset = inside @ corners[:, one] - a
+            second = (np.cross(offset, v) * normal).sum(axis=1) / area
+            third = (np.cross(u, offset) * normal).sum(axis=1) / area
+            height = np.abs((offset * normal).sum(axis=1)) / area**0.75
             overlap |= (np.minimum(second, third) > DEEP) & (second + third < 1 - DEEP) & (height < NEAR)
     return overlap
 
@@ -80,14 +80,14 @@ def _touch_in_edges(first: Sequence[Point], second: Sequence[Point]) -> bool:
 
 
 def _touch_as_segments(first: Sequence[Point], second: Sequence[Point]) -> bool:
-    """Do triangles without area, which meet, overlap in a line, or in an end of one?"""
+    """Return whether two intersecting triangles without area overlap in a line, or at an end of one."""
     return any(
         _on_edge([point], other) for one, other in ((first, second), (second, first)) for point in one
-    )  # on its line is enough: lines that are not the same meet in one point
+    )  # points on the line suffice: distinct lines share one point
 
 
 def _common(first: Sequence[Point], second: Sequence[Point]) -> list[Point]:
-    """Points whose hull two triangles have in common, the second of which has an area."""
+    """Return points whose convex hull is the intersection of two triangles; the second has an area."""
     a, b, c = second
     x, y, z = normal = _cross(_minus(b, a), _minus(c, a))
     polygon = _clipped(_clipped(list(first), normal, a), (-x, -y, -z), a)
@@ -97,14 +97,14 @@ def _common(first: Sequence[Point], second: Sequence[Point]) -> list[Point]:
 
 
 def _clipped(polygon: Sequence[Point], normal: Point, origin: Point) -> list[Point]:
-    """What of a convex polygon lies on the side of a plane that its normal points to (Sutherland and Hodgman 1974)."""
+    """Clip a convex polygon to the positive side of a plane. [Sutherland and Hodgman 1974]"""
     heights = [_dot(normal, _minus(point, origin)) for point in polygon]
     left: list[Point] = []
     for k, (point, height) in enumerate(zip(polygon, heights, strict=True)):
         before, other = heights[k - 1], polygon[k - 1]
         if height * before < 0:
-            share = before / (before - height)
-            x, y, z = (u + share * (v - u) for u, v in zip(other, point, strict=True))
+            fraction = before / (before - height)
+            x, y, z = (u + fraction * (v - u) for u, v in zip(other, point, strict=True))
             left.append((x, y, z))
         if height >= 0:
             left.append(point)
@@ -117,7 +117,7 @@ def _has_area(triangle: Sequence[Point]) -> bool:
 
 
 def _on_edge(points: Sequence[Point], triangle: Sequence[Point]) -> bool:
-    """Are all points on the line of one edge of a triangle?"""
+    """Return whether all points are on the line of one edge of a triangle."""
     a, b, c = triangle
     return any(
         start != end and not any(x for point in points for x in _cross(_minus(end, start), _minus(point, start)))

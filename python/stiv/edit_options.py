@@ -26,7 +26,7 @@ _MOST_SHOWN = 6  # entries of a list that a repr shows
 class StorageFrame:
     """Controls that are stored in single precision in a frame of their own.
 
-    Controls ``first`` to ``first + count - 1`` at world position ``x`` come back from storing as
+    Storing changes the world position ``x`` of controls ``first`` to ``first + count - 1`` to
     ``frame @ float32(inverse(frame) @ x)``.
     """
 
@@ -73,7 +73,7 @@ def _excluded_pairs(pairs: ArrayLike | None) -> list[list[int]]:
 
 
 def _choice(default: str, name: str, choices: type[Enum]) -> Any:
-    """Return a field whose value is the name of a member of an enum of the core."""
+    """Return a field whose value names a member of an enum of the core."""
     return field(default=default, metadata={"convert": partial(as_choice, name=name, choices=choices)})
 
 
@@ -179,7 +179,7 @@ def _shape(value: Any) -> str:
 
 
 def native_options(options: EditOptions) -> _native.EditOptions:
-    """Return the options as the core takes them."""
+    """Return the options in the form of the core."""
     native = _native.EditOptions()
     for option in fields(options):
         value = getattr(options, option.name)

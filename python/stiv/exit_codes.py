@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the command's exit codes mean."""
+"""Exit codes of the command `stiv`."""
 
 from enum import IntEnum
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deformations of a mesh by handles: some of its vertices are controls, some are fixed, and the others follow."""
+"""Deformations of a mesh by handles: some vertices are controls, some are fixed, and the others follow."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,25 +18,24 @@ def laplacian(
     pull: ArrayLike | float | None = 1.0,
     edge_weights: str = "uniform",
 ) -> Deformation:
-    """Return Laplacian editing: a mesh that keeps its differential coordinates while handles pull at it.
+    """Return Laplacian editing: handles move a mesh that preserves its differential coordinates.
 
-    The surface q minimises |L (q - vertices)|^2 + sum pull_k |q[handles[k]] - p_k|^2, L being the Laplacian whose rows
-    are divided by their diagonal. [Sorkine et al. 2004] Controls are the handles' positions, (m, 3); at
-    `vertices[handles]` nothing is moved. Linear in the controls; may be followed by linear deformations (`compose`),
-    for instance as a cage by its subdivision. Its equations are solved here, once: this takes seconds for 40,000
-    vertices and 500 handles.
+    The surface q minimizes |L (q - vertices)|^2 + sum pull_k |q[handles[k]] - p_k|^2 for the Laplacian L with rows
+    divided by their diagonal. [Sorkine et al. 2004] Controls are the positions of the handles, (m, 3). At
+    `vertices[handles]`, the mesh is at rest. The map is linear, and `compose` can apply linear deformations to it, such
+    as a subdivision to a cage. This function solves the equations once, which takes seconds for 40,000 vertices and 500
+    handles.
 
     vertices      (n, 3) positions at rest, length
     triangles     (F, 3)
     handles       (m,) vertices, each once
-    fixed         vertices that never move; connected parts of the mesh without a handle do not move either
-    pull          how hard a soft handle pulls, > 0, one for all or (m,); None: handles are hard, the surface goes
-                  through them
-    edge_weights  "uniform": all edges alike; "cotangent": by the angles opposite to them at rest, which makes up for
+    fixed         vertices that never move; components of the mesh without a handle do not move either
+    pull          stiffness of soft handles, > 0, one for all or (m,); None: handles are hard constraints
+    edge_weights  "uniform": 1 for all edges; "cotangent": by the opposite angles at rest, which compensates for
                   triangles of different sizes and shapes
 
-    Raises InputError naming the element: an index out of range, a handle given twice or fixed too, a number not finite,
-    a pull that is not positive.
+    Raises InputError naming the element: an index out of range, a repeated or fixed handle, a number that is not
+    finite, a pull that is not positive.
     """
     return _native.laplacian(_handles(vertices, triangles, handles, fixed, pull, edge_weights))
 
@@ -50,13 +49,13 @@ def arap(
     pull: ArrayLike | float | None = 1.0,
     edge_weights: str = "cotangent",
 ) -> Deformation:
-    """Return as-rigid-as-possible editing: a mesh whose neighbourhoods turn, but stretch as little as they can.
+    """Return as-rigid-as-possible editing: neighborhoods of the mesh rotate, and stretch as little as possible.
 
-    The surface q and a rotation R_i for each vertex minimise
+    The surface q and a rotation R_i for each vertex minimize
     1/4 sum_i sum_j w_ij |(q_i - q_j) - R_i (vertices_i - vertices_j)|^2 + 1/2 sum pull_k |q[handles[k]] - p_k|^2.
-    [Sorkine and Alexa 2007] Not linear in the controls: each surface is a search from the rest positions, some 20 to
-    100 times as long as a surface of `laplacian`. The same controls give the same surface, whatever came before; where
-    several surfaces are as good, a small change of the controls can lead to another one.
+    [Sorkine and Alexa 2007] Not linear in the controls: each surface is a minimization from the rest positions, which
+    takes 20 to 100 times as long as with `laplacian`. The surface depends on the controls alone. If there are several
+    minima, a small change of the controls can lead to another one.
 
     Arguments and errors are those of `laplacian`.
     """
@@ -64,11 +63,11 @@ def arap(
 
 
 def stored_mesh(mesh: Deformation, frame: ArrayLike) -> Deformation:
-    """Return the deformation of a mesh by handles whose vertices are stored in single precision.
+    """Return a deformation by handles whose surface is stored in single precision.
 
-    Its surface is what is read back: `frame @ float32(inverse(frame) @ q)` for every vertex at q; one that was read
-    from storage and is not moved stays as it is, bit by bit. A linear deformation may follow (`compose`), which then
-    acts on the stored vertices. The controls, which nothing stores, are taken as they are.
+    A vertex at q is stored as `frame @ float32(inverse(frame) @ q)`. A stored vertex that does not move stays the same
+    bit by bit. `compose` can apply a linear deformation to the stored vertices. Controls are not stored and not
+    rounded.
 
     mesh   of `laplacian` or `arap`
     frame  (4, 4) affine, local to world

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exact test for intersections of a surface at rest, and the test that a step must pass to be accepted."""
+"""The exact static test for intersections, and the test of steps for acceptance."""
 
 from numpy.typing import ArrayLike
 
@@ -15,14 +15,13 @@ def find_intersections(
 
     vertices    (N, 3) positions
     triangles   (F, 3) vertex indices, or a Surface
-    all_bodies  test every pair of a Surface, of bodies too that do not meet during edits (fixed ones, ignored pairs, a
-                rigid one with itself)
+    all_bodies  whether to also test pairs that edits do not: of fixed bodies, ignored pairs, a rigid body with itself
     threads     0: one for each processor; the result is the same for any number
 
-    Two triangles intersect if they meet in a point off the vertex or edge that they share by index. Touching, coplanar
-    overlap, duplicates, coincident vertices of different index (unless `join_seams` makes them one), and neighbours
-    folded flat onto each other count; triangles without area are segments or points. Exact for every input that is
-    accepted.
+    Two triangles intersect if they have a point in common apart from the vertex or edge that they share by index. This
+    includes contact, coplanar overlap, duplicates, neighbors that are folded flat, and coincident vertices of different
+    index (unless `join_seams` merges them). Triangles without area are segments or points. The result is exact.
+
     Raises InputError naming the row: a coordinate that is not finite, or that is neither 0 nor of magnitude 1e-70 to
     1e70, an index out of range, a wrong shape or dtype.
     """
@@ -31,14 +30,14 @@ def find_intersections(
 
 
 class IntersectionTest:
-    """The test of `find_intersections` for many states of one surface; keeps its trees between them.
+    """The test of `find_intersections` for many states of one surface. Caches its trees.
 
     surface  Surface
     threads  0: one for each processor; results are the same for any number
     """
 
     def __init__(self, surface: Surface, threads: int = 0) -> None:
-        """Take the surface; trees are built for the first positions, and follow those that come."""
+        """Store the surface. The first positions build the trees; later ones refit them."""
         self._vertex_count = surface.vertex_count
         self._native = _native.IntersectionTest(surface.native, as_count(threads, "threads"))
 
@@ -50,10 +49,10 @@ class IntersectionTest:
 def find_loose_intersections(
     vertices: ArrayLike, surface: Surface, *, all_bodies: bool = False, threads: int = 0
 ) -> tuple[Indices, Indices]:
-    """Return what meets triangles without being part of one: pairs (loose edge, triangle), (vertex, triangle).
+    """Return intersections of loose elements: pairs (loose edge, triangle) and (loose vertex, triangle).
 
-    Each is (K, 2) int32, sorted; a vertex is one of no triangle and no loose edge. Arguments, exactness and errors as
-    of find_intersections.
+    Each is (K, 2) int32, sorted. A loose vertex belongs to no triangle and no loose edge. Arguments, exactness and
+    errors are those of find_intersections.
     """
     whole, q = _prepared(vertices, surface, all_bodies)
     return _native.find_loose_intersections(whole.native, q, as_count(threads, "threads"))
@@ -62,16 +61,17 @@ def find_loose_intersections(
 def is_step_free(
     triangles: Surface | ArrayLike, start: ArrayLike, end: ArrayLike, separation: float = 0.0, *, threads: int = 0
 ) -> bool:
-    """Tell whether the linear step from `start` to `end` is free: its start, its whole path, and its end.
+    """Return whether the linear step from `start` to `end` is free, at its start, along its path and at its end.
 
     triangles   (F, 3) vertex indices, or a Surface
     start, end  (N, 3) positions
-    separation  distance to keep, at least 0, in the units of the positions; pairs that start nearer than that keep
-                half their distance instead
+    separation  minimum distance, at least 0, in the units of the positions; for pairs that start closer, half their
+                distance
     threads     0: one for each processor
 
-    Start and end are tested exactly (find_intersections, loose edges and vertices included), the path conservatively:
-    True is certain, False may also mean that something comes within rounding of a contact.
+    The test of start and end is exact, including loose edges and vertices. The test of the path is conservative: True
+    is certain, and False may also mean a near contact within the rounding error.
+
     Raises InputError as find_intersections does.
     """
     first = as_floats(start, "start", (None, 3))
@@ -82,21 +82,21 @@ def is_step_free(
 
 
 class StepCheck:
-    """The test of `is_step_free` for many steps of one surface, from starts known to be free; keeps its trees.
+    """The test of `is_step_free` for many steps of one surface from free starts. Caches its trees.
 
     surface  Surface
     threads  0: one for each processor; results are the same for any number
     """
 
     def __init__(self, surface: Surface, threads: int = 0) -> None:
-        """Take the surface; trees are built at the first step."""
+        """Store the surface. The first step builds the trees."""
         self._vertex_count = surface.vertex_count
         self._native = _native.StepCheck(surface.native, as_count(threads, "threads"))
 
     def is_free(self, start: ArrayLike, end: ArrayLike, separation: float = 0.0) -> bool:
-        """Tell whether the linear step from `start` to `end`, (N, 3) each, is free: its whole path and its end.
+        """Return whether the linear step from `start` to `end`, (N, 3) each, is free, along its path and at its end.
 
-        `start` must be free. Otherwise as `is_step_free`.
+        `start` must be free. Otherwise works like `is_step_free`.
         """
         first = as_floats(start, "start", (self._vertex_count, 3))
         last = as_floats(end, "end", (self._vertex_count, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lattices: free-form deformation by a grid of points, equal to Blender's Lattice modifier."""
+"""Lattices: free-form deformation by a grid of points, with the results of Blender's Lattice modifier."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ from stiv.weights import Weights
 def lattice_rest_points(resolution: Sequence[int]) -> Floats:
     """Return the points of a lattice in its own space, (u v w, 3): 1 apart, centred on the origin, u fastest.
 
-    Lattices of a Blender file can have other rest positions: read them from there.
+    A lattice in a Blender file can have other rest positions; read them from the file.
     """
     axes = [np.arange(points) - (points - 1) / 2 for points in _resolution(resolution)]
     w, v, u = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
@@ -31,19 +31,19 @@ def lattice_weights(
     rest: ArrayLike | None = None,
     point_weights: ArrayLike | None = None,
 ) -> Weights:
-    """Return the weights W, (n, u v w), with which the points of a lattice move vertices: x + W (p - rest).
+    """Return the weights W, (n, u v w), of the points of a lattice: vertices move to x + W (p - rest).
 
-    vertices       (n, 3) undeformed positions in the lattice's own space; they may lie outside of it
-    resolution     numbers of points (u, v, w), 1 to 64 each
-    interpolation  "linear", "cardinal", "catmull_rom" or "bspline"; one for all axes, or one for each
-    influence      the modifier's strength times its vertex group, a number or (n,); usual 1
-    rest           (u v w, 3) undeformed points in the lattice's own space, u fastest, at equal distances along each
-                   axis; None: `lattice_rest_points`
-    point_weights  (u v w,) weights of the lattice's own vertex group; None: there is none. With one, the influence
-                   enters twice, as it does in Blender.
+    vertices       (n, 3) undeformed positions in lattice space; they may lie outside the lattice
+    resolution     number of points along u, v and w, 1 to 64 each
+    interpolation  "linear", "cardinal", "catmull_rom" or "bspline"; one for all axes, or three
+    influence      the modifier's strength times the weights of its vertex group, a number or (n,)
+    rest           (u v w, 3) undeformed points in lattice space, u fastest, equally spaced along each axis; None:
+                   `lattice_rest_points`
+    point_weights  (u v w,) weights of the lattice's own vertex group, with which the influence applies twice, as in
+                   Blender; None: no group
 
-    Raises InputError naming the element: a resolution out of range, sizes that do not fit, a number not finite, points
-    that coincide along an axis.
+    Raises InputError naming the element: a resolution out of range, sizes that do not match, a number that is not
+    finite, points that coincide along an axis.
     """
     places = as_floats(vertices, "vertices", (None, 3))
     definition = _definition(resolution, interpolation, _rest_points(rest, resolution), point_weights)
@@ -63,10 +63,10 @@ def lattice(
     """Return the deformation of a surface by a lattice around it.
 
     Controls are the world positions of the lattice's points, (u v w, 3), u fastest:
-    q = vertices + W (p - rest points in world space). All arguments but two are those of `lattice_weights`:
+    q = vertices + W (p - rest points in world space). Other arguments are those of `lattice_weights`.
 
     vertices  (n, 3) world positions of the undeformed surface, length
-    frame     (4, 4) affine matrix from the lattice's own space to world space; None: the unit matrix
+    frame     (4, 4) affine matrix from lattice space to world space; None: identity
 
     Raises InputError as `lattice_weights` does, or if `frame` cannot be inverted.
     """
@@ -92,14 +92,16 @@ def _definition(
 def _resolution(resolution: Sequence[int]) -> list[int]:
     values = [int(points) for points in resolution]
     if len(values) != 3 or min(values) < 1 or max(values) > 64:
-        raise InputError(f"resolution: expected three numbers of points, 1 to 64 each, not {tuple(resolution)}")
+        raise InputError(
+            f"resolution: expected the number of points along three axes, 1 to 64 each, not {tuple(resolution)}"
+        )
     return values
 
 
 def _interpolations(interpolation: str | Sequence[str]) -> list[str]:
     names = [interpolation] * 3 if isinstance(interpolation, str) else list(interpolation)
     if len(names) != 3:
-        raise InputError(f"interpolation: expected one name, or three, not {len(names)}")
+        raise InputError(f"interpolation: expected one name or three, not {len(names)}")
     return names
 
 
@@ -113,7 +115,7 @@ def _inverse(frame: Floats) -> Floats:
     try:
         inverse: Floats = np.linalg.inv(frame).astype(np.float64)
     except np.linalg.LinAlgError as error:
-        raise InputError("frame: it cannot be inverted; a lattice scaled to zero deforms nothing") from error
+        raise InputError("frame: the matrix is singular; scale the lattice to a size above zero") from error
     return inverse
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs edit scripts on mesh files, without Blender.
 
-In Object Mode the objects of a step move as one, or are scaled; in Edit Mode its points move, which are vertices
-counted within their object. Everything else is in the way and stays.
+In Object Mode, the objects of a step move or scale together. In Edit Mode, its points move: vertices with indices
+within their object. Everything else is an obstacle.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ SETTINGS = ("separation", "smoothness", "threads")  # options of stiv.EditOption
 def replay_on_mesh(
     script: EditScript, mesh: Mesh, on_edit: Callable[[dict[str, Any]], None] = lambda report: None
 ) -> tuple[Mesh, list[dict[str, Any]]]:
-    """The mesh after every edit of the script, and what each one did; `on_edit` is told of each when it is done.
+    """Runs a script; returns the mesh and a report on each edit. Calls `on_edit` with each report.
 
-    Raises InputError, naming the edit, for what cannot be selected and for a start that intersects.
+    Raises InputError naming the edit for an invalid selection and for a start that intersects.
     """
     owners = vertex_objects(mesh)
     reports: list[dict[str, Any]] = []
@@ -46,30 +46,30 @@ def replay_on_mesh(
 
 
 def vertex_objects(mesh: Mesh) -> Indices:
-    """The object of each vertex, (N,); -1 for those of no triangle. Raises InputError for a vertex of two objects."""
+    """The object of each vertex, (N,); -1 without a triangle. Raises InputError for a vertex of two objects."""
     owners = np.full(len(mesh.vertices), -1, np.int32)
     owners[mesh.triangles] = mesh.triangle_object[:, None]
     shared = owners[mesh.triangles] != mesh.triangle_object[:, None]
     if shared.any():
         vertex = int(mesh.triangles[shared][0])
-        raise InputError(f"vertex {vertex}: belongs to triangles of two objects; give each object vertices of its own")
+        raise InputError(f"vertex {vertex}: belongs to two objects; split it, so that each object has its own vertices")
     return owners
 
 
 def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indices) -> tuple[stiv.EditResult, float]:
     begin = time.perf_counter()
     if step.operator not in TRANSFORMS:
-        raise InputError(f"mesh files take {', '.join(TRANSFORMS)} alone; `stiv repair` repairs them")
+        raise InputError(f"mesh files only support {', '.join(TRANSFORMS)}; run `stiv repair` to repair them")
     chosen = _objects(step, mesh)
     members = np.flatnonzero(np.isin(owners, chosen)).astype(np.int32)
     moved = members if step.points is None else members[_points(step, members)]
     if len(moved) == 0:
-        raise InputError("nothing is selected that may move")
+        raise InputError("no vertex is selected; name objects or points to move")
     kind = "deformable" if step.mode == "EDIT" or step.operator == "scale" else "rigid"
     surface = _surface(mesh, owners, chosen, kind)
     if kind == "deformable":
         joined = stiv.join_seams(surface, mesh.vertices)
-    else:  # what keeps its shape keeps its seams
+    else:  # a rigid motion keeps seams closed
         joined = stiv.Welded(surface, mesh.vertices, np.arange(len(mesh.vertices), dtype=np.int32))
     moved = np.unique(joined.vertex_map[moved])
     map_of = _point_map if step.mode == "EDIT" else _object_map
@@ -82,7 +82,7 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
 
 
 def _surface(mesh: Mesh, owners: Indices, chosen: list[int], kind: str) -> stiv.Surface:
-    """The mesh with one body an object, those chosen of a mobility, all others fixed."""
+    """The mesh with one body per object. Chosen bodies have the given mobility, all others are fixed."""
     bodies = [stiv.Body(name, kind if index in chosen else "fixed") for index, name in enumerate(mesh.object_names)]
     loose = stiv.Body("loose vertices", "fixed")
     return stiv.Surface(
@@ -98,33 +98,35 @@ def _surface(mesh: Mesh, owners: Indices, chosen: list[int], kind: str) -> stiv.
 def _objects(step: EditStep, mesh: Mesh) -> list[int]:
     for name in step.objects:
         if name not in mesh.object_names:
-            raise InputError(f'there is no object "{name}"; there are {", ".join(mesh.object_names)}')
+            raise InputError(f'there is no object "{name}"; the objects are {", ".join(mesh.object_names)}')
     return [mesh.object_names.index(name) for name in step.objects]
 
 
 def _points(step: EditStep, members: Indices) -> list[int]:
     points = list(step.points or ())
     if points and max(points) >= len(members):
-        raise InputError(f'object "{step.objects[0]}" has {len(members)} points; there is no point {max(points)}')
+        raise InputError(
+            f'object "{step.objects[0]}" has {len(members)} points, so point {max(points)} is out of range'
+        )
     return points
 
 
 def _options(settings: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in settings.items():
         if name not in SETTINGS:
-            raise InputError(f'setting "{name}": of mesh files there are {", ".join(SETTINGS)}')
+            raise InputError(f'setting "{name}": mesh files support {", ".join(SETTINGS)}')
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise InputError(f'setting "{name}": {value!r} is not a number')
     return {name: type(getattr(stiv.EditOptions, name))(value) for name, value in settings.items()}
 
 
 def _point_map(step: EditStep, points: Floats) -> tuple[stiv.Deformation, Floats, Floats]:
-    centre = points.mean(axis=0)
-    return stiv.identity(len(points)), points, (points - centre) @ _linear(step).T + centre + _shift(step)
+    center = points.mean(axis=0)
+    return stiv.identity(len(points)), points, (points - center) @ _linear(step).T + center + _shift(step)
 
 
 def _object_map(step: EditStep, points: Floats) -> tuple[stiv.Deformation, Floats, Floats]:
-    """One placement for all objects of the step: centre, and rotation vector or factors along the world's axes."""
+    """One placement for all objects of the step: center, and rotation vector or factors along the world axes."""
     if step.operator == "scale":
         start = stiv.scaling_rest_controls(points)
         return stiv.scaling(points, np.eye(3)), start, np.array([start[0], step.values["value"]], float)
@@ -143,13 +145,13 @@ def _rotation_vector(step: EditStep) -> Floats:
     axis = np.array(step.values["axis"], float)
     length = float(np.linalg.norm(axis))
     if length == 0:
-        raise InputError("axis: has no direction")
+        raise InputError("axis: the zero vector has no direction")
     vector: Floats = axis * (float(step.values["angle"]) / length)
     return vector
 
 
 def _linear(step: EditStep) -> Floats:
-    """The step's rotation or scale as a matrix, (3, 3). (Rodrigues)"""
+    """The rotation or scale of a step as a matrix, (3, 3), by Rodrigues' formula."""
     if step.operator == "scale":
         return np.diag(np.array(step.values["value"], float))
     vector = _rotation_vector(step)

@@ -4,8 +4,8 @@
     def test_the_plant_is_free(assert_free_of_intersections):
         assert_free_of_intersections("assets/plant.blend", frames="1:120")
 
-Each check runs `stiv check` in a process of its own: Blender is never loaded into the process of the tests, and a file
-that ends Blender ends one test. The ini option `stiv_blender` names an installed Blender to use.
+Each check runs `stiv check` in its own process. So the test process never loads Blender, and a crash of Blender only
+fails one test. The ini option `stiv_blender` names an installed Blender to use.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ from typing import Any
 import pytest
 
 from stiv.checks.findings import counted
+from stiv.exit_codes import ExitCode
 
 LISTED = 20  # pairs in a message
-_FREE, _NOT_FREE = 0, 4  # exit codes of `stiv check`
-
 AssertFree = Callable[..., None]
 
 
@@ -36,11 +35,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture(scope="session")
 def assert_free_of_intersections(pytestconfig: pytest.Config) -> AssertFree:
-    """A function of a path that fails the test if anything meets.
+    """A function that fails the test if a file has intersections. The message names objects and faces.
 
-    path: a .blend or a mesh file. frames: "A:B", "A:B:STEP" or "scene", to test these and the ways between them.
-    objects: names to be limited to. baseline: file of accepted findings. scene: name of the one to test, or "all".
-    render: test render levels however large. hidden: test what is hidden too. The message names objects and faces.
+    path: a .blend or a mesh file. frames: "A:B", "A:B:STEP" or "scene", to test these and the motion between them.
+    objects: names of the objects to test, empty for all. baseline: a file of accepted findings. scene: name of the
+    scene to test, or "all". render: whether to test render levels of any size. hidden: whether to test hidden objects.
     """
     blender = pytestconfig.getini("stiv_blender")
 
@@ -67,23 +66,23 @@ def assert_free_of_intersections(pytestconfig: pytest.Config) -> AssertFree:
 
 
 def _check(path: Path, options: Sequence[str]) -> str:
-    """What to tell of a file that is not free, or could not be checked; empty for one that is."""
+    """The message on a file with intersections or an error; empty for a file without."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         command = [sys.executable, "-m", "stiv.command_line", "check", str(path), "--json", str(report), *options]
         ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
-        if ended.returncode == _FREE:
+        if ended.returncode == ExitCode.DONE:
             return ""
-        if ended.returncode != _NOT_FREE:
+        if ended.returncode != ExitCode.NOT_FREE:
             return f"{path}: could not be checked (exit code {ended.returncode}):\n{ended.stderr.strip()}"
         (found,) = json.loads(report.read_text(encoding="utf-8"))["files"]
     lines = [f"{path}: {counted(found['intersections'], found['triangle_pairs'])}"]
-    lines += [f"  {_told(pair)}" for pair in found["pairs"][:LISTED]]
+    lines += [f"  {_text(pair)}" for pair in found["pairs"][:LISTED]]
     more = found["intersections"] - LISTED
     return "\n".join(lines + ([f"  ... and {more} more"] if more > 0 else []))
 
 
-def _told(pair: dict[str, Any]) -> str:
+def _text(pair: dict[str, Any]) -> str:
     return f"{_when(pair)}{_named(pair['first'])} - {_named(pair['second'])}"
 
 

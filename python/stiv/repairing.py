@@ -19,46 +19,48 @@ from stiv.welding import Welded, weld
 
 _REFUSALS = {
     "": "",
-    "coincident": "triangles lie exactly on others, so that neither is inside the other; weld, move or delete them",
-    "held": "some that intersect have no vertex that may move",
-    "not_freed": "no contraction, of all or of parts, is free of intersections; {fewest_pairs} pairs were left at best",
-    "too_far": "what is free of intersections deviates by {deviation:.2%} of the size, more than max_deviation",
+    "coincident": "triangles coincide with others; weld, move or delete them",
+    "held": "some intersecting triangles have no vertex that may move; let them move",
+    "not_freed": "no contraction is free of intersections; the best leaves {fewest_pairs} pairs",
+    "too_far": "the repaired shape deviates by {deviation:.2%} of the size, more than max_deviation allows",
 }
 
 
 @dataclass(frozen=True)
 class RepairOptions:
-    """How a surface is repaired. Every default is the one recommended."""
+    """Options of a repair. The defaults are recommended."""
 
     contraction: ContractionOptions = field(default_factory=ContractionOptions)
-    edit: EditOptions = field(default_factory=EditOptions)  #: separation, storage, threads; time budget of the whole
-    moves: ArrayLike | None = None  #: (m,) of bool: what may move; None: everything of deformable bodies
-    #: make coincident vertices one first; the result then has a surface of its own. Not with a deformation
+    edit: EditOptions = field(
+        default_factory=EditOptions
+    )  #: separation, storage, threads; time budget of the whole repair
+    moves: ArrayLike | None = None  #: (m,) bool: controls that may move; None: all of deformable bodies
+    #: merge coincident vertices first, which gives the result its own surface. Not with a deformation
     weld: bool = False
-    good_deviation: float = 0.01  #: what deviates no more is taken at once, else other ways are tried as well
-    max_deviation: float = 0.05  #: what deviates more is refused
+    good_deviation: float = 0.01  #: a repair that deviates no more is accepted at once; otherwise others are also tried
+    max_deviation: float = 0.05  #: repairs that deviate more are refused
 
 
 @dataclass(frozen=True)
 class RepairResult:
-    """What a repair came to. Only "already_free" and "repaired" are free of intersections, by the exact test."""
+    """Result of a repair. Only "already_free" and "repaired" are free of intersections, by the exact test."""
 
-    #: "already_free", "repaired", "refused" (`message` says why), "cancelled", or "budget" (the time was used up before
-    #: a repair was found); in the last three cases the positions are those given
+    #: "already_free", "repaired", "refused" (`message` is the reason), "cancelled", or "budget" (out of time without a
+    #: repair); the last three return the given positions
     status: str
     refusal: str  #: "", "coincident", "held", "not_freed" or "too_far"
-    message: str  #: the refusal in words
+    message: str  #: reason of the refusal as text
     surface: Surface  #: the one given; with `weld` the welded one
     positions: NDArray[np.float64]  #: (N', 3) of that surface; with a deformation the controls, (m, 3)
-    vertex_map: Indices  #: (N,) vertex of that surface for each one given
-    pairs: Indices  #: (K, 2) triangles that intersect at `positions`
-    loose_edge_pairs: Indices  #: (K, 2) loose edges and triangles that they meet
-    loose_vertex_pairs: Indices  #: (K, 2) vertices without edges and triangles that they lie on
+    vertex_map: Indices  #: (N,) vertex of that surface for each given vertex
+    pairs: Indices  #: (K, 2) intersecting triangles at `positions`
+    loose_edge_pairs: Indices  #: (K, 2) intersecting loose edges and triangles
+    loose_vertex_pairs: Indices  #: (K, 2) loose vertices on triangles
     pairs_before: int  #: number of all pairs before the repair
-    fewest_pairs: int  #: number of pairs that the best contraction left
-    steps: int  #: steps of contraction, of all tries
+    fewest_pairs: int  #: number of pairs after the best contraction
+    steps: int  #: steps of all contractions
     deviation: float  #: root mean square distance of the best repair from the start, in diagonals of what may move
-    contracted: str  #: what was contracted: the name of a body, "all", "shrunk components", "components" or "regions"
+    contracted: str  #: contracted part: the name of a body, "all", "shrunk components", "components" or "regions"
     counters: dict[str, int]
     timings: dict[str, float]
 
@@ -73,24 +75,24 @@ def repair(
     cancel: CancelToken | None = None,
     progress: Progress | None = None,
 ) -> RepairResult:
-    """Remove intersections that a surface already has: contract it until there are none, expand it with interference.
+    """Remove intersections of a surface: contract it until there are none, then expand it with collisions.
 
     surface           Surface, or its triangles (F, 3); only deformable bodies are moved
     positions         (m, 3) controls: the positions of all vertices, if there is no deformation
     deformation       from the controls to the surface; None: every vertex is a control
-    cage              Surface of the controls, or its triangles (C, 3): what is contracted; needed with a deformation
+    cage              Surface of the controls, or its triangles (C, 3), which is contracted; required with a deformation
     cancel, progress  as for EditSession.edit
 
-    Success is claimed only where the exact test says so; otherwise the positions stay as they were, and what intersects
-    is listed. Tried in this order until one deviates little: each body that all pairs have in common, closed ones
-    first; all that takes part; connected components shrunk until they are apart, then the parts around what intersects
-    within them; components contracted one after the other; the parts around what intersects.
+    Success requires that the exact test finds nothing. Otherwise the positions stay the same, and the result lists the
+    intersections. These contractions are tried in order until one deviates little: each body that all pairs have in
+    common, closed bodies first; everything; components shrunk until they are apart, then regions around the
+    intersections within them; one component after the other; regions around the intersections.
     """
     chosen = options or RepairOptions()
     q = as_floats(positions, "positions", (None, 3))
     given, mesh = as_caged(surface, deformation, cage, len(q))
     if chosen.weld and deformation is not None:
-        raise InputError("weld: what a deformation moves cannot be welded; weld its cage before")
+        raise InputError("weld: a deformed surface cannot be welded; weld its cage first")
     whole = weld(given, q) if chosen.weld else Welded(given, q, np.arange(given.vertex_count, dtype=np.int32))
     native = _native.RepairOptions()
     native.contraction = native_contraction(chosen.contraction)
@@ -105,7 +107,7 @@ def repair(
 
 
 def _moves_after(welded: Welded, moves: ArrayLike | None, count: int) -> ArrayLike | None:
-    """What may move of the welded surface: vertices of which all that they were made of may."""
+    """Return the welded vertices that may move: those whose original vertices all may."""
     if moves is None:
         return None
     held = np.bincount(welded.vertex_map, ~np.array(as_marks(moves, count), bool), len(welded.positions))

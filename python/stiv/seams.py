@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seams: vertices of one mesh in the same place, which make its faces one surface there without being shared."""
+"""Seams: vertices of one mesh at the same position, which connect its faces without being shared."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from stiv.arrays import Floats, Indices
 
 Flags = NDArray[np.bool_]
 Codes = NDArray[np.uint64]
-CELL = 32  # width of a cell of the grid in which close vertices are sought, in distances
+CELL = 32  # width of a cell of the grid that finds close vertices, in distances
 
 
 @dataclass(frozen=True)
 class Seams:
-    """Which vertices of a mesh are one.
+    """The vertices of a mesh that count as one.
 
     Attributes:
         index: joined vertex of each vertex, (n,).
-        first: the first vertex of each joined one, (k,), ascending.
+        first: the first vertex of each joined vertex, (k,), ascending.
     """
 
     index: Indices
@@ -30,7 +30,7 @@ class Seams:
 
     @staticmethod
     def of(leaders: Indices) -> Seams | None:
-        """From the first vertex that each vertex is one with, (n,), itself where it is the first; None: no seam."""
+        """From the first vertex that each vertex is joined with, (n,), or itself; None if there is no seam."""
         leads = leaders == np.arange(len(leaders))
         if leads.all():
             return None
@@ -39,19 +39,19 @@ class Seams:
 
     @property
     def leaders(self) -> Indices:
-        """The first vertex that each vertex is one with, (n,)."""
+        """The first vertex that each vertex is joined with, (n,)."""
         return self.first[self.index]
 
-    def limited_to(self, kept: Flags) -> Seams | None:
-        """The seams among some of the vertices, (n,); the others stand alone."""
+    def limited_to(self, included: Flags) -> Seams | None:
+        """The seams among the given vertices, (n,) bool. The other vertices are not joined."""
         own = np.arange(len(self.index), dtype=np.int32)
         first = np.full(len(self.first), len(own), np.int32)
-        np.minimum.at(first, self.index[kept], own[kept])
-        return Seams.of(np.where(kept, first[self.index], own).astype(np.int32))
+        np.minimum.at(first, self.index[included], own[included])
+        return Seams.of(np.where(included, first[self.index], own).astype(np.int32))
 
 
 def common_seams(one: Seams | None, other: Seams | None) -> Seams | None:
-    """The seams that two shapes of the same vertices both have."""
+    """The seams that two shapes of the same mesh have in common."""
     if one is None or other is None:
         return None
     both = one.index.astype(np.int64) * len(other.first) + other.index
@@ -60,14 +60,14 @@ def common_seams(one: Seams | None, other: Seams | None) -> Seams | None:
 
 
 def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: float = 0.0) -> Seams | None:
-    """Find the vertices of a mesh that are in the same place, exactly; -0.0 and 0.0 are the same.
+    """Find the vertices of a mesh at exactly the same position; -0.0 equals 0.0.
 
     positions  (n, 3)
     triangles  (f, 3)
-    rounding   vertices on open edges may differ by this share of the mesh's longest extent along an axis, and by one
-               unit in the last place of the largest coordinate
+    rounding   vertices on open edges may differ by this fraction of the largest extent of the mesh along an axis, and
+               by one unit in the last place of the largest coordinate
 
-    Returns None where there are none.
+    Returns None if there are none.
     """
     leaders = _coincident(positions)
     if rounding > 0 and len(triangles):
@@ -78,7 +78,7 @@ def find_seams(positions: NDArray[np.floating], triangles: Indices, rounding: fl
 def object_seams(positions: NDArray[np.floating], triangles: Indices, owners: Indices) -> Seams | None:
     """Find the seams within each of several objects on the same vertices.
 
-    owners  (f,) the object of each triangle; vertices of triangles of two objects stand alone
+    owners  (f,) the object of each triangle; vertices of two objects are not joined
     """
     first = np.full(len(positions), np.iinfo(np.int32).max, np.int32)
     last = np.full(len(positions), -1, np.int32)
@@ -88,7 +88,7 @@ def object_seams(positions: NDArray[np.floating], triangles: Indices, owners: In
 
 
 def group_seams(positions: NDArray[np.floating], groups: Indices) -> Seams | None:
-    """Find vertices in exactly the same place that belong to the same group, (n,); those of group -1 stand alone."""
+    """Find vertices of the same group, (n,), at exactly the same position. Those of group -1 are not joined."""
     leaders = _coincident(positions)
     own = np.arange(len(leaders), dtype=np.int32)
     if np.array_equal(leaders, own):
@@ -104,7 +104,7 @@ def seam_pairs(seams: Seams | None, triangles: Indices, faces: Indices) -> Indic
     triangles  (f, 3) vertices of the mesh
     faces      (f,) the face that each triangle belongs to
 
-    Both have a vertex of the same place, and not the same vertex. Triangles with two corners in one place are left out.
+    The faces have different vertices at the same position. Triangles with two corners at one position are ignored.
     """
     if seams is None or len(triangles) == 0:
         return np.empty((0, 2), np.int32)
@@ -125,7 +125,7 @@ def seam_pairs(seams: Seams | None, triangles: Indices, faces: Indices) -> Indic
 
 
 def _coincident(positions: NDArray[np.floating]) -> Indices:
-    """The first vertex in exactly the same place as each, (n,)."""
+    """The first vertex at exactly the same position as each, (n,)."""
     own = np.arange(len(positions), dtype=np.int32)
     places = np.ascontiguousarray(positions + positions.dtype.type(0))  # -0.0 becomes 0.0
     words = places.view(np.uint32 if places.dtype == np.float32 else np.uint64).reshape(len(places), 3)
@@ -135,7 +135,7 @@ def _coincident(positions: NDArray[np.floating]) -> Indices:
         return own
     order = np.argsort(codes, kind="stable")
     same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
-    if (same != (codes[order[1:]] == codes[order[:-1]])).any():  # different places of one code
+    if (same != (codes[order[1:]] == codes[order[:-1]])).any():  # different positions with the same code
         order = np.lexsort((own, *places.T))
         same = (places[order[1:]] == places[order[:-1]]).all(axis=1)
     begins = np.append(True, ~same)
@@ -145,7 +145,7 @@ def _coincident(positions: NDArray[np.floating]) -> Indices:
 
 
 def _mixed(words: Codes) -> Codes:
-    """One number for each row of three, (n,); the same for equal rows, and hardly ever for others."""
+    """A hash of each row, (n,)."""
     codes = np.zeros(len(words), np.uint64)
     for column in words.T:
         codes = (codes ^ column) * np.uint64(0x9E3779B97F4A7C15)
@@ -154,7 +154,7 @@ def _mixed(words: Codes) -> Codes:
 
 
 def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indices, rounding: float) -> Indices:
-    """Leaders, (n,), where open vertices that are within rounding of each other get one leader."""
+    """Leaders, (n,), with one leader for open vertices that are within rounding of each other."""
     largest = np.abs(positions).max()
     distance = rounding * float(np.ptp(positions, axis=0).max()) + float(np.spacing(largest))
     vertices = _open_vertices(triangles, leaders)
@@ -166,7 +166,7 @@ def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indic
         np.minimum.at(found, other, lower)
     found = found[found]
     near = (np.abs(places - places[found]) <= distance).all(axis=1) & (found[found] == found)
-    near &= np.bincount(found, ~near, len(found))[found] == 0  # a group that is not tight is none
+    near &= np.bincount(found, ~near, len(found))[found] == 0  # only groups in which all are close
     result = leaders.copy()
     result[vertices[near]] = vertices[found[near]]
     joined: Indices = result[leaders]
@@ -174,9 +174,9 @@ def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indic
 
 
 def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
-    """The leaders of vertices around which triangles are no closed fan.
+    """The leaders of vertices whose triangles do not form a closed fan.
 
-    Around a closed fan each neighbour follows one triangle and precedes one, so that sums of their codes cancel.
+    In a closed fan, each neighbor follows one triangle and precedes another, so the sums of their codes cancel.
     """
     codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
     sums = np.zeros(len(leaders))
@@ -189,9 +189,9 @@ def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
 
 
 def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of places, (b, 3), within a distance along each axis: of each tight group at least all with its first."""
+    """Pairs of positions, (b, 3), within a distance along each axis; of a close group, those with its first."""
     codes, numbers = _crowded(*_cells(places, distance))
-    while len(codes):  # the first of each cell against the others in it, and again without it and those near it
+    while len(codes):  # the first of each cell with the others; then without it and those near it
         begins = np.append(True, codes[1:] != codes[:-1])
         heads = numbers[begins][np.cumsum(begins) - 1]
         near = (np.abs(places[numbers] - places[heads]) <= distance).all(axis=1)
@@ -201,7 +201,7 @@ def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
 
 
 def _crowded(codes: Codes, numbers: Indices) -> tuple[Codes, Indices]:
-    """Codes and numbers of cells, sorted, without cells that one place has for itself."""
+    """Sorted codes and numbers of cells with several positions."""
     ordered = np.sort(codes)
     if not (ordered[1:] == ordered[:-1]).any():
         return codes[:0], numbers[:0]
@@ -213,7 +213,7 @@ def _crowded(codes: Codes, numbers: Indices) -> tuple[Codes, Indices]:
 
 
 def _cells(places: Floats, distance: float) -> tuple[Codes, Indices]:
-    """Codes of the cells of a grid that each place touches or is within a distance of, and the number of the place."""
+    """Codes of the grid cells within a distance of each position, and the number of the position."""
     cells = places / (CELL * distance)
     low, high = np.floor(cells - 1 / CELL).astype(np.int64), np.floor(cells + 1 / CELL).astype(np.int64)
     apart = low != high
@@ -227,7 +227,7 @@ def _cells(places: Floats, distance: float) -> tuple[Codes, Indices]:
 
 
 def _in_groups(groups: Indices) -> Iterator[tuple[Indices, Indices]]:
-    """All pairs of positions in a sorted list whose entries are the same."""
+    """All pairs of indices of equal entries in a sorted list."""
     ends = np.searchsorted(groups, groups, side="right")
     one = np.arange(len(groups), dtype=np.int32)
     for offset in range(1, len(groups)):

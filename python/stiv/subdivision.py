@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Subdivision of cages: by Catmull and Clark, equal to Blender's Subdivision Surface modifier, and by Loop."""
+"""Subdivision of cages: Catmull-Clark, with the results of Blender's Subdivision Surface modifier, and Loop."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,18 +16,18 @@ from stiv.weights import Weights
 
 @dataclass(frozen=True, eq=False)
 class Cage:
-    """Connectivity of a polygon cage. The order of its elements fixes the order of the subdivided vertices.
+    """Connectivity of a polygon cage. The order of its elements determines that of the subdivided vertices.
 
     vertex_count   V
-    corners        (C,) vertices of the corners of all faces, one face after the other
+    corners        (C,) vertices of the corners of all faces, face by face
     face_starts    (F + 1,) first corner of each face, and C
-    edges          (E, 2) all edges, loose ones (wires) included; None: the edges of the faces, smaller vertex first, in
+    edges          (E, 2) all edges, including loose ones; None: the edges of the faces, smaller vertex first, in
                    lexicographic order
-    edge_crease    (E,) in [0, 1]; None: no creases. Needs `edges`.
+    edge_crease    (E,) in [0, 1]; None: no creases. Requires `edges`
     vertex_crease  (V,) in [0, 1]; None: no creases
 
-    Functions that take a cage raise InputError naming face or edge: fewer than 3 corners or one twice, a vertex out of
-    range, an edge missing from `edges`, a crease out of [0, 1].
+    Functions that take a cage raise InputError naming face or edge: fewer than 3 corners, a repeated corner, a vertex
+    out of range, an edge missing from `edges`, a crease out of [0, 1].
     """
 
     vertex_count: int
@@ -46,7 +46,7 @@ class Cage:
         edge_crease: ArrayLike | None = None,
         vertex_crease: ArrayLike | None = None,
     ) -> "Cage":
-        """Return the cage of faces given one by one; `vertex_count` None is one more than the largest index."""
+        """Return the cage of a list of faces. `vertex_count` None: one more than the largest index."""
         rows = [np.asarray(face).ravel() for face in faces]  # type: ignore[union-attr]
         corners = as_indices(np.concatenate(rows) if rows else [], "faces", (None,))
         starts = np.cumsum([0, *map(len, rows)])
@@ -66,18 +66,18 @@ def subdivision_weights(
     boundary: str = "all",
     scheme: str = "catmull_clark",
 ) -> Weights:
-    """Return the weights of the cage's vertices in the vertices of the subdivided mesh, (n, V).
+    """Return the weights of the cage's vertices for the vertices of the subdivided mesh, (n, V).
 
-    Vertices come in Blender's order: those of the cage; those inside edges, edge by edge; those inside faces.
+    Vertices have Blender's order: those of the cage, those inside edges edge by edge, those inside faces.
 
-    levels         0 to 6: an edge is cut into 2^levels; 0 leaves the cage as it is
-    limit_surface  put vertices on the limit surface; else where so many levels of refinement put them
-    quality        1 to 10: levels of refinement around irregular vertices and creases before the limit is taken
-    simple         no smoothing: only cut
-    boundary       "all": corners of the boundary are rounded; "preserve_corners": they stay
-    scheme         "catmull_clark"; or "loop" for cages of triangles, cut into triangles
+    levels         0 to 6: an edge is divided into 2^levels; 0 returns the cage
+    limit_surface  whether vertices are on the limit surface instead of on the refined mesh
+    quality        1 to 10: levels of refinement around irregular vertices and creases for the limit surface
+    simple         whether to divide without smoothing
+    boundary       "all": corners of the boundary are rounded; "preserve_corners": they are fixed
+    scheme         "catmull_clark"; or "loop" for cages of triangles
 
-    Raises InputError for a cage that cannot be subdivided (see `Cage`), or an option out of range.
+    Raises InputError for an invalid cage (see `Cage`) or an option out of range.
     """
     rows = _native.subdivision_weights(_native_cage(cage), levels, limit_surface, quality, simple, boundary, scheme)
     return Weights(*rows)
@@ -86,7 +86,7 @@ def subdivision_weights(
 def subdivided_faces(cage: Cage, levels: int = 1) -> Indices:
     """Return the faces of the subdivided mesh, all quads, (Q, 4), in the vertex order of `subdivision_weights`.
 
-    Those of one cage face stand together and keep its orientation.
+    The faces of one cage face are consecutive and have its orientation.
 
     levels  1 to 6
 
@@ -106,8 +106,9 @@ def catmull_clark(
 ) -> tuple[Deformation, Indices]:
     """Return the deformation of a subdivision surface by its cage, and the surface's triangles, (T, 3).
 
-    Controls are the world positions of the cage's vertices, (V, 3). Each quad of `subdivided_faces` becomes two
-    triangles, cut from its first corner. Arguments and errors are those of `subdivision_weights`, with levels 1 to 6.
+    Controls are the world positions of the cage's vertices, (V, 3). A diagonal from the first corner divides each quad
+    of `subdivided_faces` into two triangles. Arguments and errors are those of `subdivision_weights`, with levels 1 to
+    6.
     """
     quads = subdivided_faces(cage, levels)
     weights = subdivision_weights(
@@ -121,9 +122,9 @@ def loop(
 ) -> tuple[Deformation, Indices]:
     """Return the deformation of a Loop subdivision surface by its cage of triangles, and its triangles, (T, 3).
 
-    Controls are the world positions of the cage's vertices, (V, 3). An edge is cut into 2^levels, a triangle into
-    4^levels, which stand together and keep its orientation. Creases and boundaries follow the rules of `catmull_clark`
-    (a crease of 1 is infinitely sharp), with the masks of Loop's scheme. [Loop 1987; Hoppe et al. 1994]
+    Controls are the world positions of the cage's vertices, (V, 3). An edge is divided into 2^levels, a triangle
+    into 4^levels, which are consecutive and have its orientation. Creases and boundaries follow the rules of
+    `catmull_clark` (a crease of 1 is infinitely sharp) with the masks of Loop's scheme. [Loop 1987; Hoppe et al. 1994]
 
     Arguments are those of `subdivision_weights`, with levels 1 to 6.
 
@@ -143,7 +144,7 @@ def _native_cage(cage: Cage) -> _native.Cage:
     if cage.edges is not None:
         edges = as_indices(cage.edges, "edges", (None, 2), count)
     elif cage.edge_crease is not None:
-        raise InputError("edge_crease: give the edges too, whose order it follows")
+        raise InputError("edge_crease: `edges` is required, because creases follow its order")
     else:
         edges = _edges_of_faces(corners, starts)
     return _native.Cage(count, edges, corners, starts, _crease(cage.edge_crease), _crease(cage.vertex_crease))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces: all triangles of all objects that take part, as one concatenated mesh."""
+"""Surfaces: the triangles of all objects as one mesh."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ from stiv.arrays import Indices, as_count, as_indices
 
 @dataclass(frozen=True)
 class Body:
-    """A part of a surface that the user knows by name: an object.
+    """A named part of a surface: an object.
 
-    `mobility` decides which pairs can interfere at all: "fixed" bodies are not tested against each other or themselves,
-    "rigid" ones not against themselves, "deformable" ones against everything.
+    `mobility` determines the tested pairs: "fixed" bodies are not tested against each other or themselves, "rigid"
+    bodies not against themselves, "deformable" bodies against everything.
     """
 
     name: str
@@ -25,18 +25,18 @@ class Body:
 
 
 class Surface:
-    """Connectivity of a surface; immutable. Positions travel apart, as (N, 3) float64 arrays.
+    """Connectivity of a surface, immutable. Positions are separate (N, 3) float64 arrays.
 
-    triangles     (F, 3) vertex indices; repeated corners are allowed (a degenerate face)
+    triangles     (F, 3) vertex indices; degenerate triangles with repeated corners are allowed
     vertex_count  N; None: one more than the largest index
-    loose_edges   (L, 2) edges of no triangle; they meet edges, their ends meet faces
+    loose_edges   (L, 2) edges without a triangle
     vertex_body   (N,) body of each vertex; None: all of body 0
     bodies        sequence of Body; None: one deformable body named "surface"
-    ignored       pairs of bodies that are never tested (a body with itself allowed)
-    recut_faces   vertices of each polygon whose triangles come in more than one cut: those cuts cross each other by
-                  nature, so primitives of which all vertices belong to one such polygon are never tested
+    ignored       pairs of bodies that are never tested; a body may be paired with itself
+    recut_faces   vertices of each polygon with several triangulations, which intersect each other: primitives with all
+                  vertices in one such polygon are never tested
 
-    Raises InputError naming the element: an index out of range, a face or edge across two bodies.
+    Raises InputError naming the element: an index out of range, a face or edge with two bodies.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Surface:
         ignored: Sequence[tuple[int, int]] = (),
         recut_faces: Sequence[Sequence[int]] = (),
     ) -> None:
-        """Check and take over the description."""
+        """Check and store the description."""
         self.triangles: Indices = as_indices(triangles, "triangles", (None, 3))
         self.loose_edges: Indices = as_indices([] if loose_edges is None else loose_edges, "loose_edges", (None, 2))
         if vertex_count is None:
@@ -78,12 +78,12 @@ class Surface:
 
     @property
     def edges(self) -> Indices:
-        """Every edge once, (E, 2), smaller index first, in lexicographic order; loose edges included."""
+        """Every edge once, (E, 2), smaller index first, in lexicographic order, including loose edges."""
         return self.native.edges
 
 
 def as_surface(surface: Surface | ArrayLike, vertex_count: int) -> Surface:
-    """Return `surface` itself, or one made of bare triangles (F, 3) over `vertex_count` vertices."""
+    """Return a surface unchanged, and triangles (F, 3) as a surface of `vertex_count` vertices."""
     if not isinstance(surface, Surface):
         return Surface(surface, vertex_count)
     if surface.vertex_count != vertex_count:

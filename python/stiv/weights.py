@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sparse weights of controls in vertices, without SciPy but in its CSR format."""
+"""Sparse weights of controls for vertices, in SciPy's CSR format without SciPy."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,10 +13,10 @@ from stiv.arrays import Floats, Indices, as_floats, as_indices
 
 @dataclass(frozen=True, eq=False)
 class Weights:
-    """A sparse matrix M, (n, m): the weights of m controls in n vertices, the same for x, y and z.
+    """A sparse matrix M, (n, m): the weights of m controls for n vertices, the same for x, y and z.
 
-    The weights of vertex i are data[indptr[i]:indptr[i + 1]], of the controls indices[indptr[i]:indptr[i + 1]]. The
-    fields are those of SciPy's CSR format: scipy.sparse.csr_array((data, indices, indptr), shape) is the same matrix.
+    Vertex i has the weights data[indptr[i]:indptr[i + 1]] of the controls indices[indptr[i]:indptr[i + 1]]. In SciPy,
+    the same matrix is scipy.sparse.csr_array((data, indices, indptr), shape).
     """
 
     indptr: Indices  #: (n + 1,) int32
@@ -59,7 +59,7 @@ def _from_rows(indptr: ArrayLike, indices: ArrayLike, data: ArrayLike, shape: An
 
 
 def _values(data: ArrayLike, name: str) -> Floats:
-    """Values as they are: the core, which knows the row of each, refuses those that are not finite."""
+    """Values without a check for finite numbers, because the core names the row in its error."""
     values = np.asarray(data)
     if values.dtype.kind not in "fiu" or values.ndim != 1:
         raise InputError(f"{name}: expected real numbers of shape (any,), not {values.dtype} of shape {values.shape}")

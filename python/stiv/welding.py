@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Welding: coincident vertices made one, so that seams of files and exports become edges."""
+"""Welding: merges coincident vertices, so that seams of files and exports become edges."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from stiv.surface import Surface, as_surface
 
 @dataclass(frozen=True)
 class Welded:
-    """A surface without coincident vertices, and where those of the surface before have gone."""
+    """A surface without coincident vertices, and its relation to the original surface."""
 
     surface: Surface
     positions: NDArray[np.float64]  #: (N', 3)
-    vertex_map: Indices  #: (N,) vertex of the welded surface for each one before: `positions[vertex_map]` goes back
+    vertex_map: Indices  #: (N,) welded vertex of each original one: `positions[vertex_map]` are the original positions
 
 
 def weld(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
-    """Make vertices one that lie at exactly the same place and belong to the same body.
+    """Merge vertices of the same body at exactly the same position.
 
     surface    Surface, or its triangles (F, 3)
     positions  (N, 3)
 
-    Triangles and loose edges of which two corners become one are left out, and so are all but the first of those that
-    get the same corners. Raises InputError for a surface with recut faces, whose polygons cannot be kept.
+    Removes triangles and loose edges that degenerate, and duplicates. Raises InputError for a surface with recut faces,
+    whose polygons would be lost.
     """
     q = as_floats(positions, "positions", (None, 3))
     before = as_surface(surface, len(q))
     if before.recut_faces:
-        raise InputError("a surface with recut faces cannot be welded; weld its mesh before it is cut")
-    keyed = np.column_stack([before.vertex_body, q + 0.0])  # + 0.0: -0.0 and 0.0 are one place
+        raise InputError("a surface with recut faces cannot be welded; weld its mesh first")
+    keyed = np.column_stack([before.vertex_body, q + 0.0])  # + 0.0 turns -0.0 into 0.0
     _, first, index = np.unique(keyed, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # vertices keep the order in which they come first
+    order = np.argsort(first)  # in order of first occurrence
     place = np.empty(len(order), np.int32)
     place[order] = np.arange(len(order), dtype=np.int32)
     vertex_map: Indices = place[index.reshape(-1)]
@@ -55,14 +55,14 @@ def weld(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
 
 
 def join_seams(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
-    """Make vertices one that lie at exactly the same place and belong to the same body; keep all triangles.
+    """Merge vertices of the same body at exactly the same position, and keep all triangles.
 
     surface    Surface, or its triangles (F, 3)
     positions  (N, 3)
 
-    As `weld`, but triangles and loose edges keep their numbers, doubled ones too, which intersect. Faces that meet only
-    in coincident vertices or edges of a body are neighbours on the joined surface: find_intersections does not report
-    them, and an EditSession keeps them together.
+    Like `weld`, but triangles and loose edges keep their indices, including duplicates, which intersect. Faces that
+    only touch at coincident vertices or edges of a body are neighbors on the joined surface: find_intersections does
+    not report them, and an EditSession keeps them together.
     """
     q = as_floats(positions, "positions", (None, 3))
     before = as_surface(surface, len(q))
@@ -83,7 +83,7 @@ def join_seams(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
 
 
 def _distinct(elements: Indices) -> Indices:
-    """Rows whose entries all differ, and of those with the same entries the first."""
+    """The first of all rows with the same entries, without rows with repeated entries."""
     proper = elements[(elements != np.roll(elements, 1, axis=1)).all(axis=1)]
     _, first = np.unique(np.sort(proper, axis=1), axis=0, return_index=True)
     return np.ascontiguousarray(proper[np.sort(first)])

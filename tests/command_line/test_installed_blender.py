@@ -42,7 +42,7 @@ def test_the_command_runs_inside_and_its_exit_code_comes_back(tmp_path, capsys, 
 
 def test_a_program_that_is_not_there_ends_with_2(tmp_path, capsys):
     assert program.run(["check", "a.blend", "--blender", str(tmp_path / "none")]) == 2
-    assert "is not a program that can be run" in capsys.readouterr().err
+    assert "is not an executable program" in capsys.readouterr().err
 
 
 def test_a_program_that_is_not_blender_ends_with_2(capsys):

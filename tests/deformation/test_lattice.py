@@ -93,7 +93,7 @@ def test_influence_scales_the_motion() -> None:
         ({"point_weights": np.ones(5)}, "5 point weights for 64"),
         ({"influence": np.ones(5)}, "influence: shape"),
         ({"vertices": [[0, np.nan, 0]]}, "vertices, row 0"),
-        ({"frame": np.zeros((4, 4))}, "cannot be inverted"),
+        ({"frame": np.zeros((4, 4))}, "frame: the matrix is singular"),
     ],
 )
 def test_bad_input_is_named(options: dict[str, Any], message: str) -> None:

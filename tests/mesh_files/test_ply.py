@@ -63,13 +63,13 @@ def test_every_truncation_is_an_error(tmp_path, make):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (b"element vertex 5", b"element vertex 2000000000", "2000000000 promised"),
+        (b"element vertex 5", b"element vertex 2000000000", "announces 2000000000 rows"),
         (b"element vertex 5", b"element vertex -5", "line 4 of its header"),
-        (b"element face 3", b"element face 2000000000", "2000000000 promised"),
+        (b"element face 3", b"element face 2000000000", "announces 2000000000 rows"),
         (b"property float x", b"property quaternion x", "line 5 of its header"),
-        (b"property float x", b"property float w", 'no property "x"'),
-        (b"property float y", b"property float x", "two properties of one name"),
-        (b"vertex_indices", b"vertex_incides", 'no list property "vertex_indices"'),
+        (b"property float x", b"property float w", 'the property "x" is missing'),
+        (b"property float y", b"property float x", "two properties have the same name"),
+        (b"vertex_indices", b"vertex_incides", 'the list property "vertex_indices" is missing'),
         (b"binary_little_endian", b"binary_middle_endian", "line 2 of its header"),
     ],
 )

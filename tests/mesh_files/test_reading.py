@@ -8,7 +8,7 @@ from stiv.mesh_files import read_mesh
 
 
 def test_unknown_kinds_are_refused_with_the_known_ones(tmp_path):
-    with pytest.raises(stiv.InputError, match=r"unknown kind of file; known are \.obj, \.ply, \.npz and \.blend"):
+    with pytest.raises(stiv.InputError, match=r"unknown format; supported are \.obj, \.ply, \.npz and \.blend"):
         read_mesh(tmp_path / "mesh.stl")
 
 

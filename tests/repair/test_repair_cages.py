@@ -87,9 +87,9 @@ def test_a_cage_next_to_a_fixed_object() -> None:
 
 
 def test_mismatched_input_is_refused_in_words(tube: CagedHairpin) -> None:
-    with pytest.raises(stiv.InputError, match="cage: the triangles of the controls are needed"):
+    with pytest.raises(stiv.InputError, match="cage: a deformation needs the triangles"):
         stiv.repair(tube.triangles, tube.controls, deformation=tube.deformation)
-    with pytest.raises(stiv.InputError, match="cage: goes with a deformation"):
+    with pytest.raises(stiv.InputError, match="cage: there is no deformation"):
         stiv.repair(tube.cage, tube.controls, cage=tube.cage)
     weld = stiv.RepairOptions(weld=True)
     with pytest.raises(stiv.InputError, match="weld its cage before"):

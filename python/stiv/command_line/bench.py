@@ -20,7 +20,7 @@ MODULE = "benchmarks.sessions.command"
 
 
 def add_to(subcommands: Subparsers) -> None:
-    """Adds the subcommand to the parser. It passes all its arguments on, so that no character starts an option."""
+    """Adds the subcommand. It passes all arguments on, so no character marks an option."""
     parser = subcommands.add_parser(
         "bench", help="measure editing sessions as the paper does", add_help=False, prefix_chars="\0"
     )

@@ -22,17 +22,17 @@ HOW_TO_GET_IT = (
 
 
 def require_blender(name: str, path: Path) -> ModuleType:
-    """The module `name` of stiv.blender, or `stiv_addon`. Raises InputError if Blender's module is not installed."""
+    """Imports a module of stiv.blender or stiv_addon. Raises InputError if Blender's module is not installed."""
     if importlib.util.find_spec("bpy") is None:
-        raise InputError(f"{path}: a .blend needs Blender's Python module, which is not installed; {HOW_TO_GET_IT}")
+        raise InputError(f"{path}: Blender's Python module is not installed; {HOW_TO_GET_IT}")
     return importlib.import_module(name)
 
 
 @contextmanager
 def addon_registered(path: Path) -> Iterator[None]:
-    """Has the add-on's operators and settings in Blender; takes them away again if they were not there before.
+    """Within, the add-on is registered in Blender. Unregisters it afterwards unless it was registered before.
 
-    Raises InputError where Blender's module or the add-on is not installed.
+    Raises InputError if Blender's module or the add-on is not installed.
     """
     if require_blender("stiv.blender.scripts.enabling", path).is_enabled():
         yield
@@ -42,7 +42,7 @@ def addon_registered(path: Path) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if error.name != "stiv_addon":
             raise
-        raise InputError(f"{path}: the add-on is missing beside the package stiv; install STIV's wheel") from error
+        raise InputError(f"{path}: the package stiv_addon is missing; install the wheel of STIV") from error
     addon.register()
     try:
         yield
@@ -51,7 +51,7 @@ def addon_registered(path: Path) -> Iterator[None]:
 
 
 def stored_settings(context: Any, path: Path) -> Any:
-    """The settings that the add-on has stored in the open scene; the defaults where the add-on is not installed."""
+    """The add-on's settings of the open scene, or the defaults if the add-on is not installed."""
     if importlib.util.find_spec("stiv_addon") is None:
         return require_blender("stiv.blender", path).EditSettings()
     with addon_registered(path):
@@ -60,9 +60,9 @@ def stored_settings(context: Any, path: Path) -> Any:
 
 @contextmanager
 def quiet_blender(*, errors: bool = False) -> Iterator[None]:
-    """Within, Blender prints nothing on standard output, where it writes beneath Python. Progress bars still show.
+    """Within, Blender's own messages do not reach standard output. Progress bars do.
 
-    errors: nor on standard error, where renders complain of displays that they do not need.
+    errors: nor do its messages on standard error, such as warnings of renders without a display.
     """
     sys.stdout.flush()
     streams = (1, 2) if errors else (1,)

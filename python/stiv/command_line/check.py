@@ -17,7 +17,7 @@ from stiv.checks.junit import junit_xml
 from stiv.checks.pictures import require_matplotlib
 from stiv.checks.report import file_report, report_of, summary
 from stiv.choices import GUARDS
-from stiv.command_line.file_checking import Choices, check_path
+from stiv.command_line.file_checking import CheckOptions, check_path
 from stiv.command_line.options import add_blender_option, frame_range
 from stiv.command_line.progress import progress_bar
 from stiv.exit_codes import ExitCode
@@ -52,39 +52,41 @@ def add_to(subcommands: Subparsers) -> None:
     """Adds the subcommand to the parser."""
     parser = subcommands.add_parser(
         "check",
-        help="are scenes and meshes free of intersections?",
+        help="test scenes and meshes for intersections",
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("files", nargs="+", metavar="SCENE.blend|MESH", help="what to check")
-    parser.add_argument("--object", action="append", default=[], metavar="NAME", help="test only objects of this name")
-    parser.add_argument("--scene", default="all", metavar="NAME|all", help="test this scene of a .blend (all)")
-    parser.add_argument("--render", action="store_true", help="test render levels however large they are")
+    parser.add_argument("files", nargs="+", metavar="SCENE.blend|MESH", help="the files to check")
+    parser.add_argument(
+        "--object", action="append", default=[], metavar="NAME", help="test only this object, repeatable"
+    )
+    parser.add_argument("--scene", default="all", metavar="NAME|all", help="test this scene of a .blend (default: all)")
+    parser.add_argument("--render", action="store_true", help="test render levels of any size")
     parser.add_argument(
         "--guard", choices=GUARDS, default="auto",
-        help="test the viewport, the render or both; auto is both unless the render is very large",
+        help="test the viewport, the render or both (default: auto, both unless the render is very large)",
     )  # fmt: skip
-    parser.add_argument("--hidden", action="store_true", help="test what is hidden or excluded too")
+    parser.add_argument("--hidden", action="store_true", help="also test hidden and excluded objects")
     parser.add_argument(
         "--frames",
         type=frame_range,
         metavar="A:B[:STEP]",
-        help="test these frames, and what meets on the straight ways between them; `scene` for the scene's own range",
+        help="test these frames and the motion between them; `scene` for the frame range of the scene",
     )
-    parser.add_argument("--subframes", type=int, default=1, metavar="N", help="poses for each step of frames (1)")
-    parser.add_argument("--seams", action="store_true", help="list the pairs of faces that touch along seams alone")
-    parser.add_argument("--baseline", type=Path, metavar="F", help="findings in F are known and accepted")
-    parser.add_argument("--write-baseline", action="store_true", help="write what is found to the baseline's file")
-    parser.add_argument("--json", type=Path, metavar="F", help="write the result, with the pairs, to F")
-    parser.add_argument("--junit", type=Path, metavar="F", help="write the result to F as JUnit XML")
-    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="write a picture of each finding to FOLDER")
+    parser.add_argument("--subframes", type=int, default=1, metavar="N", help="poses per frame step (default: 1)")
+    parser.add_argument("--seams", action="store_true", help="list the pairs of faces that only touch along seams")
+    parser.add_argument("--baseline", type=Path, metavar="F", help="accept the findings in F")
+    parser.add_argument("--write-baseline", action="store_true", help="write all findings to the baseline")
+    parser.add_argument("--json", type=Path, metavar="F", help="write a report to F, as JSON")
+    parser.add_argument("--junit", type=Path, metavar="F", help="write a report to F, as JUnit XML")
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="write pictures of findings to FOLDER")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
 
 
 def check_file(path: Path) -> dict[str, Any]:
-    """The result of the exact test of a .blend or a mesh file, ready for JSON. Raises InputError."""
+    """The report on a .blend or a mesh file, as JSON data. Raises InputError."""
     return file_report(check_path(path))
 
 
@@ -112,9 +114,9 @@ def _check_arguments(arguments: argparse.Namespace) -> None:
     for path in (arguments.json, arguments.junit, arguments.baseline):
         require_folder(path)
     if arguments.write_baseline and arguments.baseline is None:
-        raise InputError("--write-baseline needs --baseline F, the file to write")
+        raise InputError("--write-baseline requires --baseline F, the file to write")
     if arguments.render and arguments.guard == "viewport":
-        raise InputError("--render tests the render and --guard viewport leaves it out; give one of them")
+        raise InputError("--render tests the render, and --guard viewport does not; use one of them")
     if not 1 <= arguments.subframes <= 1000:
         raise InputError(f"--subframes: {arguments.subframes} is not between 1 and 1000")
     if arguments.pictures is not None:
@@ -124,7 +126,7 @@ def _check_arguments(arguments: argparse.Namespace) -> None:
 
 
 def _expanded(names: Iterable[str]) -> Iterator[Path]:
-    """Files as named; patterns that no shell has expanded stand for the files they match."""
+    """The named files. Expands patterns that the shell has not expanded."""
     for name in names:
         matches = [] if Path(name).exists() else sorted(glob.glob(name))
         yield from map(Path, matches or [name])
@@ -133,7 +135,7 @@ def _expanded(names: Iterable[str]) -> Iterator[Path]:
 def _checked(
     path: Path, arguments: argparse.Namespace, baseline: Baseline, on_look: Callable[[str], None]
 ) -> FileCheck:
-    choices = Choices(
+    choices = CheckOptions(
         tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures, arguments.scene,
         arguments.render, arguments.hidden, arguments.guard,
     )  # fmt: skip

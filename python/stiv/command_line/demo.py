@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv demo`: lowers a bunch of shoots into a vase and scales it up there, through the add-on's operators."""
+"""`stiv demo`: lowers a plant into a vase and scales it up, with the operators of the add-on."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 NAME = "plant_in_vase"
 PACKAGE = Path(__file__).resolve().parents[1]
 FOLDERS = (PACKAGE / "demo", PACKAGE.parents[1] / "blend_fixtures")  # of a wheel, of a source checkout
-MEDIANS = {"milliseconds": "ms an edit", "rounds": "rounds", "events": "events", "patches": "patches"}
+MEDIANS = {"milliseconds": "ms per edit", "rounds": "rounds", "events": "events", "patches": "patches"}
 
 _DESCRIPTION = """\
-Lowers a bunch of shoots into a vase, where it must give way, and scales it up there: some sixty edits of a lattice.
-Writes before.png, after.png, after.blend and report.json, then opens after.blend anew and checks it exactly."""
+Lowers a plant into a vase, which deflects it, and scales it up: about sixty edits of a lattice. Writes before.png,
+after.png, after.blend and report.json, then opens after.blend and tests it exactly."""
 _EXAMPLES = """\
 examples:
   stiv demo
@@ -68,15 +68,15 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _scene() -> Path:
-    """The .blend, its script beside it. Raises InputError where it is not installed."""
+    """The .blend, next to its script. Raises InputError if it is not installed."""
     for folder in FOLDERS:
         if (folder / f"{NAME}.blend").is_file():
             return folder / f"{NAME}.blend"
-    raise InputError("demo: this installation has no scene for it; install the wheel, or run it in a source checkout")
+    raise InputError("demo: the scene is not installed; install the wheel, or run the demo in a source checkout")
 
 
 def _edited(scene: Path, output: Path) -> list[dict[str, Any]]:
-    """Runs the edits and writes their files; what each edit did."""
+    """Runs the edits and writes the files; returns a report on each edit."""
     files = require_blender("stiv.blender.scripts.blend_files", scene)
     script = read_edit_script(scene.with_suffix(".edits.json"))
     with quiet_blender():
@@ -91,12 +91,12 @@ def _edited(scene: Path, output: Path) -> list[dict[str, Any]]:
 
 
 def _summary(edits: list[dict[str, Any]], seconds: float) -> str:
-    """What the demo did, in a few lines."""
+    """The result as text."""
     touching = [edit for edit in edits if edit["rounds"] > 0]
     rounds = [1000 * edit["timings"]["total"] / edit["counters"]["detections"] for edit in touching]
-    lines = [f"{len(edits)} edits, {len(touching)} of them met resistance, {seconds:.0f} s in all"]
+    lines = [f"{len(edits)} edits, {len(touching)} of them deflected, {seconds:.0f} s in total"]
     if touching:
         median = {key: statistics.median(edit[key] for edit in touching) for key in MEDIANS}
         named = ", ".join(f"{median[key]:.0f} {unit}" for key, unit in MEDIANS.items())
-        lines.append(f"median of those: {named}, {statistics.median(rounds):.1f} ms a round")
+        lines.append(f"median of those: {named}, {statistics.median(rounds):.1f} ms per round")
     return "\n".join(lines)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks one file, of whatever kind, and writes the pictures of what it finds."""
+"""Checks a file of any format, and writes pictures of its findings."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from stiv.command_line.blender_module import quiet_blender, require_blender
 from stiv.mesh_files import read_mesh
 from stiv.output_files import written_atomically
 
-FrameChoice = tuple[int, int, int] | str  # first, last and step; or "scene" for the scene's own range
+FrameChoice = tuple[int, int, int] | str  # first, last and step; or "scene" for the range of the scene
 MAX_FRAMES = 1_000_000
 
 
 @dataclass(frozen=True)
-class Choices:
-    """What is checked of each file."""
+class CheckOptions:
+    """Options of a check."""
 
-    objects: Collection[str] = ()  #: names to be limited to; empty for all
-    frames: FrameChoice | None = None  #: None: the pose that the file was saved in
-    subframes: int = 1  #: poses for each step of frames; more follow turning objects more closely
-    pictures: Path | None = None  #: folder for them
-    scene: str = "all"  #: name of the scene of a .blend
-    render: bool = False  #: test what is rendered, however large
-    hidden: bool = False  #: test what is hidden too
-    guard: str = "auto"  #: test the "viewport", the "render" or "both"; "auto": both unless the render is very large
+    objects: Collection[str] = ()  #: names of the objects to test; empty: all
+    frames: FrameChoice | None = None  #: None: the saved pose
+    subframes: int = 1  #: poses per frame step; more follow rotating objects more closely
+    pictures: Path | None = None  #: folder of the pictures
+    scene: str = "all"  #: name of the scene, in a .blend
+    render: bool = False  #: whether to test render levels of any size
+    hidden: bool = False  #: whether to test hidden objects
+    guard: str = "auto"  #: "viewport", "render" or "both"; "auto": both unless the render is very large
 
 
 def check_path(
-    path: Path, choices: Choices | None = None, on_look: Callable[[str], None] = lambda note: None
+    path: Path, options: CheckOptions | None = None, on_look: Callable[[str], None] = lambda note: None
 ) -> FileCheck:
-    """The result for one file; `on_look` is told of each pose. Raises InputError for what cannot be checked."""
-    chosen = choices or Choices()
+    """The results for a file. Calls `on_look` with each pose. Raises InputError if the file cannot be checked."""
+    chosen = options or CheckOptions()
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
     begin = time.perf_counter()
@@ -49,65 +49,65 @@ def check_path(
     return _summed(path, looks, chosen, on_look, begin)
 
 
-def _looks_at_mesh(path: Path, choices: Choices) -> Iterable[Look]:
-    if choices.frames is not None:
+def _looks_at_mesh(path: Path, options: CheckOptions) -> Iterable[Look]:
+    if options.frames is not None:
         raise InputError(f"{path}: a mesh file has no frames")
     mesh = read_mesh(path)
     try:
-        yield check_mesh(mesh, choices.objects)
+        yield check_mesh(mesh, options.objects)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 
 
-def _looks_at_blend(path: Path, choices: Choices) -> Iterable[Look]:
-    """Of every mesh that a scene shows or renders, as Blender evaluates it; loose edges and vertices are tested too."""
+def _looks_at_blend(path: Path, options: CheckOptions) -> Iterable[Look]:
+    """Yields results for all visible and rendered meshes as Blender evaluates them, and their loose elements."""
     files = require_blender("stiv.blender.scripts.blend_files", path)
     with quiet_blender():
         files.open_blend(path)
     whole = require_blender("stiv.blender.verify.all_scenes", path)
     try:
-        whole.check_names(choices.scene, choices.objects)
-        names = whole.scene_names(choices.scene)
+        whole.check_names(options.scene, options.objects)
+        names = whole.scene_names(options.scene)
         for name in names:
             with whole.opened_scene(name) as context:
-                for look in _looks_at_scene(path, context, choices):
+                for look in _looks_at_scene(path, context, options):
                     yield replace(look, scene=name)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 
 
-def _looks_at_scene(path: Path, context: Any, choices: Choices) -> Iterable[Look]:
+def _looks_at_scene(path: Path, context: Any, options: CheckOptions) -> Iterable[Look]:
     checking, evaluations, whole = (
         require_blender(f"stiv.blender.{name}", path)
         for name in ("verify.frame_check", "scene.guarded_evaluations", "verify.all_scenes")
     )
-    if choices.hidden:
+    if options.hidden:
         whole.unhide_all(context)
-    chosen = evaluations.chosen_evaluations(context, choices.guard, choices.render)
-    frames = _frames(path, choices, checking, context)
-    objects = [name for name in choices.objects if name in context.scene.objects]
-    if choices.objects and not objects:
+    chosen = evaluations.chosen_evaluations(context, options.guard, options.render)
+    frames = _frames(path, options, checking, context)
+    objects = [name for name in options.objects if name in context.scene.objects]
+    if options.objects and not objects:
         return
-    note = evaluations.untested_note(context, chosen) if choices.guard == "auto" else ""
+    note = evaluations.untested_note(context, chosen) if options.guard == "auto" else ""
     for number, look in enumerate(checking.check_frames(context, frames, objects, 0, chosen)):
         yield replace(look, notes=(note, *look.notes)) if note and number == 0 else look
 
 
-def _frames(path: Path, choices: Choices, checking: Any, context: Any) -> list[float]:
-    if choices.frames is None:
+def _frames(path: Path, options: CheckOptions, checking: Any, context: Any) -> list[float]:
+    if options.frames is None:
         return []
-    chosen = choices.frames
+    chosen = options.frames
     first, last, step = (*checking.scene_frames(context), 1) if isinstance(chosen, str) else chosen
-    count = (last - first) * choices.subframes // step
+    count = (last - first) * options.subframes // step
     if count >= MAX_FRAMES:
-        raise InputError(f"{count} frames; at most {MAX_FRAMES} are checked")
-    frames = [first + number * step / choices.subframes for number in range(count + 1)]
+        raise InputError(f"{count} frames, more than the limit of {MAX_FRAMES}")
+    frames = [first + number * step / options.subframes for number in range(count + 1)]
     keyed: list[float] = require_blender("stiv.blender.verify.keyed_frames", path).add_subframe_keys(frames)
     return keyed
 
 
 def _summed(
-    path: Path, looks: Iterable[Look], choices: Choices, on_look: Callable[[str], None], begin: float
+    path: Path, looks: Iterable[Look], options: CheckOptions, on_look: Callable[[str], None], begin: float
 ) -> FileCheck:
     found: list[Finding] = []
     seams: list[SeamPairs] = []
@@ -129,8 +129,8 @@ def _summed(
         notes += [note if note not in notes else "" for note in look.notes]
         seams += look.seams
         untested.update(dict.fromkeys(replace(each, scene=look.scene) for each in look.untested))
-        if choices.pictures is not None:
-            pictures += _pictures(path, look, choices.pictures, shown)
+        if options.pictures is not None:
+            pictures += _pictures(path, look, options.pictures, shown)
     vertices, triangles = (sum(size[k] for size in sizes.values()) for k in range(2))
     scenes = tuple(scene for scene in sizes if scene)
     check = FileCheck(
@@ -142,7 +142,7 @@ def _summed(
 
 
 def _without_scene(check: FileCheck) -> FileCheck:
-    """Where there is one scene, nobody asks in which."""
+    """Removes the names of scenes, in a file with one scene."""
     return replace(
         check,
         findings=tuple(replace(each, scene="") for each in check.findings),
@@ -151,7 +151,7 @@ def _without_scene(check: FileCheck) -> FileCheck:
 
 
 def _pictures(path: Path, look: Look, folder: Path, shown: set[tuple[str, str]]) -> list[str]:
-    """One picture of each pair of objects, where they are first found to meet."""
+    """Writes a picture of each pair of objects, at its first intersection."""
     written = []
     for pair in dict.fromkeys(finding.objects for finding in look.findings):
         if pair in shown:

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run by an installed Blender (`--python`): the command line, with the arguments after `--`.
+"""Script for an installed Blender (`--python`): runs the command line with the arguments after `--`.
 
-STIV comes from where this file is; NumPy is Blender's own.
+Uses the STIV of this file, and Blender's NumPy.
 """
 
 import os
 import sys
 from pathlib import Path
 
-PACKAGES = Path(__file__).resolve().parents[2]  # the folder that holds the package
+PACKAGES = Path(__file__).resolve().parents[2]  # the folder with the package
 
 
 def main() -> int:
@@ -22,7 +22,7 @@ def main() -> int:
         version = ".".join(map(str, sys.version_info[:2]))
         print(
             f"stiv: this Blender runs Python {version}, and cannot load STIV from {PACKAGES}: {error}; "
-            f"install STIV for Python {version} and run that",
+            f"install and run STIV for Python {version}",
             file=sys.stderr,
         )
         print("stiv begins")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`--blender PATH`: runs the command inside an installed Blender instead of with Blender as a Python module.
+"""`--blender PATH`: runs the command in an installed Blender instead of Blender as a Python module.
 
-Blender starts without user settings, and scripts in .blend files stay disabled.
+Blender starts without user settings. Scripts in .blend files are disabled.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from pathlib import Path
 from stiv import InputError
 
 OPTION = "--blender"
-BEGINS = "stiv begins"  # the line after which what Blender prints is ours
+BEGINS = "stiv begins"  # the line before the output of the command
 _SCRIPT = Path(__file__).with_name("inside_blender.py")
 
 
 def blender_command(blender: str, arguments: Sequence[str]) -> list[str]:
-    """The command that runs `stiv` inside an installed Blender. Raises InputError if there is none."""
+    """The command that runs `stiv` in an installed Blender. Raises InputError if there is none."""
     found = shutil.which(blender)
     if found is None:
-        raise InputError(f"{OPTION}: {blender} is not a program that can be run")
+        raise InputError(f"{OPTION}: {blender} is not an executable program")
     options = ["-b", "--factory-startup", "--disable-autoexec", "--python-exit-code", "3", "--python"]
     return [found, *options, str(_SCRIPT), "--", *arguments]
 
 
 def run_inside(blender: str, arguments: Sequence[str]) -> int:
-    """Runs the command with these arguments inside Blender, and returns its exit code."""
+    """Runs the command with these arguments in Blender, and returns its exit code."""
     command = blender_command(blender, arguments)
     with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
         assert process.stdout is not None
@@ -39,7 +39,7 @@ def run_inside(blender: str, arguments: Sequence[str]) -> int:
                 sys.stdout.write(line)
             began = began or line.rstrip() == BEGINS
     if not began:
-        raise InputError(f"{OPTION}: {blender} ended with {process.returncode} and did not run STIV's script")
+        raise InputError(f"{OPTION}: {blender} did not run STIV's script; it ended with exit code {process.returncode}")
     return process.returncode
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parses the command line, runs the subcommand and turns what happened into an exit code."""
+"""The command `stiv`: parses arguments, runs the subcommand and returns an exit code."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench)
 
 
 class Parser(argparse.ArgumentParser):
-    """Ends with the exit code for wrong usage, which argparse takes for 2."""
+    """Ends wrong usage with exit code 1, instead of 2 as in argparse."""
 
     def error(self, message: str) -> NoReturn:
-        """Prints the usage and the message, and ends."""
+        """Prints usage and message, and exits."""
         self.print_usage(sys.stderr)
         self.exit(ExitCode.USAGE, f"{self.prog}: {message}\n")
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser of the command with all its subcommands."""
+    """The parser with all subcommands."""
     top = Parser(prog="stiv", description="Interference-aware geometric modeling.")
     subcommands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
     for subcommand in _SUBCOMMANDS:
@@ -40,14 +40,14 @@ def parser() -> argparse.ArgumentParser:
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command with these arguments (default: the process's own) and returns its exit code."""
+    """Runs the command with these arguments (default: those of the process) and returns its exit code."""
     try:
         chosen = parser().parse_args(arguments)
         blender = getattr(chosen, "blender", None)
         if blender is not None:
             return run_inside(blender, without_option(sys.argv[1:] if arguments is None else arguments))
         return int(chosen.run(chosen))
-    except SystemExit as end:  # of argparse: --help or wrong usage
+    except SystemExit as end:  # --help or wrong usage
         return int(end.code or 0)
     except InputError as error:
         print(f"stiv: {error}", file=sys.stderr)
@@ -62,10 +62,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 
 def main() -> NoReturn:
-    """Runs the command and ends the process."""
+    """Runs the command and exits."""
     code = run()
     sys.stdout.flush()
     sys.stderr.flush()
     if "bpy" in sys.modules:
-        os._exit(code)  # Blender 4.2 and 4.5 as a module may crash or hang when the interpreter ends
+        os._exit(code)  # Blender 4.2 and 4.5 as modules may crash or hang when the interpreter exits
     sys.exit(code)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Progress bars on the terminal (rich, from the extra `cli`); none where rich is missing or output is no terminal."""
+"""Progress bars (rich, from the extra `cli`), if rich is installed and the output is a terminal."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress_bar(title: str, total: int) -> Iterator[Callable[..., None]]:
-    """Gives a function `advance(note, steps=1)` that advances the bar and shows a note beside it."""
+    """Yields a function `advance(note, steps=1)` that advances the bar and shows a note."""
     try:
         from rich.console import Console
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -23,8 +23,8 @@ def progress_bar(title: str, total: int) -> Iterator[Callable[..., None]]:
 
 
 @contextmanager
-def share_bar(title: str) -> Iterator[Callable[[str, float], None]]:
-    """Gives a function that shows a phase and how much of it is done, in [0, 1]."""
+def fraction_bar(title: str) -> Iterator[Callable[[str, float], None]]:
+    """Yields a function that shows a phase and its progress in [0, 1]."""
     try:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

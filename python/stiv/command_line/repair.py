@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv repair`: remove the intersections that a scene or a mesh has."""
+"""`stiv repair`: removes the intersections of a scene or a mesh."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 _DESCRIPTION = f"""\
-Contracts what intersects until the exact test finds nothing, expands it back without letting anything through, and
-writes the result. Only positions of vertices change, unless --weld is given. Of a .blend, meshes change by their
-cages, below a Subdivision Surface modifier; scripts in it are not run. Mesh files: {", ".join(SUFFIXES)}. The output
-is written only when the exact test of what was written finds nothing; otherwise what still intersects is listed."""
+Contracts intersecting meshes until the exact test finds nothing, and expands them with collisions. Only positions of
+vertices change, unless --weld is given. In a .blend, cages below a Subdivision Surface modifier change; scripts in the
+file do not run. Mesh files: {", ".join(SUFFIXES)}. The output is only written if the exact test finds nothing in it.
+Otherwise the command lists the remaining intersections."""
 _EXAMPLES = """\
 examples:
   stiv repair figure.blend -o repaired.blend
@@ -40,31 +40,35 @@ def add_to(subcommands: Subparsers) -> None:
     """Adds the subcommand to the parser."""
     parser = subcommands.add_parser(
         "repair",
-        help="remove the intersections that a scene or a mesh has",
+        help="remove the intersections of a scene or a mesh",
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, metavar="SCENE.blend|MESH", help="what to repair")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help="where the result goes")
+    parser.add_argument("file", type=Path, metavar="SCENE.blend|MESH", help="the file to repair")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help="the output file")
     parser.add_argument(
         "--move", action="append", default=[], metavar="OBJECT",
-        help="an object that may change, to be repeated; without it all that intersect may",
+        help="an object that may change, repeatable (default: all that intersect)",
     )  # fmt: skip
-    parser.add_argument("--weld", action="store_true", help="make vertices one that lie in exactly the same place")
+    parser.add_argument("--weld", action="store_true", help="merge coincident vertices first")
     parser.add_argument(
-        "--separation", type=float, default=0.0, metavar="H", help="distance that surfaces keep; 0 chooses one"
+        "--separation",
+        type=float,
+        default=0.0,
+        metavar="H",
+        help="minimum distance between surfaces (default: automatic)",
     )
     parser.add_argument(
         "--max-deviation", type=float, default=0.05, metavar="D",
-        help="refuse what ends farther off: root mean square in diagonals of what may move (default 0.05)",
+        help="maximum deviation: root mean square, in diagonals of what may move (default: 0.05)",
     )  # fmt: skip
     parser.add_argument(
         "--time-limit", type=float, default=0.0, metavar="S",
-        help="seconds after which the best repair so far is taken, if there is one (default: no limit)",
+        help="seconds until the best repair so far is used, if any (default: no limit)",
     )  # fmt: skip
     add_guard_option(parser)
-    parser.add_argument("--json", "--report", type=Path, metavar="F", help="write what was done to F, as JSON")
+    parser.add_argument("--json", "--report", type=Path, metavar="F", help="write a report to F, as JSON")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
 
@@ -84,7 +88,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def repair_file(source: Path, output: Path, choices: RepairChoices | None = None) -> dict[str, Any]:
-    """Repairs a .blend or a mesh file, and writes the output if that is free; a report, ready for JSON.
+    """Repairs a .blend or a mesh file, writes the output if it is free, and returns a report, as JSON data.
 
     Raises InputError.
     """
@@ -94,7 +98,7 @@ def repair_file(source: Path, output: Path, choices: RepairChoices | None = None
     begin = time.perf_counter()
     if source.suffix.lower() == ".blend":
         if output.suffix.lower() != ".blend":
-            raise InputError(f"{output}: what comes out of a .blend is a .blend")
+            raise InputError(f"{output}: the output of a .blend must be a .blend")
         outcome: RepairOutcome = repair_blend(source, output, chosen)
     else:
         require_writer(output)
@@ -103,16 +107,16 @@ def repair_file(source: Path, output: Path, choices: RepairChoices | None = None
 
 
 def summary(report: dict[str, Any]) -> str:
-    """The result for people, one line a fact."""
+    """The result as text."""
     name = report["file"]
     if report["status"] == "already_free":
-        return f"{name}: nothing intersects; {report['output']} is the same ({report['seconds']:.2f} s)"
+        return f"{name}: no intersections; {report['output']} is a copy ({report['seconds']:.2f} s)"
     if report["free"]:
         return (
-            f"{name}: {report['pairs_before']:,} intersecting pairs are gone, {report['deviation']:.2%} off in the "
-            f"mean; written to {report['output']} ({report['seconds']:.2f} s)"
+            f"{name}: resolved {report['pairs_before']:,} intersections, mean deviation {report['deviation']:.2%}; "
+            f"written to {report['output']} ({report['seconds']:.2f} s)"
         )
-    lines = [f"{name}: not repaired, nothing is written: {report['message']}"]
+    lines = [f"{name}: not repaired, nothing was written: {report['message']}"]
     lines += [f"  {_text(pair['first'])} - {_text(pair['second'])}" for pair in report["pairs"][:SHOWN_PAIRS]]
     more = report["pairs_left"] - SHOWN_PAIRS
     return "\n".join(lines + ([f"  ... and {more:,} more"] if more > 0 else []))

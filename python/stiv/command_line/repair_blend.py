@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from stiv.command_line.blender_module import quiet_blender, require_blender, stored_settings
-from stiv.command_line.progress import share_bar
+from stiv.command_line.progress import fraction_bar
 from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
 from stiv.output_files import written_atomically
 
 
 def repair_blend(source: Path, output: Path, choices: RepairChoices) -> RepairOutcome:
-    """Repairs the open meshes of a .blend and saves a copy when Blender's own evaluation is free. Raises InputError.
+    """Repairs the meshes of a .blend, and saves a copy if its evaluation is free of intersections. Raises InputError.
 
-    Roles that the add-on has stored are followed if it is installed. The selection in the file stays as it is.
+    Uses the roles of the add-on if it is installed. The selection in the file does not change.
     """
     files = require_blender("stiv.blender.scripts.blend_files", source)
     with quiet_blender():
@@ -37,15 +37,22 @@ def _repair(context: Any, settings: Any, choices: RepairChoices, source: Path) -
     if before == 0:
         return RepairOutcome("already_free", "", 0, [], 0.0, "")
     meeting = {each.object for pair in found.pairs for each in (pair.first, pair.second)}
-    names = choices.move or sorted(_that_may_change(context, meeting, settings))
+    names = choices.move or sorted(_changeable(context, meeting, settings))
     if not names:
-        return RepairOutcome("refused", "no mesh that intersects may change", before, _plain(found.pairs), 0.0, "")
-    with selecting.selected(context, names), share_bar("repair") as progress:
+        return RepairOutcome(
+            "refused",
+            "no intersecting mesh may change; change a role from Obstacle",
+            before,
+            _plain(found.pairs),
+            0.0,
+            "",
+        )
+    with selecting.selected(context, names), fraction_bar("repair") as progress:
         chosen = blender.RepairSettings(settings, choices.max_deviation, choices.weld)
         report = blender.repair_scene(context, chosen, progress=progress)
     left = blender.check_scene(context, settings, strands=False).pairs
     if report.changed and left:
-        message = "free of what is to move, but others still intersect; name them with --move"
+        message = "other objects still intersect; name them with --move"
         return RepairOutcome("refused", message, before, _plain(left), report.deviation, report.contracted)
     status = "refused" if left else report.status
     return RepairOutcome(status, report.message, before, _plain(left), report.deviation, report.contracted)
@@ -57,8 +64,8 @@ def _settings(context: Any, source: Path, choices: RepairChoices) -> Any:
     return replace(settings, separation=separation, guard=guard, time_budget=choices.time_limit)
 
 
-def _that_may_change(context: Any, names: set[str], settings: Any) -> set[str]:
-    """Meshes among these objects that are no obstacles."""
+def _changeable(context: Any, names: set[str], settings: Any) -> set[str]:
+    """Meshes among these objects that are not obstacles."""
     objects = context.view_layer.objects
     return {name for name in names if objects[name].type == "MESH" and settings.role(name) != "obstacle"}
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.command_line.progress import share_bar
+from stiv.command_line.progress import fraction_bar
 from stiv.command_line.repair_report import Element, RepairChoices, RepairOutcome
 from stiv.mesh_files import Mesh, read_mesh, welded_mesh, write_mesh, write_repositioned
 from stiv.output_files import written_atomically
@@ -21,10 +21,10 @@ Pairs = list[tuple[Element, Element]]
 
 
 def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOutcome:
-    """Repairs a mesh file; the output is written when what was written, read again, is free. Raises InputError.
+    """Repairs a mesh file, and writes the output if it is free when read again. Raises InputError.
 
-    An output of the same kind is the input with other positions; one of another kind has polygons and object names.
-    With `weld`, and for another kind, textures and other properties are left out.
+    An output in the format of the input only differs in positions. With `weld`, or in another format, it has polygons
+    and object names, without textures and other properties.
     """
     mesh = read_mesh(source)
     if choices.weld:
@@ -35,10 +35,10 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
         edit=stiv.EditOptions(separation=choices.separation, time_budget=choices.time_limit),
         max_deviation=choices.max_deviation,
     )
-    with share_bar("repair") as progress:
+    with fraction_bar("repair") as progress:
         result = stiv.repair(joined.surface, joined.positions, options, progress=progress)
     pairs = _named_pairs(mesh, result.pairs.tolist())
-    message = "the time limit ended first" if result.status == "budget" else result.message
+    message = "the time limit was too short" if result.status == "budget" else result.message
     outcome = RepairOutcome(result.status, message, result.pairs_before, pairs, result.deviation, result.contracted)
     if not outcome.free:
         return outcome
@@ -53,32 +53,34 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
 
 
 def _surface_of(mesh: Mesh, move: tuple[str, ...]) -> stiv.Surface:
-    """One body an object, unless objects share vertices; those that are not named in `move`, if any are, are fixed."""
+    """One body per object, unless objects share vertices. If `move` names objects, the others are fixed."""
     for name in move:
         if name not in mesh.object_names:
-            raise InputError(f'there is no object "{name}"; there are {", ".join(map(repr, mesh.object_names[:10]))}')
+            raise InputError(
+                f'there is no object "{name}"; the objects are {", ".join(map(repr, mesh.object_names[:10]))}'
+            )
     owner = np.zeros(len(mesh.vertices), np.int32)
     owner[mesh.triangles] = mesh.triangle_object[:, None]
     if (owner[mesh.triangles] != mesh.triangle_object[:, None]).any():
         if move:
-            raise InputError("objects of the file share vertices and cannot be moved apart; leave out --move")
+            raise InputError("objects share vertices, so they cannot move separately; leave out --move")
         return stiv.Surface(mesh.triangles, len(mesh.vertices))
     bodies = [stiv.Body(name, "fixed" if move and name not in move else "deformable") for name in mesh.object_names]
     return stiv.Surface(mesh.triangles, len(mesh.vertices), vertex_body=owner, bodies=bodies)
 
 
 def _check_written(path: Path, surface: stiv.Surface, output: Path) -> None:
-    """The file must be free as another program will read it."""
+    """Raises InputError if the written file has intersections when read again."""
     written = read_mesh(path)
     joined = stiv.join_seams(stiv.Surface(
         written.triangles, len(written.vertices), vertex_body=surface.vertex_body, bodies=surface.bodies
     ), written.vertices)  # fmt: skip
     if len(stiv.find_intersections(joined.positions, joined.surface)):
-        raise InputError(f"{output}: this kind of file cannot hold the result precisely enough; write .npz or .obj")
+        raise InputError(f"{output}: this format is not precise enough for the result; write .npz or .obj")
 
 
 def _named_pairs(mesh: Mesh, pairs: list[list[int]]) -> Pairs:
-    """Pairs of triangles by object and number of the polygon within it."""
+    """Pairs of triangles, as objects and indices of polygons within them."""
     owner = mesh.polygon_object
     order = np.argsort(owner, kind="stable")
     first = np.searchsorted(owner[order], np.arange(len(mesh.object_names)))

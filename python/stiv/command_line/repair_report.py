@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `stiv repair` is asked, and what it says (python/stiv/schemas/repair.schema.json)."""
+"""Options and report of `stiv repair` (python/stiv/schemas/repair.schema.json)."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ SCHEMA, VERSION = "stiv-repair", 1
 LISTED_PAIRS = 100  # in the report
 SHOWN_PAIRS = 10  # on the terminal
 
-Element = tuple[str, str, int]  # object, kind of element, number within the object
+Element = tuple[str, str, int]  # object, kind of element, index within the object
 
 
 @dataclass(frozen=True)
 class RepairChoices:
-    """What the user chose: names of objects that may change (none: all that intersect), seconds that it may take (0: no
-    limit), as stiv.RepairOptions, and what stays free: "viewport", "render" or "both"; "" as the scene says.
+    """Options of a repair. stiv.RepairOptions describes those that it also has.
+
+    move: names of objects that may change; empty: all that intersect. time_limit: seconds, 0 for no limit. guard:
+    "viewport", "render" or "both"; "" for the setting of the scene.
     """
 
     move: tuple[str, ...] = ()
@@ -30,7 +32,7 @@ class RepairChoices:
 
 @dataclass(frozen=True)
 class RepairOutcome:
-    """What a repair of a file came to; `pairs` are what still intersects."""
+    """Result of the repair of a file; `pairs` still intersect."""
 
     status: str
     message: str
@@ -41,11 +43,11 @@ class RepairOutcome:
 
     @property
     def free(self) -> bool:
-        """Is the output written, and free of intersections?"""
+        """Whether the output is written and free of intersections."""
         return self.status in ("already_free", "repaired")
 
     def as_json(self, source: Path, output: Path, seconds: float) -> dict[str, Any]:
-        """The report."""
+        """The report, as JSON data."""
         return {
             "schema": SCHEMA,
             "version": VERSION,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv replay`: run an edit script on a .blend through the add-on's operators."""
+"""`stiv replay`: runs an edit script on a .blend with the operators of the add-on, or on a mesh file."""
 
 from __future__ import annotations
 
@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 SCHEMA, VERSION = "stiv-replay", 1
 
 _DESCRIPTION = """\
-Opens a .blend (scripts in it are not run), runs the edits of a script one after another through the operators of the
-add-on, and saves the result. Mesh files need no Blender. The format of scripts is described in
-docs/edit_scripts.md."""
+Opens a .blend (scripts in it do not run), runs the edits of an edit script with the operators of the add-on, and saves
+the result. Mesh files need no Blender. docs/edit_scripts.md describes the format of edit scripts."""
 _EXAMPLES = """\
 examples:
   stiv replay scene.blend edits.json -o edited.blend
@@ -47,7 +46,7 @@ def add_to(subcommands: Subparsers) -> None:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scene", type=Path, metavar="SCENE.blend|MESH", help="the scene to start from")
+    parser.add_argument("scene", type=Path, metavar="SCENE.blend|MESH", help="the file to edit")
     parser.add_argument("edits", type=Path, metavar="EDITS.json", help="the edit script")
     parser.add_argument(
         "-o",
@@ -55,11 +54,11 @@ def add_to(subcommands: Subparsers) -> None:
         type=Path,
         required=True,
         metavar="OUT",
-        help="where the result goes: a .blend, or a mesh file",
+        help="the output file: a .blend or a mesh file",
     )
-    parser.add_argument("--report", type=Path, metavar="F", help="write what each edit did to F, as JSON")
-    parser.add_argument("--check", action="store_true", help="make the exact test anew after each edit of a .blend")
-    parser.add_argument("--render", type=Path, metavar="F.png", help="render a picture of the result to F.png")
+    parser.add_argument("--report", type=Path, metavar="F", help="write a report on each edit to F, as JSON")
+    parser.add_argument("--check", action="store_true", help="run the exact test after each edit of a .blend")
+    parser.add_argument("--render", type=Path, metavar="F.png", help="render the result to F.png")
     add_guard_option(parser)
     add_blender_option(parser)
     parser.set_defaults(run=_run)
@@ -95,9 +94,9 @@ def _replay_scene(arguments: argparse.Namespace, script: EditScript) -> list[dic
 
 def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict[str, Any]]:
     if arguments.render is not None:
-        raise InputError("--render: a mesh file has no camera to render with")
+        raise InputError("--render: a mesh file has no camera")
     if arguments.check:
-        raise InputError("--check: of a .blend; `stiv check` tests mesh files")
+        raise InputError("--check only supports .blend files; run `stiv check` on mesh files")
     require_writer(arguments.output)
     mesh = read_mesh(arguments.scene)
     with progress_bar("edits", len(script)) as advance:
@@ -111,9 +110,9 @@ def _replay_mesh(arguments: argparse.Namespace, script: EditScript) -> list[dict
 
 
 def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dict[str, Any]]:
-    """Runs the script on the open scene, with a progress bar; what each edit did, ready for JSON.
+    """Runs a script on the open scene, with a progress bar; returns a report on each edit, as JSON data.
 
-    check: make the exact test anew after each edit.
+    check: whether to run the exact test after each edit.
     """
     replaying = require_blender("stiv.blender.scripts.replaying", scene)
     with addon_registered(scene), progress_bar("edits", len(script)) as advance:
@@ -122,19 +121,19 @@ def run_script(script: EditScript, scene: Path, check: bool = False) -> list[dic
 
 
 def render_scene(picture: Path, scene: Path) -> None:
-    """Renders the open scene, which came from the file `scene`, to a PNG file."""
+    """Renders the open scene, from the file `scene`, to a PNG file."""
     files = require_blender("stiv.blender.scripts.blend_files", scene)
     with written_atomically(picture) as temporary, quiet_blender(errors=True):
         files.render_picture(temporary)
 
 
 def replay_report(scene: Path, edits: list[dict[str, Any]]) -> dict[str, Any]:
-    """The report of a replay, ready for JSON."""
+    """The report of a replay, as JSON data."""
     return {"schema": SCHEMA, "version": VERSION, "scene": scene.name, "edits": edits}
 
 
 def summary(edits: list[dict[str, Any]]) -> str:
-    """What was done, in one line."""
+    """The result as a line of text."""
     milliseconds = sum(edit["milliseconds"] for edit in edits)
     rounds = sum(edit["rounds"] for edit in edits)
     stopped = sum(edit["status"] == "blocked" for edit in edits)

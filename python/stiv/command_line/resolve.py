@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv resolve`: an animation that goes through nothing."""
+"""`stiv resolve`: corrects an animation so that nothing intersects."""
 
 from __future__ import annotations
 
@@ -24,35 +24,43 @@ if TYPE_CHECKING:
 SCHEMA, VERSION = "stiv-resolve", 2
 
 _DESCRIPTION = """\
-Corrects an animation so that nothing goes through anything: the pose of each frame is the goal, and what was accepted
-for the frame before is the start. Placements are written as keyframes, shapes as shape keys, into a new file, which is
-checked once more, frames and the ways between them, before it takes its place. Scripts in the file are not run.
-docs/animation.md says what is written how."""
+Corrects an animation so that nothing intersects. The pose of each frame is a goal, and its edit starts from the
+accepted state of the previous frame. The new file contains transforms as keyframes and shapes as shape keys. Its
+frames, and the motion between them, are tested before it is saved. Scripts in the file do not run. docs/animation.md
+has the details."""
 _EXAMPLES = """\
 examples:
   stiv resolve walk.blend --frames 1:120 -o resolved.blend
   stiv resolve walk.blend --frames scene -o resolved.blend --hold Hand --report frames.json
 
-exit codes: 0 done, 4 the first frame, or what Blender shows of the result, is not free of intersections (nothing is
-written), 2 bad input, 1 wrong usage, 3 internal error, 5 cancelled"""
+exit codes: 0 done, 4 the first frame, or the evaluated result, has intersections (nothing is written), 2 bad input,
+1 wrong usage, 3 internal error, 5 cancelled"""
 
 
 def add_to(subcommands: Subparsers) -> None:
     """Adds the subcommand to the parser."""
     parser = subcommands.add_parser(
         "resolve",
-        help="correct an animation so that nothing goes through anything",
+        help="correct an animation so that nothing intersects",
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene with the animation")
     parser.add_argument("--frames", type=frame_range, required=True, metavar="A:B[:STEP]", help="frames, or `scene`")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="where the result goes")
-    parser.add_argument("--hold", action="append", default=[], metavar="NAME", help="object that does not give way")
-    parser.add_argument("--separation", type=float, default=0.0, metavar="X", help="distance to keep, world units")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.blend", help="the output file")
+    parser.add_argument(
+        "--hold",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="an object that follows its animation exactly, repeatable",
+    )
+    parser.add_argument(
+        "--separation", type=float, default=0.0, metavar="X", help="minimum distance, world units (default: automatic)"
+    )
     add_guard_option(parser)
-    parser.add_argument("--report", type=Path, metavar="F", help="write what each frame came to to F, as JSON")
+    parser.add_argument("--report", type=Path, metavar="F", help="write a report on each frame to F, as JSON")
     add_blender_option(parser)
     parser.set_defaults(run=_run)
 
@@ -75,7 +83,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dict[str, Any]], Any]:
-    """What meets in the result, what each frame came to, and the guard; writes the file if nothing meets."""
+    """Intersections in the result, a report on each frame, and the guard. Writes the file if nothing intersects."""
     scene = arguments.scene
     files, poses, resolving, writing, checking, keyed, guarding, evaluations = (
         require_blender(f"stiv.blender.{name}", scene)
@@ -115,13 +123,13 @@ def _resolve(arguments: argparse.Namespace) -> tuple[list[Finding], Sequence[dic
 
 
 def _tested(frames: Sequence[int], keyed: Any) -> list[float]:
-    """What `stiv check` looks at without options: all frames, those between two that were solved too, and all keys."""
+    """The frames that `stiv check` tests by default: all frames of the range, and keys between them."""
     found: list[float] = keyed.add_subframe_keys(range(frames[0], frames[-1] + 1))
     return found
 
 
 class _NotFreeError(Exception):
-    """Keeps what is not free from taking the place of the output."""
+    """Prevents a result with intersections from being saved."""
 
 
 def report_of(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]], guard: str) -> dict[str, Any]:
@@ -139,19 +147,19 @@ def report_of(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, A
 
 
 def summary(scene: Path, left: Sequence[Finding], frames: Sequence[dict[str, Any]]) -> str:
-    """What was done, in a few lines."""
+    """The result as text."""
     if left:
-        lines = [f"{scene}: {len(left)} pairs meet in what Blender shows of the result; nothing was written"]
+        lines = [f"{scene}: {len(left)} intersecting pairs in the evaluated result; nothing was written"]
         return "\n".join(lines + [f"  {finding}" for finding in left[:10]])
     corrected = [frame for frame in frames if frame["rounds"] > 0]
     blocked = sum(frame["status"] == "blocked" for frame in frames)
     away = max((frame["distance"] for frame in frames), default=0.0)
-    told = f"{len(frames)} frames, {len(corrected)} corrected, {blocked} blocked; at most {away:.4g} from the animation"
-    return f"{scene}: {told}"
+    counts = f"{len(frames)} frames, {len(corrected)} corrected, {blocked} blocked"
+    return f"{scene}: {counts}; maximum distance from the animation {away:.4g}"
 
 
 def _alike(tracks: Sequence[Any], parts: Sequence[Any]) -> dict[str, int]:
-    """Objects that do not change their relation to each other have the same number: the still ones, each group."""
+    """Numbers of objects. Objects that do not move relative to each other have the same: static ones, each group."""
     numbers = {track.mesh.owner.name: -1 for track in tracks}
     for number, part in enumerate(parts):
         numbers.update({tracks[index].mesh.owner.name: number for index in part.tracks if part.frame is None})
@@ -160,6 +168,6 @@ def _alike(tracks: Sequence[Any], parts: Sequence[Any]) -> dict[str, int]:
 
 
 def _keeps(finding: Finding, alike: dict[str, int]) -> bool:
-    """Is this between what never moves against each other, and was there before?"""
+    """Whether a finding is between objects that never move relative to each other, so that it existed before."""
     one, other = (alike.get(name, -1) for name in finding.objects)  # what is only rendered has no track
     return one == other and one >= -1

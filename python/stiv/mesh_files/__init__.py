@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mesh files: OBJ, PLY (ascii and binary) and NPZ, read safely against files made to harm, and written."""
+"""Mesh files: OBJ, PLY (text and binary) and NPZ. The readers are safe for untrusted files."""
 
 from stiv.mesh_files.mesh import Mesh
 from stiv.mesh_files.reading import SUFFIXES, read_mesh

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""NumPy archives with `vertices` (N, 3), `triangles` (F, 3) and, if wanted, `object_names` and `triangle_object`.
+"""NumPy archives with `vertices` (N, 3), `triangles` (F, 3), and optionally `object_names` and `triangle_object`.
 
-The arrays' headers are read first and compared with the archive's own sizes, so that no header makes this program
-allocate more than the file holds; pickled objects are never loaded.
+The reader compares the headers of arrays with the sizes in the archive before it allocates memory. It never loads
+pickled objects.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from stiv import InputError
 from stiv.mesh_files.mesh import Mesh, checked_mesh
 
 MAX_ARRAY_BYTES = 2 * 2**30
-# What zipfile raises for archives that are none, damaged or encrypted, or whose members' names are no text.
+# Exceptions of zipfile for invalid, damaged or encrypted archives, and for names that are not text.
 UNREADABLE = (
     zipfile.BadZipFile,
     EOFError,
@@ -35,7 +35,7 @@ UNREADABLE = (
 
 
 def read_npz(path: Path) -> Mesh:
-    """The mesh of an NPZ file."""
+    """Reads an NPZ file."""
     try:
         with zipfile.ZipFile(path) as archive:
             vertices = _array(archive, "vertices", "fiu", 3)
@@ -50,7 +50,7 @@ def read_npz(path: Path) -> Mesh:
 
 
 def _texts(array: NDArray[np.str_], name: str) -> tuple[str, ...]:
-    """Texts that NumPy takes as they are: not all that four bytes may hold is a character."""
+    """Decodes texts, because NumPy does not check that four bytes are a character."""
     encoding = "utf-32-be" if array.dtype.str.startswith(">") else "utf-32-le"
     rows = array.view(np.uint8).reshape(len(array), array.dtype.itemsize)
     try:
@@ -64,14 +64,14 @@ def _optional(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any] |
 
 
 def _array(archive: zipfile.ZipFile, name: str, kinds: str, columns: int | None) -> NDArray[Any]:
-    """One array of shape (N, columns), or (N,) for None, with a dtype of one of these kinds."""
+    """Reads an array of shape (N, columns), or (N,) for None, with a dtype of one of these kinds."""
     if f"{name}.npy" not in archive.namelist():
-        raise InputError(f'no array "{name}" in it')
+        raise InputError(f'the array "{name}" is missing')
     member = archive.getinfo(f"{name}.npy")
     with archive.open(member) as stream:
         shape, column_major, dtype = _header(stream, name)
         if dtype.hasobject or dtype.kind not in kinds or dtype.itemsize == 0:
-            raise InputError(f'array "{name}": numbers of type {dtype} cannot be used here')
+            raise InputError(f'array "{name}": type {dtype} is not supported')
         if len(shape) != (1 if columns is None else 2) or (columns is not None and shape[1] != columns):
             raise InputError(
                 f'array "{name}": shape {shape} where (N{"" if columns is None else f", {columns}"}) is needed'

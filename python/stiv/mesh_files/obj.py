@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wavefront OBJ: vertices, polygons and object names; everything else in the file is passed over."""
+"""Wavefront OBJ: vertices, polygons and object names. Ignores everything else."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stiv.mesh_files.mesh import Mesh, polygon_mesh
 
 @dataclass
 class _Contents:
-    """What has been read so far."""
+    """State of the reader."""
 
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
     corners: list[int] = field(default_factory=list)
@@ -24,7 +24,7 @@ class _Contents:
 
 
 def read_obj(path: Path) -> Mesh:
-    """The mesh of an OBJ file. Negative indices count back from the last vertex, as the format has it."""
+    """Reads an OBJ file. Negative indices count back from the last vertex."""
     contents = _Contents()
     with path.open(encoding="utf-8", errors="replace") as lines:
         for number, line in enumerate(lines, 1):

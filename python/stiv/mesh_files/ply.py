@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PLY, ascii and binary: the vertices' x, y, z and the faces' list of indices; other properties are passed over."""
+"""PLY, text and binary: x, y, z of vertices and the indices of faces. Ignores other properties."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from stiv.mesh_files.ply_header import Element, Header, Property, read_header
 
 _INDEX_NAMES = ("vertex_indices", "vertex_index")
 Columns = dict[str, NDArray[np.float64]]
-Lists = tuple[NDArray[np.int64], NDArray[np.int64]]  # entries behind one another; count of each row
+Lists = tuple[NDArray[np.int64], NDArray[np.int64]]  # entries row by row; number in each row
 
 
 def read_ply(path: Path) -> Mesh:
-    """The mesh of a PLY file."""
+    """Reads a PLY file."""
     data = path.read_bytes()
     header = read_header(data)
     body = _AsciiBody(data, header) if header.byte_order is None else _BinaryBody(data, header)
@@ -31,14 +31,14 @@ def read_ply(path: Path) -> Mesh:
         elif element.name == "face":
             corners = _corners(lists, element)
     if vertices is None:
-        raise InputError('no element "vertex" in it')
+        raise InputError('the element "vertex" is missing')
     return polygon_mesh(vertices, *corners, (path.stem,))
 
 
 def _coordinates(columns: Columns, element: Element) -> NDArray[np.float64]:
     missing = [axis for axis in "xyz" if axis not in columns]
     if missing:
-        raise InputError(f'element "vertex": no property "{missing[0]}"')
+        raise InputError(f'element "vertex": the property "{missing[0]}" is missing')
     return np.stack([columns[axis] for axis in "xyz"], axis=1).reshape(element.count, 3)
 
 
@@ -46,7 +46,7 @@ def _corners(lists: dict[str, Lists], element: Element) -> Lists:
     for name in _INDEX_NAMES:
         if name in lists:
             return lists[name]
-    raise InputError(f'element "{element.name}": no list property "vertex_indices"')
+    raise InputError(f'element "{element.name}": the list property "vertex_indices" is missing')
 
 
 class _AsciiBody:
@@ -59,7 +59,9 @@ class _AsciiBody:
     def read(self, element: Element) -> tuple[Columns, dict[str, Lists]]:
         lines = self._lines[self._next : self._next + element.count]
         if len(lines) < element.count:
-            raise InputError(f'element "{element.name}": {element.count} promised, the file ends after {len(lines)}')
+            raise InputError(
+                f'element "{element.name}": the header announces {element.count} rows, the file ends after {len(lines)}'
+            )
         self._next += element.count
         values: dict[str, list[float]] = {p.name: [] for p in element.properties}
         counts: dict[str, list[int]] = {p.name: [] for p in element.properties if p.count_type}
@@ -93,12 +95,12 @@ class _AsciiBody:
 
 def _whole(numbers: NDArray[np.float64], element: Element) -> NDArray[np.int64]:
     if not (np.abs(numbers) < 2**53).all() or (numbers != np.floor(numbers)).any():
-        raise InputError(f'element "{element.name}": an index is not a whole number')
+        raise InputError(f'element "{element.name}": an index is not an integer')
     return numbers.astype(np.int64)
 
 
 class _BinaryBody:
-    """Elements as packed numbers. Sizes are compared with what the file holds before anything is allocated."""
+    """Elements as binary numbers. Sizes are compared with the file before anything is allocated."""
 
     def __init__(self, data: bytes, header: Header) -> None:
         self._data, self._order, self._at = data, header.byte_order or "<", header.size
@@ -106,7 +108,9 @@ class _BinaryBody:
     def read(self, element: Element) -> tuple[Columns, dict[str, Lists]]:
         least = sum(np.dtype(prop.count_type or prop.value_type).itemsize for prop in element.properties)
         if element.count * least > len(self._data) - self._at:
-            raise InputError(f'element "{element.name}": {element.count} promised, more than the file holds')
+            raise InputError(
+                f'element "{element.name}": the header announces {element.count} rows, more than the file contains'
+            )
         if not any(prop.count_type for prop in element.properties):
             return self._table(element, least), {}
         return self._rows(element)
@@ -118,7 +122,7 @@ class _BinaryBody:
         return {prop.name: table[prop.name].astype(float) for prop in element.properties}
 
     def _rows(self, element: Element) -> tuple[Columns, dict[str, Lists]]:
-        """Rows with lists: read as one table if all lists are as long as those of the first row, else row by row."""
+        """Rows with lists: one table if all lists are as long as those of the first row, otherwise row by row."""
         start = self._at
         lengths = [len(values) for values in self._row(element, 0).values()] if element.count else []
         row = np.dtype(

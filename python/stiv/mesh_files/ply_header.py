@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The header of a PLY file: what elements follow, how many, with which properties."""
+"""The header of a PLY file: its elements with their number and properties."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BYTE_ORDERS = {"ascii": None, "binary_little_endian": "<", "binary_big_endian":
 
 @dataclass(frozen=True)
 class Property:
-    """A named number of each row or, with a `count_type`, a list of them. Types are NumPy's: f4, u1, ..."""
+    """A named number in each row or, with a `count_type`, a list of numbers. Types are NumPy's: f4, u1, ..."""
 
     name: str
     value_type: str
@@ -36,7 +36,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """Elements in the file's order; `byte_order` None for ascii; `size` bytes until the first element."""
+    """Elements in file order. `byte_order`: None for text. `size`: bytes before the first element."""
 
     byte_order: str | None
     elements: tuple[Element, ...]
@@ -62,7 +62,7 @@ def read_header(data: bytes) -> Header:
             elif words[:1] == ["property"]:
                 elements[-1] = replace(elements[-1], properties=(*elements[-1].properties, _property(words)))
         except (KeyError, IndexError, ValueError) as error:
-            raise InputError(f"line {number} of its header is not understood: {line.strip()[:80]!r}") from error
+            raise InputError(f"line {number} of its header is invalid: {line.strip()[:80]!r}") from error
     _refuse_repeated_names(elements)
     return Header(byte_order, tuple(elements), line_end + 1)
 
@@ -83,6 +83,6 @@ def _property(words: list[str]) -> Property:
 def _refuse_repeated_names(elements: list[Element]) -> None:
     for element in elements:
         if not element.properties and element.count:
-            raise InputError(f'element "{element.name}": has rows but no properties')
+            raise InputError(f'element "{element.name}": has rows without properties')
         if len({prop.name for prop in element.properties}) < len(element.properties):
-            raise InputError(f'element "{element.name}": two properties of one name')
+            raise InputError(f'element "{element.name}": two properties have the same name')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Chooses the reader by the file's suffix."""
+"""Reads mesh files, by suffix."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ SUFFIXES = tuple(_READERS)
 
 
 def read_mesh(path: Path | str) -> Mesh:
-    """The mesh in an OBJ, PLY or NPZ file; polygons are cut into fans. Raises InputError naming file and element."""
+    """Reads an OBJ, PLY or NPZ file; polygons become fans of triangles. Raises InputError naming file and element."""
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        raise InputError(f"{path}: unknown kind of file; known are {', '.join(SUFFIXES)} and .blend")
+        raise InputError(f"{path}: unknown format; supported are {', '.join(SUFFIXES)} and .blend")
     try:
         return reader(path)
     except InputError as error:
@@ -29,4 +29,4 @@ def read_mesh(path: Path | str) -> Mesh:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
     except MemoryError as error:
-        raise InputError(f"{path}: too large for the memory of this machine") from error
+        raise InputError(f"{path}: too large for the memory of this computer") from error

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Copies of mesh files in which only the positions of vertices are others: faces, textures, names stay."""
+"""Copies mesh files with other positions of vertices. Faces, textures and names stay the same."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ Floats = NDArray[np.float64]
 
 
 def write_repositioned(source: Path, target: Path, vertices: Floats) -> None:
-    """Copy an OBJ, PLY or NPZ file, which was read before, with other positions, (N, 3), to a file of the same kind.
+    """Copy an OBJ, PLY or NPZ file, which was read before, with other positions, (N, 3), in the same format.
 
-    Raises InputError where the file has no room for them, OSError.
+    Raises InputError if the format of the file cannot store them, OSError.
     """
     suffix = source.suffix.lower()
     {".obj": _obj, ".ply": _ply, ".npz": _npz}[suffix](source, target, vertices)
 
 
 def _obj(source: Path, target: Path, vertices: Floats) -> None:
-    """Lines that begin with `v` get other coordinates; what follows those (weights, colours) stays."""
+    """Replaces the coordinates in `v` lines. Other numbers in them (weights, colors) stay."""
     rows = iter(vertices.tolist())
     with source.open("rb") as lines, target.open("wb") as out:
         for line in lines:
@@ -50,7 +50,7 @@ def _ply(source: Path, target: Path, vertices: Floats) -> None:
     data = source.read_bytes()
     header = read_header(data)
     if any(element.name == "vertex" for element in header.elements[1:]):
-        raise InputError("its vertices do not come first; give an output of another kind, .obj for instance")
+        raise InputError("vertices are not the first element; choose another output format, such as .obj")
     element = header.elements[0]
     _check_room(element)
     write = _ply_text if header.byte_order is None else _ply_table
@@ -60,9 +60,9 @@ def _ply(source: Path, target: Path, vertices: Floats) -> None:
 def _check_room(element: Element) -> None:
     for prop in element.properties:
         if prop.count_type:
-            raise InputError(f'element "vertex": has a list, "{prop.name}"; give an output of another kind')
+            raise InputError(f'element "vertex": has a list, "{prop.name}"; choose another output format')
         if prop.name in "xyz" and not prop.value_type.startswith("f"):
-            raise InputError(f'element "vertex": "{prop.name}" is a whole number; give an output of another kind')
+            raise InputError(f'element "vertex": "{prop.name}" is an integer; choose another output format')
 
 
 def _ply_text(data: bytes, size: int, order: str, element: Element, vertices: Floats) -> bytes:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of polygons without coincident vertices."""
+"""Welds meshes of polygons."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from stiv.welding import weld
 
 
 def welded_mesh(mesh: Mesh) -> Mesh:
-    """A mesh with vertices made one that lie in exactly the same place; polygons lose corners that become one.
+    """Merges vertices at exactly the same position, and corners of polygons with the same vertex.
 
-    Polygons with fewer than three corners left are dropped, and so are all but the first of those with the same.
+    Removes polygons with fewer than three corners left, and duplicates.
     """
     points = weld(Surface(np.empty((0, 3), np.int32), len(mesh.vertices)), mesh.vertices)
     corners, counts, owners = [], [], []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writing of mesh files, by suffix: OBJ and PLY with polygons, NPZ with triangles."""
+"""Writes mesh files, by suffix: OBJ and PLY with polygons, NPZ with triangles."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
 def require_writer(path: Path) -> None:
     """Raises InputError if files of this suffix cannot be written."""
     if path.suffix.lower() not in _WRITERS:
-        raise InputError(f"{path}: unknown kind of file to write; known are {', '.join(_WRITERS)}")
+        raise InputError(f"{path}: cannot write this format; supported are {', '.join(_WRITERS)}")
 
 
 def _write_obj(path: Path, mesh: Mesh) -> None:
-    """Digits enough to read every coordinate back to the last bit."""
+    """Coordinates have enough digits to be read back exactly."""
     with path.open("w", encoding="utf-8", newline="\n") as out:
         out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
         last = -1

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""JSON Schemas of the files that STIV reads and writes."""
+"""JSON schemas of the files that STIV reads and writes."""
