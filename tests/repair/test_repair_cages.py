@@ -92,5 +92,5 @@ def test_mismatched_input_is_refused_in_words(tube: CagedHairpin) -> None:
     with pytest.raises(stiv.InputError, match="cage: there is no deformation"):
         stiv.repair(tube.cage, tube.controls, cage=tube.cage)
     weld = stiv.RepairOptions(weld=True)
-    with pytest.raises(stiv.InputError, match="weld its cage before"):
+    with pytest.raises(stiv.InputError, match="weld its cage first"):
         stiv.repair(tube.triangles, tube.controls, weld, deformation=tube.deformation, cage=tube.cage)
