@@ -69,7 +69,7 @@ def test_repair_is_one_undo_step_and_reports() -> None:
 def test_a_rejected_repair_raises_and_names_the_pairs() -> None:
     ball = icosphere(1)
     one, two = add("One", ball.vertices, ball.faces), add("Two", ball.vertices, ball.faces)
-    with pytest.raises(RuntimeError, match=r'exactly on others.*pairs intersect: "One" face 0 and "Two" face 0'):
+    with pytest.raises(RuntimeError, match=r'triangles coincide.*pairs intersect: "One" face 0 and "Two" face 0'):
         bpy.ops.stiv.repair()
     assert np.array_equal(positions(one), positions(two))
     assert last()["status"] == "refused" and last()["pairs"][0] == [["One", "face", 0], ["Two", "face", 0]]

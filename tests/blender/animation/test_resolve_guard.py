@@ -254,7 +254,7 @@ def test_entries_of_a_batch_have_their_guards(tmp_path: Path) -> None:
     said = {entry["name"]: entry for entry in json.loads((tmp_path / "report.json").read_text())["entries"]}
     for guard in ("viewport", "render", "both"):
         assert said[f"check {guard}"]["exit_code"] == (0 if guard == "viewport" else 4)
-        assert ("nothing intersects" in said[f"repair {guard}"]["message"]) == (guard == "viewport")
+        assert ("no intersections" in said[f"repair {guard}"]["message"]) == (guard == "viewport")
         assert said[f"resolve {guard}"]["exit_code"] == 0
         assert json.loads((tmp_path / f"resolved {guard}.json").read_text())["guard"] == guard
         met = meetings(tmp_path / f"{guard}.blend")

@@ -146,7 +146,7 @@ def test_a_failed_repair_changes_nothing_and_lists_the_pairs(what: str) -> None:
         assert (report.status, report.pairs) == ("already_free", ())
         return
     assert (report.status, report.changed) == ("refused", False)
-    assert {"coincident": "exactly on others", "too far": "deviates"}[what] in report.message
+    assert {"coincident": "triangles coincide", "too far": "deviates"}[what] in report.message
     assert {pair.first.object for pair in report.pairs} | {pair.second.object for pair in report.pairs} == {
         "One",
         "Two",
