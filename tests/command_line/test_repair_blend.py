@@ -70,7 +70,7 @@ def test_bad_names_and_outputs_end_with_2(tmp_path, capfd):
     source = tmp_path / "balls.blend"
     save_balls(source, 1.5)
     assert program.run(["repair", str(source), "-o", str(tmp_path / "out.obj")]) == 2
-    assert "what comes out of a .blend is a .blend" in capfd.readouterr().err
+    assert "the output of a .blend must be a .blend" in capfd.readouterr().err
     assert program.run(["repair", str(source), "-o", str(tmp_path / "out.blend"), "--move", "Nobody"]) == 2
     assert 'no object "Nobody"' in capfd.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["balls.blend"]
