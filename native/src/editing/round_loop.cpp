@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <utility>
 
 #include "editing/control_interpolation.hpp"
 #include "editing/round_volumes.hpp"
@@ -124,19 +126,24 @@ void RoundLoop::project() {
   call_.execution.checkpoint();
 }
 
-/// Events among the cached candidates or, if there are none, among all pairs. The candidate's surface is up to date at
-/// their vertices; everywhere if there are no events. Nothing if the step exceeds the pair limit.
+/// Events among the cached candidates or, if there are none, among all pairs. At the vertices of events, the
+/// candidate's surface is that of `Deformation::surface_rows`; it is the whole one if there are none. Nothing if the
+/// step exceeds the pair limit.
 std::optional<Events> RoundLoop::find_events() {
   const Positions& start = call_.accepted.surface;
-  const bool is_placed = !progress_.cache_is_pruned;
-  if (is_placed) {
+  std::optional<Positions> placed;
+  if (!progress_.cache_is_pruned) {
     place_surface();
-    call_.queries.prune_cache(start, outcome_.candidate.surface, call_.execution);
+    placed = outcome_.candidate.surface;
+    call_.queries.prune_cache(start, *placed, call_.execution);
     progress_.cache_is_pruned = true;
   }
   Events cached = call_.queries.find_cached(start, outcome_.candidate, call_.execution);
   if (!cached.empty()) return cached;
-  if (!is_placed) place_surface();
+  if (placed)
+    outcome_.candidate.surface = std::move(*placed);
+  else
+    place_surface();
   return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);
 }
 

@@ -27,8 +27,9 @@ class Deformation {
   /// That as detection and acceptance take it: coordinates below their range (coordinate_range.hpp) are 0.
   Positions surface_in_range(const Controls& p, const Execution& execution = Execution(1)) const;
 
-  /// Rows of the surface, those of some vertices: (k, 3), bit by bit the same. Here of the whole; others make only what
-  /// is asked for.
+  /// Rows of the surface, those of some vertices, (k, 3). Here those of the whole surface; others compute only what is
+  /// asked for, with the same bits. As-rigid-as-possible deformations give an approximation: rounds look for contacts
+  /// in these rows, but the last round and acceptance take the whole surface.
   virtual Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
 
   /// J(p)' g: a sparse covector over vertices pulled back to controls.

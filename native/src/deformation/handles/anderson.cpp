@@ -2,33 +2,43 @@
 #include "deformation/handles/anderson.hpp"
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 namespace stiv {
 
 namespace {
 
-constexpr std::size_t window = 6;
+constexpr std::size_t window = 10;
 constexpr double damping = 1e-13;  // of the mean of the squares: residuals that say the same twice
+
+double dot(const Positions& a, const Positions& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace
 
+/// The differences of the last few points, and their products.
+void AndersonAcceleration::add(Difference difference) {
+  differences_.push_back(std::move(difference));
+  if (differences_.size() > window) {
+    differences_.pop_front();
+    products_ = Eigen::MatrixXd(products_.bottomRightCorner(window - 1, window - 1));
+  }
+  const auto count = static_cast<Eigen::Index>(differences_.size());
+  products_.conservativeResize(count, count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    products_(k, count - 1) = products_(count - 1, k) = dot(differences_[at(k)].residual, differences_.back().residual);
+}
+
 Positions AndersonAcceleration::next(const Positions& x, const Positions& g) {
   const Positions residual = g - x;
-  if (has_last_) differences_.push_back({residual - last_residual_, g - last_image_});
-  if (differences_.size() > window) differences_.pop_front();
+  if (has_last_) add({residual - last_residual_, g - last_image_});
   last_residual_ = residual;
   last_image_ = g;
   has_last_ = true;
   const auto count = static_cast<Index>(differences_.size());
   if (count == 0) return g;
-  Eigen::MatrixXd products(count, count);
   Eigen::VectorXd right(count);
-  for (Index row = 0; row < count; ++row) {
-    const Positions& a = differences_[at(row)].residual;
-    right[row] = a.cwiseProduct(residual).sum();
-    for (Index column = 0; column <= row; ++column)
-      products(row, column) = products(column, row) = a.cwiseProduct(differences_[at(column)].residual).sum();
-  }
+  for (Index k = 0; k < count; ++k) right[k] = dot(differences_[at(k)].residual, residual);
+  Eigen::MatrixXd products = products_;
   products.diagonal().array() += damping * products.diagonal().mean();
   const Eigen::VectorXd share = products.ldlt().solve(right);
   Positions result = g;

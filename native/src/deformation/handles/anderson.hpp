@@ -16,13 +16,16 @@ class AndersonAcceleration {
   Positions next(const Positions& x, const Positions& g);
 
   /// Forget all points: they led astray.
-  void restart() { differences_.clear(), has_last_ = false; }
+  void restart() { *this = {}; }
 
  private:
   struct Difference {
     Positions residual, image;
   };
+  void add(Difference difference);
+
   std::deque<Difference> differences_;
+  Eigen::MatrixXd products_;  // of the residuals' differences
   Positions last_residual_, last_image_;
   bool has_last_ = false;
 };

@@ -3,29 +3,62 @@
 
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "deformation/checks.hpp"
 #include "deformation/handles/anderson.hpp"
+#include "deformation/handles/block_factor.hpp"
 #include "deformation/handles/handle_map.hpp"
 #include "deformation/handles/mesh_laplacian.hpp"
 #include "deformation/handles/rigid_cells.hpp"
+#include "position_rows.hpp"
 
 namespace stiv {
 
 namespace {
 
 constexpr int most_steps = 300;
-constexpr double least_motion = 1e-11;     // of the mesh's size: a step that moves less is the last
-constexpr double least_residual = 1e-10;   // of the first one, in solving for J
-constexpr double slack = 1e-12;            // by which rounding may raise an energy
-constexpr std::size_t worth_a_factor = 4;  // so many solves by conjugate gradients cost as much as a factor of H
+constexpr double least_motion = 1e-11;    // of the mesh's size: a step that moves less is the last
+constexpr double rough_motion = 1e-6;     // the same where contacts are found and linearised
+constexpr double least_residual = 1e-10;  // of the first one, in solving for J
+constexpr double slack = 1e-12;           // by which rounding may raise an energy
 
-/// The minimum for some controls, and the rotations there.
-struct Minimum {
-  Controls p;
+/// Displacements near a minimum, and the rotations there.
+struct Shape {
   Positions u;
   std::vector<RotationFit> fits;
 };
+
+/// The iteration toward the minimum for some controls.
+struct Descent {
+  Shape shape;
+  Positions start, plain;  ///< the first global step, with all rotations 1; the last one, not accelerated
+  AndersonAcceleration acceleration = {};
+  double energy = std::numeric_limits<double>::infinity();
+  int step = 0;
+};
+
+/// The minimum for some controls as the surface needs it, or the approximation on the way to it that rounds need.
+struct Minimum {
+  Controls p;
+  Shape rough;
+  Descent descent;  ///< ends at the minimum if `is_exact`, else at `rough`
+  bool is_exact = false;
+};
+
+/// An entry for each two free vertices that are in one cell.
+SymmetricMatrix pattern_within_two_rings(const SymmetricMatrix& stiffness, const HandlePartition& partition) {
+  const SymmetricMatrix within = stiffness.cwiseAbs() * stiffness.cwiseAbs();
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  for (const Index column : partition.free)
+    for (SymmetricMatrix::InnerIterator entry(within, column); entry; ++entry)
+      if (const Index row = partition.place[at(static_cast<Index>(entry.row()))]; row >= 0)
+        entries.emplace_back(row, partition.place[at(column)], 1);
+  const auto count = static_cast<Index>(partition.free.size());
+  SymmetricMatrix pattern(count, count);
+  pattern.setFromTriplets(entries.begin(), entries.end());
+  return pattern;
+}
 
 class Arap final : public HandleDeformation {
  public:
@@ -36,7 +69,8 @@ class Arap final : public HandleDeformation {
         pull_(definition.pull),
         weights_(edge_weights(mesh, rest_, definition.edge_weights)),
         cells_(weights_, rest_),
-        map_(definition, mesh, mesh_laplacian(weights_)) {
+        stiffness_(mesh_laplacian(weights_)),
+        map_(definition, mesh, stiffness_) {
     if (rest_.rows() > 0) size_ = (rest_.colwise().maxCoeff() - rest_.colwise().minCoeff()).maxCoeff();
   }
 
@@ -45,51 +79,47 @@ class Arap final : public HandleDeformation {
 
   Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, control_count());
-    Positions q = rest_ + minimum(p)->u;
-    if (pull_.size() == 0)
-      for (Index k = 0; k < control_count(); ++k) q.row(handles_[at(k)]) = p.row(k);
-    return q;
+    return positions(minimum(p, true)->descent.shape, p);
+  }
+
+  Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution&) const override {
+    check_control_rows(p, control_count());
+    return rows_of(positions(minimum(p, false)->rough, p), vertices);
   }
 
   /// J'g = M'(g + C H^-1 g): the transpose of the below.
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
-    const auto state = minimum(p);
+    const auto state = minimum(p, false);
     Positions covector = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) = g.value[k];
-    return map_.pull_back(all_rows(covector + cells_.load_change(state->fits, solve_hessian(*state, covector))));
+    return pulled_through(state->rough, solve_hessian(state->rough, covector), g);
   }
 
   /// Many at once, as the contacts of a round: by a factor of H, which all of them share. A contact's covector is one
   /// column, sixteen of them a pass.
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                          const Execution& execution) const override {
-    if (g.size() < worth_a_factor) return Deformation::pull_back_all(p, g, execution);
-    const auto state = minimum(p);
-    const auto factor = SparseFactor::if_definite(free_hessian(*state));
+    const auto state = minimum(p, false);
+    const auto factor = factor_hessian(state->rough);
     if (!factor) return Deformation::pull_back_all(p, g, execution);  // at a saddle
     std::vector<SparseField> pulled(g.size());
-    execution.for_chunks(static_cast<Index>(g.size()), ColumnBlock::ColsAtCompileTime,
-                         [&](Index begin, Index end, Index) {
-                           ColumnBlock right = ColumnBlock::Zero(factor->size(), ColumnBlock::ColsAtCompileTime);
-                           for (Index k = begin; k < end; ++k) set_column(right, k - begin, g[at(k)]);
-                           const ColumnBlock solved = factor->solve(right);
-                           for (Index k = begin; k < end; ++k) {
-                             Positions covector = cells_.load_change(state->fits, from_column(solved, k - begin));
-                             const SparseField& field = g[at(k)];
-                             for (std::size_t i = 0; i < field.index.size(); ++i)
-                               covector.row(field.index[i]) += field.value[i];
-                             pulled[at(k)] = map_.pull_back(all_rows(covector));
-                           }
-                         });
+    execution.for_chunks(
+        static_cast<Index>(g.size()), ColumnBlock::ColsAtCompileTime, [&](Index begin, Index end, Index) {
+          ColumnBlock right = ColumnBlock::Zero(3 * hessian_pattern().size(), ColumnBlock::ColsAtCompileTime);
+          for (Index k = begin; k < end; ++k) set_column(right, k - begin, g[at(k)]);
+          const ColumnBlock solved = factor->solve(right);
+          for (Index k = begin; k < end; ++k)
+            pulled[at(k)] = pulled_through(state->rough, from_column(solved, k - begin), g[at(k)]);
+        });
     return pulled;
   }
 
   /// J d = M d + H^-1 C M d: the global step with frozen rotations, and how the rotations answer it.
   Positions push_forward(const Controls& p, const Controls& d) const override {
     check_control_rows(d, control_count());
-    const auto state = minimum(p);
+    const auto state = minimum(p, false);
     const Positions frozen = map_.follow(d);
-    return frozen + solve_hessian(*state, cells_.load_change(state->fits, frozen));
+    return frozen + solve_hessian(state->rough, cells_.load_change(state->rough.fits, frozen));
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return map_.metric(options, nullptr); }
@@ -101,6 +131,21 @@ class Arap final : public HandleDeformation {
   std::vector<Index> support(Index control) const override { return map_.support(control); }
 
  private:
+  /// J'g with y = H^-1 g: A S y of soft handles, as J = H^-1 S'A; M'(g + C y) of hard ones.
+  SparseField pulled_through(const Shape& shape, const Positions& y, const SparseField& g) const {
+    if (pull_.size() == 0) {
+      Positions covector = cells_.load_change(shape.fits, y);
+      for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) += g.value[k];
+      return map_.pull_back(all_rows(covector));
+    }
+    SparseField pulled;
+    for (Index k = 0; k < control_count(); ++k) {
+      pulled.index.push_back(k);
+      pulled.value.push_back(pull_[k] * y.row(handles_[at(k)]));
+    }
+    return pulled;
+  }
+
   static SparseField all_rows(const Positions& values) {
     SparseField field;
     for (Index row = 0; row < values.rows(); ++row) {
@@ -116,54 +161,78 @@ class Arap final : public HandleDeformation {
     return sum;
   }
 
-  /// Rounds ask for J where they have just asked for the surface, many times: the last minimum is kept.
-  std::shared_ptr<const Minimum> minimum(const ControlsView& p) const {
-    {
-      const std::lock_guard lock(mutex_);
-      if (last_ && last_->p == p) return last_;
+  /// Rounds ask for J where they have just asked for rows of the surface, and then for all of it: the last minimum is
+  /// stored.
+  std::shared_ptr<const Minimum> minimum(const ControlsView& p, bool exact) const {
+    const std::shared_ptr<const Minimum> last = last_minimum();
+    const bool is_known = last && last->p == p;
+    if (is_known && (last->is_exact || !exact)) return last;
+    const Controls d = p - rest_controls_;
+    Minimum found = is_known ? *last : Minimum{p, {}, begin(d)};
+    if (!is_known) {
+      descend(found.descent, d, rough_motion);
+      found.rough = found.descent.shape;
     }
-    auto found = std::make_shared<const Minimum>(find_minimum(p));
+    if (exact) {
+      descend(found.descent, d, least_motion);
+      found.descent.acceleration.restart();  // frees its memory
+    }
+    found.is_exact = exact;
+    auto shared = std::make_shared<const Minimum>(std::move(found));
     const std::lock_guard lock(mutex_);
-    last_ = found;
-    return found;
+    last_ = shared;
+    return shared;
   }
 
-  Minimum find_minimum(const ControlsView& p) const {
-    const Controls d = p - rest_controls_;
+  std::shared_ptr<const Minimum> last_minimum() const {
+    const std::lock_guard lock(mutex_);
+    return last_;
+  }
+
+  Positions positions(const Shape& shape, const Controls& p) const {
+    Positions q = rest_ + shape.u;
+    if (pull_.size() == 0)
+      for (Index k = 0; k < control_count(); ++k) q.row(handles_[at(k)]) = p.row(k);
+    return q;
+  }
+
+  Descent begin(const Controls& d) const {
     const Positions start = map_.follow(d);
-    Minimum state{p, start, cells_.fit(start)};
-    if (d.isZero(0)) return state;
-    AndersonAcceleration acceleration;
-    Positions plain = state.u;
-    double before = std::numeric_limits<double>::infinity();
-    for (int step = 0; step < most_steps; ++step) {
-      double now = energy(state.u, state.fits, d);
+    return {{start, cells_.fit(start)}, start, start};
+  }
+
+  /// Local and global steps until one moves less than `least` of the mesh's size. A descent that is taken further has
+  /// the bits of one that was not interrupted.
+  void descend(Descent& descent, const Controls& d, double least) const {
+    if (d.isZero(0)) return;
+    auto& [shape, start, plain, acceleration, before, step] = descent;
+    for (; step < most_steps; ++step) {
+      double now = energy(shape.u, shape.fits, d);
       if (now > before * (1 + slack)) {  // led astray: the global step itself never raises it
         acceleration.restart();
-        state.u = plain;
-        state.fits = cells_.fit(state.u, state.fits);
-        now = energy(state.u, state.fits, d);
+        shape.u = plain;
+        shape.fits = cells_.fit(shape.u, shape.fits);
+        now = energy(shape.u, shape.fits, d);
       }
       before = now;
-      plain = start + map_.answer(cells_.load(state.fits));
-      const double motion = (plain - state.u).cwiseAbs().maxCoeff();
-      state.u = motion <= least_motion * size_ ? plain : acceleration.next(state.u, plain);
-      state.fits = cells_.fit(state.u, state.fits);
-      if (motion <= least_motion * size_) break;
+      plain = start + map_.answer(cells_.load(shape.fits));
+      const double motion = (plain - shape.u).cwiseAbs().maxCoeff();
+      if (motion <= least * size_) return;
+      shape.u = acceleration.next(shape.u, plain);
+      shape.fits = cells_.fit(shape.u, shape.fits);
     }
-    return state;
   }
 
   /// H^-1 r of the free vertices, H = K - C the Hessian of the energy with its rotations: conjugate gradients with the
   /// factor of K. (K z = r is known, so K is never multiplied with.) It ends early where H is not positive: at a
   /// saddle.
-  Positions solve_hessian(const Minimum& state, const Positions& right) const {
+  Positions solve_hessian(const Shape& shape, const Positions& right) const {
     Positions y = Positions::Zero(vertex_count(), 3), residual = freed(right);
     Positions z = map_.answer(residual), direction = z, pushed = residual;
     double product = residual.cwiseProduct(z).sum();
     const double end = least_residual * least_residual * product;
     for (int step = 0; step < most_steps && product > end; ++step) {
-      const Positions curved = pushed - freed(cells_.load_change(state.fits, direction));
+      const Positions curved = pushed - freed(cells_.load_change(shape.fits, direction));
       const double curvature = direction.cwiseProduct(curved).sum();
       if (!(curvature > 0)) break;
       const double length = product / curvature;
@@ -178,28 +247,27 @@ class Arap final : public HandleDeformation {
     return y;
   }
 
-  /// H = K + S'A S - C of the free vertices, three rows each.
-  SymmetricMatrix free_hessian(const Minimum& state) const {
+  const BlockPattern& hessian_pattern() const {
+    std::call_once(pattern_made_, [&] { pattern_.emplace(pattern_within_two_rings(stiffness_, map_.partition())); });
+    return *pattern_;
+  }
+
+  /// H = K + S'A S - C of the free vertices, factored; nothing at a saddle.
+  std::unique_ptr<const BlockFactor> factor_hessian(const Shape& shape) const {
     const std::vector<Index>& place = map_.partition().place;
-    std::vector<Eigen::Triplet<double, Index>> entries;
-    const auto add = [&](Index row, Index column, double value) {
-      const Index i = place[at(row / 3)], j = place[at(column / 3)];
-      if (i >= 0 && j >= 0) entries.emplace_back(3 * i + row % 3, 3 * j + column % 3, value);
+    const BlockPattern& pattern = hessian_pattern();
+    std::vector<Eigen::Matrix3d> blocks(pattern.entries() + 1, Eigen::Matrix3d::Zero());  // one for the rest
+    const auto block_at = [&](Index row, Index column) -> Eigen::Matrix3d& {
+      const Index i = place[at(row)], j = place[at(column)];
+      return blocks[i >= 0 && j >= 0 ? pattern.slot(i, j) : pattern.entries()];
     };
-    const SymmetricMatrix stiffness = mesh_laplacian(weights_), change = cells_.load_matrix(state.fits);
-    for (Index column = 0; column < stiffness.cols(); ++column)
-      for (SymmetricMatrix::InnerIterator entry(stiffness, column); entry; ++entry)
-        for (Index axis = 0; axis < 3; ++axis)
-          add(3 * static_cast<Index>(entry.row()) + axis, 3 * column + axis, entry.value());
-    for (Index k = 0; k < pull_.size(); ++k)
-      for (Index axis = 0, row = 3 * handles_[at(k)]; axis < 3; ++axis) add(row + axis, row + axis, pull_[k]);
-    for (Index column = 0; column < change.cols(); ++column)
-      for (SymmetricMatrix::InnerIterator entry(change, column); entry; ++entry)
-        add(static_cast<Index>(entry.row()), column, -entry.value());
-    const auto count = 3 * static_cast<Index>(map_.partition().free.size());
-    SymmetricMatrix hessian(count, count);
-    hessian.setFromTriplets(entries.begin(), entries.end());
-    return hessian;
+    for (Index column = 0; column < stiffness_.cols(); ++column)
+      for (SymmetricMatrix::InnerIterator entry(stiffness_, column); entry; ++entry)
+        block_at(static_cast<Index>(entry.row()), column).diagonal().array() += entry.value();
+    for (Index k = 0; k < pull_.size(); ++k) block_at(handles_[at(k)], handles_[at(k)]).diagonal().array() += pull_[k];
+    cells_.visit_load_blocks(
+        shape.fits, [&](Index row, Index column, const Eigen::Matrix3d& block) { block_at(row, column) -= block; });
+    return BlockFactor::if_definite(pattern, blocks);
   }
 
   void set_column(ColumnBlock& block, Index column, const SparseField& field) const {
@@ -231,7 +299,10 @@ class Arap final : public HandleDeformation {
   Eigen::VectorXd pull_;
   SymmetricMatrix weights_;
   RigidCells cells_;
+  SymmetricMatrix stiffness_;  ///< K
   HandleMap map_;
+  mutable std::once_flag pattern_made_;
+  mutable std::optional<BlockPattern> pattern_;
   double size_ = 0;
   mutable std::mutex mutex_;
   mutable std::shared_ptr<const Minimum> last_;

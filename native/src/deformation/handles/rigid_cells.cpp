@@ -9,18 +9,14 @@ namespace stiv {
 
 namespace {
 
+/// Radians. The next fit goes on from this one, and turns shrink as positions settle.
+constexpr double settled_turn = 1e-3;
+
 using Edge = SymmetricMatrix::InnerIterator;
 
 /// The edge from its neighbour to a vertex.
 Vector3 across(const Positions& q, Index vertex, const Edge& edge) {
   return (q.row(vertex) - q.row(edge.row())).transpose();
-}
-
-using Triplets = std::vector<Eigen::Triplet<double, Index>>;
-
-void add_block(Triplets& entries, Index row, Index column, const Eigen::Matrix3d& block) {
-  for (Index a = 0; a < 3; ++a)
-    for (Index b = 0; b < 3; ++b) entries.emplace_back(3 * row + a, 3 * column + b, block(a, b));
 }
 
 }  // namespace
@@ -47,7 +43,7 @@ std::vector<RotationFit> RigidCells::fit(const Positions& u, const std::vector<R
   std::vector<RotationFit> fits(nearby.size());
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
     const auto cell = static_cast<std::size_t>(vertex);
-    fits[cell] = fit_rotation(spread(u, vertex), nearby[cell].rotation);
+    fits[cell] = fit_rotation(spread(u, vertex), nearby[cell].rotation, settled_turn);
   }
   return fits;
 }
@@ -99,8 +95,8 @@ Positions RigidCells::load_change(const std::vector<RotationFit>& fits, const Po
   return load_of(change);
 }
 
-SymmetricMatrix RigidCells::load_matrix(const std::vector<RotationFit>& fits) const {
-  Triplets entries;
+void RigidCells::visit_load_blocks(const std::vector<RotationFit>& fits,
+                                   const std::function<void(Index, Index, const Eigen::Matrix3d&)>& visit) const {
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;  // T_i: vertices of the cell and their blocks
   for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
     const RotationFit& fit = fits[at(vertex)];
@@ -110,13 +106,11 @@ SymmetricMatrix RigidCells::load_matrix(const std::vector<RotationFit>& fits) co
       turns.front().second += turn;
       turns.emplace_back(static_cast<Index>(edge.row()), -turn);
     }
-    for (const auto& [row, left] : turns)
-      for (const auto& [column, right] : turns)
-        add_block(entries, row, column, left.transpose() * fit.response * right / 2);
+    for (const auto& [column, right] : turns) {
+      const Eigen::Matrix3d answer = fit.response * right / 2;
+      for (const auto& [row, left] : turns) visit(row, column, left.transpose() * answer);
+    }
   }
-  SymmetricMatrix matrix(3 * static_cast<Index>(weights_.cols()), 3 * static_cast<Index>(weights_.cols()));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
 }
 
 }  // namespace stiv

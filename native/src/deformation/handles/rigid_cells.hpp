@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "deformation/handles/rotation_fit.hpp"
@@ -16,7 +17,7 @@ class RigidCells {
 
   /// The local step: the rotation of each cell from rest to positions rest + u.
   std::vector<RotationFit> fit(const Positions& u) const;
-  /// The same to rounding, from the rotations at positions nearby.
+  /// The same from the rotations at positions nearby, to about the square of the turns between them.
   std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby) const;
 
   /// 1/4 sum_i sum_j w_ij |(u_i - u_j) - (R_i - 1)(rest_i - rest_j)|^2.
@@ -28,9 +29,10 @@ class RigidCells {
   /// How the load answers a change du of the positions, by way of the rotations; symmetric in du.
   Positions load_change(const std::vector<RotationFit>& fits, const Positions& du) const;
 
-  /// The same as a matrix, (3 n, 3 n): C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij,
-  /// the turn that cell i is asked for. Row 3 i + axis stands for an axis of vertex i.
-  SymmetricMatrix load_matrix(const std::vector<RotationFit>& fits) const;
+  /// Calls visit(row, column, block) with the blocks of that as a matrix, several for each pair of vertices, to be
+  /// added up: C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij, the torque on cell i.
+  void visit_load_blocks(const std::vector<RotationFit>& fits,
+                         const std::function<void(Index, Index, const Eigen::Matrix3d&)>& visit) const;
 
  private:
   /// sum_j w_ij (q_i - q_j) (rest_i - rest_j)', q = rest + u.

@@ -13,7 +13,6 @@ namespace {
 constexpr double least_stiffness = 1e-9;  // of the largest singular value; below it the rotation is not determined
 
 constexpr int most_newton_steps = 12;
-constexpr double settled_turn = 1e-7;     // radians: the step is quadratic, so that what remains is rounding
 constexpr double least_curvature = 1e-6;  // of the trace; below it singular values decide
 
 /// The inverse of a symmetric matrix, if it is positive definite by a margin.
@@ -43,7 +42,7 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& rotation) {
 
 }  // namespace
 
-RotationFit fit_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& guess) {
+RotationFit fit_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& guess, double settled_turn) {
   // R is the nearest rotation where R'A is symmetric and tr(R'A) - R'A positive definite, and there is no other.
   RotationFit fit{guess, {}};
   for (int step = 0; step < most_newton_steps; ++step) {

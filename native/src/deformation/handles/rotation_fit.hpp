@@ -15,8 +15,9 @@ struct RotationFit {
 RotationFit fit_rotation(const Eigen::Matrix3d& matrix);
 
 /// The same to rounding, by Newton's method from a rotation near it: a tenth of the time of singular values, which
-/// remain where the method does not converge.
-RotationFit fit_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& guess);
+/// remain where the method does not converge. Its last step is the first of at most `settled_turn` radians; the error
+/// that remains is of the order of its square.
+RotationFit fit_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& guess, double settled_turn = 1e-7);
 
 /// (S - S')_axial: the vector v with [v]x = S - S'.
 inline Vector3 axial(const Eigen::Matrix3d& s) { return {s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1)}; }

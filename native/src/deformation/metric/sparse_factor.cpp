@@ -20,12 +20,6 @@ SparseFactor::SparseFactor(const SymmetricMatrix& matrix, const char* what) {
                      "or its weights are too different: add handles or fixed vertices");
 }
 
-std::unique_ptr<const SparseFactor> SparseFactor::if_definite(const SymmetricMatrix& matrix) {
-  std::unique_ptr<SparseFactor> made(new SparseFactor());
-  if (!made->factor(matrix)) return nullptr;
-  return made;
-}
-
 std::vector<unsigned char> SparseFactor::needed_for(const std::vector<Index>& rows) const {
   std::vector<unsigned char> needed(static_cast<std::size_t>(size()), 0);
   for (const Index row : rows) {

@@ -22,9 +22,6 @@ class SparseFactor {
   /// @throws InputError that begins with `what` if the matrix cannot be factored
   SparseFactor(const SymmetricMatrix& matrix, const char* what);
 
-  /// The same, but nothing if the matrix is not positive definite.
-  static std::unique_ptr<const SparseFactor> if_definite(const SymmetricMatrix& matrix);
-
   Index size() const { return static_cast<Index>(factor_.rows()); }
   Index entries() const { return size() == 0 ? 0 : static_cast<Index>(lower().nonZeros()); }  ///< of L
   Positions solve(const Positions& right) const;
@@ -40,7 +37,6 @@ class SparseFactor {
   ColumnBlock solve(const ColumnBlock& right, const std::vector<unsigned char>& needed) const;
 
  private:
-  SparseFactor() = default;
   bool factor(const SymmetricMatrix& matrix);
   const SymmetricMatrix& lower() const { return factor_.matrixL().nestedExpression(); }
   template <class Block>

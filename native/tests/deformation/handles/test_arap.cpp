@@ -107,6 +107,20 @@ TEST_CASE("arap: what came before does not matter") {
   CHECK(one->surface(p) == other->surface(p));
 }
 
+TEST_CASE("arap: rows of the surface are near it, and do not depend on what came before") {
+  for_all_kinds([](const HandleDefinition& definition) {
+    const auto one = make_arap(definition), other = make_arap(definition);
+    const Controls p = moved_handles(definition, 0.7);
+    const std::vector<Index> rows{7, 0, 20};
+    const Positions before = one->surface_rows(p, rows, Execution(1)), q = one->surface(p);
+    CHECK(one->surface_rows(p, rows, Execution(1)) == before);
+    CHECK(other->surface(p) == q);
+    CHECK(other->surface_rows(p, rows, Execution(1)) == before);
+    for (Index k = 0; k < 3; ++k)
+      CHECK((before.row(k) - q.row(rows[static_cast<std::size_t>(k)])).norm() < 1e-3);
+  });
+}
+
 TEST_CASE("arap: scale does not matter") {
   for_all_kinds([](const HandleDefinition& definition) {
     const Positions q = make_arap(definition)->surface(moved_handles(definition, 0.5));
