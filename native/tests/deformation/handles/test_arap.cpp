@@ -116,8 +116,7 @@ TEST_CASE("arap: rows of the surface are near it, and do not depend on what came
     CHECK(one->surface_rows(p, rows, Execution(1)) == before);
     CHECK(other->surface(p) == q);
     CHECK(other->surface_rows(p, rows, Execution(1)) == before);
-    for (Index k = 0; k < 3; ++k)
-      CHECK((before.row(k) - q.row(rows[static_cast<std::size_t>(k)])).norm() < 1e-3);
+    for (Index k = 0; k < 3; ++k) CHECK((before.row(k) - q.row(rows[static_cast<std::size_t>(k)])).norm() < 1e-3);
   });
 }
 
