@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measurements of whole editing sessions: the paper's table, profiles, growth, a race; no bpy."""
+"""Measurements of whole editing sessions, run by `stiv bench`: the paper's table, profiles, growth and races."""

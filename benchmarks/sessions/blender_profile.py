@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames a second of the sessions in Blender, its own evaluation included, and the split of the time."""
+"""Frames per second of sessions in Blender, with its evaluation, and the split of the time."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def blender_profile(
     threads: Sequence[int],
     report: Report,
 ) -> list[dict[str, Any]]:
-    """One row a scene, by the clock. Raises InputError where there are no .blend files.
+    """One row per scene, in wall time. Raises InputError if a .blend file is missing.
 
-    Frames are those of one thread, each solved to its end; "dragged" are the same drags as a user sees them,
-    for each number of threads (see `dragged_rows`). frames_of: opens a .blend and runs the script beside it;
-    the `FrameTime` of each frame.
+    Frames use one thread and are solved completely. "dragged" are the same drags as a user sees them, for
+    each number of threads (see `dragged_rows`). frames_of: opens a .blend, runs its script and returns the
+    `FrameTime` of each frame.
     """
     rows = []
     for name in names:
@@ -65,10 +65,10 @@ def blender_profile(
 
 
 def shares_with_blender(frames: Sequence[Any], total: float) -> dict[str, float]:
-    """How all time divides: the parts of the pipeline, Blender's evaluation, the rest of writing, the rest of
-    all.
+    """Fractions of the total time: stages of the pipeline, Blender's evaluation, the rest of writing, the
+    rest.
 
-    The core's timings are taken as shares of the time of solving, which includes what calls the core.
+    The timings of the core are scaled to the time of solving, which includes the calls of the core.
     """
     parts = dict.fromkeys((*PARTS, "evaluation", "writing"), 0.0)
     for frame in frames:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dressing's shirt by Blender's own cloth simulation with collisions, beside ours: from the same states,
-as many frames as edits, the same wants.
+"""Compares edits of the dressing's shirt with Blender's cloth simulation: same start and goal, a frame per
+edit.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from blend_fixtures.scenes.sessions import catalogue, dressing
 from stiv import InputError
 
 BODIES = ("Ogre", "Shirt")
-STAGES = ("expand", "shrink")  #: of the session: where cloth applies
+STAGES = ("expand", "shrink")  #: stages of the session that a cloth simulation can do
 
 
 def cloth(report: Report) -> list[dict[str, Any]]:
-    """A row a stage of the dressing that a cloth simulation can do. Raises InputError without Blender's module."""
+    """A row for each of STAGES. Raises InputError without Blender's module."""
     if importlib.util.find_spec("bpy") is None:
         raise InputError("bench cloth: Blender's Python module is not installed (pip install bpy)")
     simulation = importlib.import_module("benchmarks.sessions.cloth_simulation")
@@ -62,18 +62,18 @@ def cloth(report: Report) -> list[dict[str, Any]]:
 
 
 def kept(start: Array, wanted: Array, reached: Array) -> float:
-    """The share of the wanted motion that is kept: 1 - |q - q~| / |q0 - q~|."""
+    """The fraction of the motion to the goal that is reached: 1 - |q - q~| / |q0 - q~|."""
     return float(1 - np.linalg.norm(reached - wanted) / np.linalg.norm(start - wanted))
 
 
 def surface_at(part: RecordedStage, controls: Array) -> Array:
-    """The surface (N, 3) of controls of a stage."""
+    """The surface (N, 3) for controls of a stage."""
     surface: Array = part.stage.deformation.surface(controls)
     return surface
 
 
 def wanted_at_end(part: RecordedStage) -> Array:
-    """Where all edits of a stage together want to go: each edit's goal from the one before, nothing in the way."""
+    """The surface of the goal of all edits of a stage, without obstacles."""
     controls = part.tasks[0].start
     for edit in part.stage.edits:
         controls = edit(controls)
@@ -81,7 +81,7 @@ def wanted_at_end(part: RecordedStage) -> Array:
 
 
 def _end(recorded: list[RecordedStage], number: int) -> Array:
-    """Controls that a stage ended with."""
+    """The controls at the end of a stage."""
     part = recorded[number]
     solver = stiv.EditSession(
         part.stage.surface, part.stage.deformation, part.tasks[-1].start,
@@ -100,7 +100,7 @@ def _triangles(part: RecordedStage, mine: Any) -> Any:
 
 
 def cloth_text(rows: list[dict[str, Any]]) -> str:
-    """A line a stage, ratios first."""
+    """A line per stage, with the ratios first."""
     lines = [
         f"{'Model':18} {'kept, ratio':>11} {'time, ratio':>11} {'kept':>7} {'cloth':>7} {'ms/edit':>8} "
         f"{'ms/frame':>8} {'left':>5} {'cloth':>6}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's own cloth simulation of a mesh beside a body that it collides with; for comparisons in `stiv bench`."""
+"""Blender's cloth simulation of a mesh that collides with a body, for `stiv bench cloth`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stiv.blender.scene.arrays import Floats, Indices, read_collection
 from stiv.blender.scene.mesh_reading import evaluated_mesh
 
-QUALITY, COLLISION_QUALITY = 10, 5  # steps a frame, twice Blender's defaults and more: it shall do its best
+QUALITY, COLLISION_QUALITY = 10, 5  # steps per frame, at least twice Blender's defaults
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ def simulate_cloth(
     shrink: float = 0.0,
     distance: float = 1e-3,
 ) -> ClothRun:
-    """Replace the open file by a scene of a cloth and a body that goes evenly to `body_end`, (m, 3), and
-    simulate it.
+    """Replace the open file by a scene with a cloth and a moving body, and simulate it.
 
-    Meshes are positions (n, 3) and triangles (f, 3). The cloth is without weight, collides with itself too,
-    and its fabric shrinks evenly by the share `shrink`. `distance` is kept between them, in world units.
+    Meshes are positions (n, 3) and triangles (f, 3). The body moves linearly to `body_end`, (m, 3). There
+    is no gravity. The cloth also collides with itself, and shrinks linearly by the fraction `shrink`.
+    `distance` is the collision distance, in world units.
     """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -71,7 +71,7 @@ def _add_body(body: tuple[Floats, Indices], end: Floats, frames: int, distance: 
     key.data.foreach_set("co", end.astype(np.float32).ravel())
     _animate(key, "value", 1.0, frames)
     thing.modifiers.new("Collision", "COLLISION")
-    thing.collision.thickness_outer = max(distance, 1e-3)  # Blender takes no less
+    thing.collision.thickness_outer = max(distance, 1e-3)  # the minimum in Blender
 
 
 def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, frames: int) -> bpy.types.Object:
@@ -80,7 +80,7 @@ def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, fr
     modifier.point_cache.frame_end = frames + 1
     modifier.settings.quality = QUALITY
     if shrink:
-        modifier.settings.use_dynamic_mesh = True  # or the fabric would keep the size of the first frame
+        modifier.settings.use_dynamic_mesh = True  # otherwise the rest size stays that of the first frame
         _animate(modifier.settings, "shrink_min", shrink, frames)
     collisions = modifier.collision_settings
     collisions.collision_quality = COLLISION_QUALITY
@@ -91,7 +91,7 @@ def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, fr
 
 
 def _animate(owner: Any, name: str, last: float, frames: int) -> None:
-    """Let a property go evenly from 0 to its last value."""
+    """Animate a property linearly from 0 to its last value."""
     for value, frame in ((0.0, 1), (last, frames + 1)):
         setattr(owner, name, value)
         owner.keyframe_insert(name, frame=frame)

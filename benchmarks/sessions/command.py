@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv bench`: the paper's table, profiles of its sessions, growth, a race against stopping at first contact."""
+"""`stiv bench`: the paper's table, profiles of its sessions, growth, and races against other methods."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ from stiv.output_files import require_folder
 SCHEMA, VERSION = "stiv-bench", 1
 
 _DESCRIPTION = """\
-Measures whole editing sessions of the sizes that the paper shows, mostly without Blender, and checks each accepted
-state by the exact test. Processor time is given for one thread, the clock's for several."""
+Measures whole editing sessions with the sizes of the paper, mostly without Blender, and tests each accepted state
+exactly. Times are processor time for one thread, and wall time for several."""
 _EXAMPLES = """\
 examples:
-  stiv bench table1                          the paper's Table 1, its method and ours beside its figures
+  stiv bench table1                          the paper's Table 1, with its method and ours
   stiv bench table1 --scenes knot tree --threads 1 --json table1.json
-  stiv bench profile --scenes plant dressing frames a second, edit by edit
-  stiv bench profile --in-blender             the same as drags in Blender, its own evaluation included: each frame
-                                             solved to its end, and as a user sees them, with the add-on's time limit
-  stiv bench race                            against stopping at the first contact, and our loop on ipctk (needs ipctk)
-  stiv bench cloth                           against Blender's own cloth simulation, where it applies
-  stiv bench --models FOLDER                 Figures 9 and 1 with the bunny, the teapot and the ogre of a folder
+  stiv bench profile --scenes plant dressing frames per second, edit by edit
+  stiv bench profile --in-blender             drags in Blender, with its evaluation: each frame solved completely, and
+                                             with the add-on's time limit, as a user sees them
+  stiv bench race                            against a stop at the first contact, and our loop with ipctk (needs ipctk)
+  stiv bench cloth                           against Blender's cloth simulation
+  stiv bench --models FOLDER                 Figures 9 and 1 with bunny, teapot and ogre from a folder
   stiv bench scaling --largest 300000        growth with the number of triangles
 
 exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
@@ -73,7 +73,7 @@ def parser() -> Parser:
         "--models",
         type=Path,
         metavar="FOLDER",
-        help="models: with stanford-bunny.obj, teapot.obj and ogre.obj, of which any may be absent",
+        help="models: folder with stanford-bunny.obj, teapot.obj and ogre.obj, each optional",
     )
     parser.add_argument("--in-blender", action="store_true", help="profile: in Blender, from the .blend files")
     parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
@@ -86,13 +86,11 @@ def run(given: Sequence[str]) -> ExitCode:
     require_folder(arguments.json)
     what = arguments.what or ("models" if arguments.models else None)
     if what is None or (what == "models") != (arguments.models is not None):
-        raise InputError(
-            f"bench: name one of {', '.join(_BENCHES)}; models takes --models FOLDER, and nothing else does"
-        )
+        raise InputError(f"bench: choose one of {', '.join(_BENCHES)}; only models has the option --models FOLDER")
     unknown = [name for name in arguments.scenes if name not in PUBLISHED]
     if unknown or min(arguments.threads) < 1:
         raise InputError(
-            f"bench: there is no scene {', '.join(unknown)}" if unknown else "bench: threads are from 1 on"
+            f"bench: there is no scene {', '.join(unknown)}" if unknown else "bench: --threads must be 1 or more"
         )
     rows, text = _BENCHES[what](arguments, _say)
     print(text)
@@ -106,7 +104,7 @@ def _say(note: str) -> None:
 
 
 def result(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The rows with the command and the machine that they come from, ready for JSON."""
+    """The rows with command and machine, as JSON data."""
     command = shlex.join(["stiv", *sys.argv[1:]])
     machine = {"system": platform.system(), "architecture": platform.machine(), "processors": _processors()}
     return {"schema": SCHEMA, "version": VERSION, "command": command, "machine": machine, "rows": rows}

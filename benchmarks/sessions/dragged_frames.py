@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user sees of a drag: an edit script dragged as the add-on does it, while the mouse moves on by the
-clock.
+"""Drags an edit script as a user does: the mouse moves in real time, with the add-on's drag.
 
-A step that repeats is one drag. The mouse is where the script's repetitions say at each moment, SPEED of them
-a second, then it rests until nothing is left to solve for, and the drag is confirmed. A tick comes every TICK
-seconds, or as soon as the last one is over. There is no window: Blender's evaluation is in the time, its
-drawing is not.
+A step with repetitions is one drag. The mouse moves through SPEED repetitions per second. Then it rests
+until nothing is left to solve, and the drag is confirmed. A tick comes every TICK seconds, or after the
+previous one. There is no window, so times include Blender's evaluation but not its drawing.
 """
 
 from __future__ import annotations
@@ -31,26 +29,26 @@ PATIENCE = 60.0  # seconds that a drag may go on solving once the mouse rests
 
 
 class Drag(Protocol):
-    """What is needed of the add-on's drag; see `new_drag` of `dragged_stages`."""
+    """The interface of the add-on's drag that this module uses."""
 
     @property
     def result(self) -> Any:
-        """Of the last solve, a stiv.EditResult, or None."""
+        """Result of the last solve, a stiv.EditResult, or None."""
 
     @property
     def report(self) -> Any:
-        """Of the last writing, a WriteReport, or None."""
+        """Report of the last writing, a WriteReport, or None."""
 
     @property
     def error(self) -> Exception | None:
-        """What ended it."""
+        """The error that ended the drag."""
 
     @property
     def at_rest(self) -> bool:
-        """Is nothing left to solve for?"""
+        """Whether nothing is left to solve."""
 
     def point(self, where: float) -> None:
-        """The mouse moved there."""
+        """Move the mouse."""
 
     def tick(self) -> None:
         """A timer event."""
@@ -109,10 +107,10 @@ class DraggedStage:
 def dragged_stages(
     script: EditScript, settings_of: Callable[[Any], EditSettings], new_drag: NewDrag
 ) -> list[DraggedStage]:
-    """Drags a script through the open scene; steps that reshape are run between, and not timed.
+    """Drags a script in the open scene. Steps that reshape run in between, without timing.
 
-    settings_of: a scene's, as of a drag of the add-on. new_drag: the add-on's drag of a kind, with what
-    begins an edit of the scene and the goal of a place of the mouse. Raises InputError as `replay`.
+    settings_of: returns the add-on's settings of a scene. new_drag: makes the add-on's drag from a kind, a
+    function that begins an edit of the scene, and the goal for a position of the mouse. Raises InputError.
     """
     stages = []
     for number, step in enumerate(script.steps):

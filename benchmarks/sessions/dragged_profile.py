@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames as dragged: how long each tick of a drag in Blender holds the interface, and how old what it shows is."""
+"""Drags in Blender: how long each tick blocks the interface, and the delay of the displayed state."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ TICK_VALUES = ("at", "seconds", "solving", "shown", "behind", "touches")
 
 
 def dragged_rows(path: Path, drags_of: DragsOf, threads: Sequence[int]) -> tuple[list[dict[str, Any]], int]:
-    """A row for each number of threads, by the clock, and how many states that were shown did not pass.
+    """A row for each number of threads, in wall time, and the number of displayed states that failed the test.
 
-    drags_of: opens a .blend and drags the script beside it with so many threads; its
-    `DraggedStage`.
+    drags_of: opens a .blend, drags its script with this number of threads, and returns each `DraggedStage`.
     """
     rows, failed = [], 0
     for count in threads:
@@ -33,11 +32,10 @@ def _stage(stage: Any) -> dict[str, Any]:
 
 
 def dragged_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a scene and number of threads, milliseconds: ticks, new pictures while the mouse moves, the rest
-    of all.
+    """A line per scene and number of threads, in milliseconds.
 
-    "ticks", "apart" and "behind" each as worst / 95 % / median: how long a tick holds the interface, how far
-    apart in time new states are shown while the mouse moves, and how long ago it was where they are.
+    "ticks", "apart" and "behind" are maximum / 95 % / median: of the time that a tick blocks the interface,
+    of the time between displayed states while the mouse moves, and of their delay behind the mouse.
     """
     head = f"{'as dragged':10} {'threads':>7} {'ticks':>17} {'apart':>17} {'behind':>17} {'settling':>8} {'begin':>6}"
     return "\n".join([head, *(_line(row["scene"], part) for row in rows for part in row["dragged"])])
@@ -55,7 +53,7 @@ def _line(scene: str, part: dict[str, Any]) -> str:
 
 
 def shown_apart(stage: dict[str, Any]) -> Any:
-    """Seconds between two states that were shown one after the other while the mouse moved."""
+    """Seconds between consecutive displayed states while the mouse moved."""
     return np.diff(_while_moving(stage, "at"), prepend=0.0)
 
 

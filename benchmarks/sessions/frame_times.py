@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long each frame of a session takes in Blender: an edit script run as drags, Blender's evaluation
-included.
+"""Times the frames of an edit script in Blender, including Blender's evaluation.
 
-A step that repeats is one drag: begun once, then a frame for each repetition, which solves toward the
-absolute goal, writes, lets Blender evaluate, reads back and tests. A step that reshapes (contract, expand,
-...) is one operator call.
+A step with repetitions is one drag with a frame per repetition. A frame solves toward the absolute goal,
+writes, evaluates, reads back and tests. A step that reshapes (contract, expand, ...) is one operator call.
 """
 
 from __future__ import annotations
@@ -51,7 +49,9 @@ class FrameTime:
 
 
 def frame_times(script: EditScript, settings_of: Callable[[Any], EditSettings]) -> list[FrameTime]:
-    """Runs a script on the open scene; `settings_of` a scene are the add-on's. Raises InputError as `replay`."""
+    """Runs a script on the open scene. settings_of: returns the add-on's settings of a scene. Raises
+    InputError.
+    """
     frames: list[FrameTime] = []
     with _evaluation_timed() as clock:
         for step in script.steps:
@@ -64,8 +64,9 @@ def frame_times(script: EditScript, settings_of: Callable[[Any], EditSettings]) 
 
 
 def goal_matrix(step: EditStep, repetition: float, pivot: Floats) -> Floats:
-    """The absolute transform (4, 4) of a drag after so many repetitions of a move or a scaling about `pivot`
-    (3,), of which the last may be a part.
+    """The absolute transform (4, 4) of a drag after a number of repetitions, which may be fractional.
+
+    The step is a move, or a scale about `pivot`, (3,).
     """
     matrix = np.eye(4)
     value = np.array(step.values["value"])
@@ -113,7 +114,7 @@ def name_of(step: EditStep) -> str:
 
 @contextmanager
 def _evaluation_timed() -> Iterator[list[float]]:
-    """Within, adds the time of Blender's evaluations to the one number of the list, in seconds."""
+    """Within, adds the seconds of Blender's evaluations to the number in the list."""
     total, begun = [0.0], [0.0]
 
     def before(*_: Any) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `stiv bench profile --in-blender` measures: the frames of a script, and its drags as the add-on has them."""
+"""Measurements of `stiv bench profile --in-blender`: frames of a script, and its drags as in the add-on."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PIXELS = 1000.0  # of the pointer's x for one repetition of a script
 
 
 def frames_in_blender(path: Path) -> Sequence[Any]:
-    """The `FrameTime` of each edit of the script beside a .blend, each solved to its end, one thread."""
+    """The `FrameTime` of each edit of the script of a .blend, solved completely with one thread."""
     with _opened(path) as script:
         of_scene = require_blender("stiv_addon.scene.edit_settings", path).edit_settings
         times = require_blender("benchmarks.sessions.frame_times", path)
@@ -26,7 +26,7 @@ def frames_in_blender(path: Path) -> Sequence[Any]:
 
 
 def drags_in_blender(path: Path, threads: int) -> Sequence[Any]:
-    """The `DraggedStage` of each drag of the same script, with the add-on's limit to the time of each solve."""
+    """The `DraggedStage` of each drag of the same script, with the add-on's time limit for each solve."""
     with _opened(path) as script:
         settings, modal = require_blender("stiv_addon.scene.edit_settings", path), _modal(path)
 
@@ -42,7 +42,7 @@ def drags_in_blender(path: Path, threads: int) -> Sequence[Any]:
 
 @dataclass(frozen=True)
 class ScriptedDrag:
-    """The add-on's drag without a window: the pointer's x is where the mouse is on its way."""
+    """The add-on's drag without a window. The x of the pointer is the progress of the mouse."""
 
     drag: Any
     event: Any
@@ -62,7 +62,7 @@ class ScriptedDrag:
         return cls(drag, modal["event"].Event)
 
     def point(self, where: float) -> None:
-        """The mouse moved there."""
+        """Move the mouse."""
         self.drag.handle(self.event("MOUSEMOVE", "NOTHING", (PIXELS * where, 0.0)))
 
     def tick(self) -> None:
@@ -75,22 +75,22 @@ class ScriptedDrag:
 
     @property
     def at_rest(self) -> bool:
-        """Is nothing left to solve for?"""
+        """Whether nothing is left to solve."""
         return bool(self.drag.at_rest)
 
     @property
     def result(self) -> Any:
-        """Of the last solve."""
+        """Result of the last solve."""
         return self.drag.result
 
     @property
     def report(self) -> Any:
-        """Of the last writing."""
+        """Report of the last writing."""
         return self.drag.report
 
     @property
     def error(self) -> Exception | None:
-        """What ended it."""
+        """The error that ended the drag."""
         error: Exception | None = self.drag.error
         return error
 
@@ -104,7 +104,7 @@ def _modal(path: Path) -> dict[str, ModuleType]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[EditScript]:
-    """A .blend open, with the add-on's operators; the script beside it."""
+    """Opens a .blend with the operators of the add-on; yields its script."""
     with quiet_blender(), addon_registered(path):
         require_blender("stiv.blender.scripts.blend_files", path).open_blend(path)
         yield read_edit_script(path.with_suffix(".edits.json"))

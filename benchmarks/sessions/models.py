@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 9 and 1 with models from a folder: the Stanford bunny in Newell's teapot, and an ogre dressed.
+"""Figures 9 and 1 with models from a folder: the Stanford bunny in Newell's teapot, and a dressed ogre.
 
-Each model is welded and repaired first. Of the ogre its largest connected part takes part, the body: the
-others, eyes, teeth and a loincloth, stick in it, and are no part of the session.
+Each model is welded and repaired first. Only the largest component of the ogre is used, its body. The
+others, eyes, teeth and a loincloth, intersect it.
 """
 
 from __future__ import annotations
@@ -30,10 +30,9 @@ LARGEST_PART_OF = ("ogre.obj",)
 
 
 def models(folder: Path, threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
-    """One row a figure and number of threads, as of the table; figures whose files are absent are left out,
-    and said.
+    """One row per figure and number of threads, as in the table. Reports and skips figures without files.
 
-    Raises InputError for a folder that is none, and for a model that cannot be repaired.
+    Raises InputError for a missing folder, and for a model that cannot be repaired.
     """
     if not folder.is_dir():
         raise InputError(f"{folder}: there is no such folder")
@@ -52,7 +51,7 @@ def models(folder: Path, threads: Sequence[int], report: Report) -> list[dict[st
 
 
 def repaired(path: Path, report: Report) -> Any:
-    """A model as a Shape of the scene library. Raises InputError if no repair is found."""
+    """Reads a model and repairs it. Raises InputError if it cannot be repaired."""
     mesh = read_mesh(path)
     given = np.asarray(mesh.vertices, float)
     whole = stiv.weld(stiv.Surface(mesh.triangles, len(given)), given)
@@ -73,7 +72,7 @@ def repaired(path: Path, report: Report) -> Any:
 
 
 def largest_part(positions: Array, triangles: Any) -> tuple[Array, Any]:
-    """The connected part with the most vertices, and its triangles."""
+    """The component with the most vertices, and its triangles."""
     label = np.arange(len(positions))
     while True:  # each vertex takes the least label of its triangles, and that label's own: halving the way each time
         least = label.copy()
@@ -88,7 +87,7 @@ def largest_part(positions: Array, triangles: Any) -> tuple[Array, Any]:
 
 
 def models_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a row, as of the table."""
+    """A line per row, as in the table."""
     lines = [
         f"{'Model':9} {'threads':>7} {'Vertices':>8} {'Triangles':>9} {'Edits':>6} {'Collisions':>10} {'Regions':>7} "
         f"{'Iterations':>10} {'ms/iteration':>12} {'ms/edit':>8} {'left':>5}"

@@ -22,7 +22,7 @@ SETTINGS = ("everything", "filter", "culled")
 
 @dataclass(frozen=True)
 class LinearStep:
-    """Triangles (F, 3) over vertices that go from `start` to `end`, (N, 3) each."""
+    """Triangles (F, 3) over vertices that move from `start` to `end`, (N, 3) each."""
 
     triangles: Triangles
     start: Array
@@ -30,18 +30,18 @@ class LinearStep:
 
     @property
     def moves(self) -> NDArray[np.bool_]:
-        """Which vertices move."""
+        """Whether each vertex moves, (N,)."""
         moving: NDArray[np.bool_] = (self.start != self.end).any(axis=1)
         return moving
 
 
 def settings_of(step: LinearStep) -> tuple[str, ...]:
-    """The settings that differ for a step: where every vertex moves, there is nothing to leave out."""
+    """The settings that differ for a step. If every vertex moves, there is only one."""
     return SETTINGS[:1] if step.moves.all() else SETTINGS
 
 
 def culled(step: LinearStep) -> LinearStep:
-    """The triangles that move, and those whose box meets the box of all that motion."""
+    """The moving triangles, and those whose box overlaps the box of their motion."""
     moving = step.moves[step.triangles].any(axis=1)
     if not moving.any():
         return LinearStep(step.triangles[:0], step.start, step.end)
@@ -52,7 +52,7 @@ def culled(step: LinearStep) -> LinearStep:
 
 
 def moving_first(step: LinearStep) -> LinearStep:
-    """The vertices that triangles use, those that move before the others."""
+    """The step with only the vertices of triangles, moving vertices first."""
     used = np.unique(step.triangles)
     moves = step.moves[used]
     order = np.concatenate([used[moves], used[~moves]])
@@ -63,7 +63,7 @@ def moving_first(step: LinearStep) -> LinearStep:
 
 @dataclass(frozen=True)
 class PeerMesh:
-    """A step as ipctk takes it."""
+    """A step in the form of ipctk."""
 
     mesh: Any  #: ipctk.CollisionMesh
     start: Array  #: column-major

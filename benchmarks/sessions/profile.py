@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames a second over a session, edit by edit, as in the paper's Figure 12, and the split of the time."""
+"""Frames per second over a session, edit by edit, as in the paper's Figure 12, and the split of the time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from blend_fixtures.scenes.sessions import catalogue
 
 
 def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> list[dict[str, Any]]:
-    """One row a scene and number of threads, with the seconds of each edit in order."""
+    """One row per scene and number of threads, with the seconds of each edit in order."""
     sessions = catalogue.figure_sessions()
     rows = []
     for name in names:
@@ -38,7 +38,7 @@ def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> lis
 
 
 def profile_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a row: frames a second, the least, the median and the mean, and the split of the time."""
+    """A line per row: minimum, median and mean of frames per second, and the split of the time."""
     parts = tuple(rows[0]["shares"])
     lines = [
         f"{'Model':9} {'threads':>7} {'least':>6} {'median':>6} {'mean':>6}  " + " ".join(f"{p:>10}" for p in parts)

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The edits of the table's sessions against the strongest simple answer: go until the first contact, found by
-ipctk.
+"""Compares edits of the table's sessions with a stop at the first contact that ipctk finds.
 
-ipctk [Ferguson et al. 2020] brings a broad phase on linear trees and additive continuous detection; it must
-be installed. Both answer the same edits from the same accepted states. The share of the wanted motion kept is
-1 - |q - q~| / |q0 - q~|.
+ipctk [Ferguson et al. 2020] has a broad phase with linear BVHs and additive continuous detection; it must
+be installed. Both methods start from the same accepted states. The fraction of the motion to the goal that
+is reached is 1 - |q - q~| / |q0 - q~|.
 
-The second opponent is our own loop with ipctk's detection in it: it comes to the same states, and its time is
-that of our edit with each of our detections at the price that ipctk has for the step that is wanted. ipctk is
-favoured by that: what it is asked for is the earliest time alone, which lets it leave most candidates after a
-look.
+The second comparison is our own loop with ipctk's detection. It reaches the same states as ours, and its
+time is that of our edit with each detection at the time of ipctk for the whole step. This favors ipctk,
+because it only finds the earliest time.
 
-ipctk is given everything, and culled to what moves and what is near that (peer_mesh.py): the table has the
-quicker of both for each edit. Culling and the mesh made of it are not in its time.
+ipctk runs on the whole mesh, and culled to moving vertices and those near their motion (peer_mesh.py). The
+table uses the faster of both for each edit, without the time of culling and of ipctk's mesh.
 """
 
 from __future__ import annotations
@@ -33,7 +31,7 @@ from stiv import InputError
 
 
 def race(names: Sequence[str], report: Report) -> list[dict[str, Any]]:
-    """One row a scene, over the edits with contacts; one thread each. Raises InputError where ipctk is missing."""
+    """One row per scene, over the edits with contacts, on one thread. Raises InputError if ipctk is missing."""
     peer = _ipctk()
     sessions = catalogue.table_sessions()
     rows = []
@@ -63,7 +61,7 @@ def race(names: Sequence[str], report: Report) -> list[dict[str, Any]]:
 
 
 def with_detection(mine: EditFigures, seconds: float) -> float:
-    """Seconds of an edit if each of its detections took so many."""
+    """Seconds of an edit if each of its detections took this many seconds."""
     own_share = mine.timings["detection"] / max(mine.timings["total"], 1e-300)
     return mine.processor * (1 - own_share) + mine.detections * seconds
 
@@ -79,7 +77,7 @@ def _ipctk() -> ModuleType:
 
 
 def _first_contacts(peer: ModuleType, part: RecordedStage) -> list[dict[str, float]]:
-    """Each edit of a stage stopped just before its first contact: how much of it was done, and what that left."""
+    """Stops each edit of a stage before its first contact: the fraction of the motion, time and intersections."""
     stage = part.stage
     answers = []
     for task in part.tasks:
@@ -103,7 +101,7 @@ def _first_contacts(peer: ModuleType, part: RecordedStage) -> list[dict[str, flo
 
 
 def _free_fraction(peer: ModuleType, step: LinearStep, setting: str) -> tuple[float, float]:
-    """How much of a step is free, and the seconds that it took to tell."""
+    """The fraction of a step before the first contact, and the seconds of the computation."""
     given = peer_mesh(peer, step, setting)
     processor = time.process_time()
     candidates = peer.Candidates()
@@ -113,7 +111,7 @@ def _free_fraction(peer: ModuleType, step: LinearStep, setting: str) -> tuple[fl
 
 
 def race_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a scene, ratios first."""
+    """A line per scene, with the ratios first."""
     lines = [
         f"{'Model':9} {'kept, ratio':>11} {'time, ratio':>11} {'ratio in loop':>13} {'kept':>7} {'stopping':>8} "
         f"{'ms/edit':>8} {'ms/stop':>8} {'ms/all':>8} {'ms in loop':>10} {'left':>5} {'stopping':>8}"

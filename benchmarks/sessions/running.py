@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run the edits of a session, and the same edits again by other options.
+"""Runs the edits of a session, and the same edits again with other options.
 
-Time is the processor's, of all threads together, and the clock's beside it: where other work shares the
-machine, only the first says much.
+Measures processor time of all threads, which other work on the machine hardly affects, and wall time.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ Preset = Callable[..., stiv.EditOptions]
 
 @dataclass(frozen=True)
 class Task:
-    """One edit: from which accepted controls (m, 3) to which goal (m, 3)."""
+    """One edit: from accepted controls (m, 3) to a goal (m, 3)."""
 
     start: Array
     goal: Array
@@ -32,7 +31,7 @@ class Task:
 
 @dataclass(frozen=True)
 class RecordedStage:
-    """A stage of a session with the edits as they came when it was recorded."""
+    """A stage of a session with its recorded edits."""
 
     stage: Any  #: a Stage of the scene library
     tasks: tuple[Task, ...]
@@ -40,12 +39,12 @@ class RecordedStage:
 
 @dataclass(frozen=True)
 class EditFigures:
-    """What one edit came to and took; seconds."""
+    """Result and cost of an edit. Times are in seconds."""
 
     stage: str
     status: str
-    collisions: float  #: interference events a detection that found any
-    regions: int  #: disjoint patches of the last of them
+    collisions: float  #: events per detection with events
+    regions: int  #: disjoint patches of the last detection with events
     iterations: int  #: responses
     processor: float
     clock: float
@@ -53,16 +52,16 @@ class EditFigures:
     intersections: int  #: pairs of triangles in the accepted state, by the exact test
     timings: dict[str, float]
     detections: int = 0
-    step: float = 0.0  #: farthest motion that the edit asks of a vertex, in diagonals of what may move
+    step: float = 0.0  #: maximum motion of a vertex to the goal, in diagonals of what may move
 
     @property
     def touches(self) -> bool:
-        """Something interfered."""
+        """Whether anything was in contact."""
         return self.iterations > 0 or self.collisions > 0
 
 
 def record(session: Any, options: dict[str, Any], report: Report) -> tuple[list[RecordedStage], list[EditFigures]]:
-    """Run all stages of a session; the goal of an edit depends on where the one before ended."""
+    """Run all stages of a session. The goal of an edit depends on the result of the previous one."""
     recorded, figures = [], []
     stages = session.stages()
     stage = next(stages)
@@ -81,10 +80,9 @@ def record(session: Any, options: dict[str, Any], report: Report) -> tuple[list[
 
 
 def repeat(recorded: Sequence[RecordedStage], preset: Preset, options: dict[str, Any]) -> list[EditFigures]:
-    """The recorded edits once more, each from its recorded start, by other options.
+    """Run the recorded edits with other options, each from its recorded start.
 
-    Where the answer before is that start, the session just goes on: pairs that were close are at hand, as
-    they were when it was recorded.
+    If the previous result is that start, the session continues with its cached pairs, as in the recording.
     """
     figures = []
     for part in recorded:
@@ -97,13 +95,13 @@ def repeat(recorded: Sequence[RecordedStage], preset: Preset, options: dict[str,
 
 
 def solver_of(stage: Any, options: dict[str, Any], preset: Preset = stiv.EditOptions) -> stiv.EditSession:
-    """A session of the core on a stage, its own options included."""
+    """A session of the core for a stage, including the stage's options."""
     chosen = preset(**{**stage.options, **options})
     return stiv.EditSession(stage.surface, stage.deformation, stage.controls, chosen)
 
 
 def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigures:
-    """One edit, timed, and what it left tested exactly; the test of what it left is not in the time, its own is."""
+    """Time an edit and test its result exactly. The time includes the test of the session, not the second test."""
     before = solver.surface
     clock, processor = time.perf_counter(), time.process_time()
     result = solver.edit(goal)
@@ -125,7 +123,7 @@ def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigu
 
 
 def step_size(start: Array, goal: Array) -> float:
-    """The farthest motion of a vertex over the diagonal of what moves, (N, 3) each; 0 where nothing does."""
+    """The maximum motion of a vertex over the diagonal of what moves, (N, 3) each; 0 if nothing moves."""
     motion = np.linalg.norm(goal - start, axis=1)
     moves = start[motion > 0]
     return float(motion.max() / np.linalg.norm(np.ptp(moves, axis=0))) if len(moves) > 1 else 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the time of an edit grows with the number of triangles: a body scaled up inside a shell, ever finer."""
+"""Growth of the time of an edit with the number of triangles: a body is scaled up inside a shell."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from blend_fixtures.scenes.sessions.growth import growth_sessions
 
 
 def scaling(threads: Sequence[int], largest: int, report: Report) -> list[dict[str, Any]]:
-    """One row a size: mean times of the edits with contacts, which are the same edits at each size."""
+    """One row per size: mean times of the edits with contacts, which are the same at each size."""
     rows = []
     for session in growth_sessions(largest):
         for count in threads:
@@ -41,13 +41,13 @@ def scaling(threads: Sequence[int], largest: int, report: Report) -> list[dict[s
 
 
 def exponent(rows: Sequence[dict[str, Any]], what: str) -> float:
-    """The power of the number of triangles with which a time grows, fitted to all sizes."""
+    """The exponent of the growth of a time with the number of triangles, fitted to all sizes."""
     sizes, times = np.log([row["triangles"] for row in rows]), np.log([row[what] for row in rows])
     return float(np.polyfit(sizes, times, 1)[0])
 
 
 def scaling_text(rows: Sequence[dict[str, Any]]) -> str:
-    """A line a size, and the exponents."""
+    """A line per size, and the exponents."""
     lines = [f"{'triangles':>10} {'threads':>7} {'iterations':>10} {'processor ms/edit':>18} {'ms/iteration':>13}"]
     for r in rows:
         lines.append(

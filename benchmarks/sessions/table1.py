@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 1 of the paper, by the method as published and by ours, beside the figures printed there."""
+"""Table 1 of the paper: the method as published and ours, next to the printed figures."""
 
 from __future__ import annotations
 
@@ -43,13 +43,10 @@ PARTS = {
 def table1(
     names: Sequence[str], threads: Sequence[int], report: Report, kinds: Sequence[str] = tuple(KINDS)
 ) -> list[dict[str, Any]]:
-    """One row a scene, preset, kind of constraint and number of threads; the paper's own figures are not
-    among them.
+    """One row per scene, preset, kind of constraint and number of threads, without the printed figures.
 
-    kinds: of KINDS; "many" is always among the rows by our defaults.
-
-    The edits are those that come when the session is solved by our defaults; every other row answers the same
-    edits, each from the same accepted state, so that energies compare.
+    kinds: of KINDS; the defaults always include "many". The edits are recorded with our defaults. Every
+    other row repeats the same edits from the same accepted states, so that energies can be compared.
     """
     sessions = catalogue.table_sessions()
     rows = []
@@ -64,7 +61,7 @@ def table1(
 
 
 def variants(threads: Sequence[int], kinds: Sequence[str]) -> list[tuple[str, str, int]]:
-    """Preset, kind of constraint and threads of all rows but the first."""
+    """Preset, kind of constraint and threads of all rows except the first."""
     others = [("stiv", "one"), ("paper", "many"), ("paper", "one"), ("paper_frozen", "many")]
     first = [(preset, kind, threads[0]) for preset, kind in others if kind in kinds]
     return first + [("stiv", "many", count) for count in threads[1:]]
@@ -79,7 +76,7 @@ def row(
     figures: Sequence[EditFigures],
     ours: Sequence[EditFigures],
 ) -> dict[str, Any]:
-    """Averages over the edits with contacts; the energy over those that touch when solved by ours, for every row."""
+    """Averages over the edits with contacts; energies over the edits with contacts in our method."""
     touching = [figure for figure in figures if figure.touches]
     surface = recorded[0].stage.surface
 
@@ -116,14 +113,14 @@ def row(
 
 
 def shares(figures: Sequence[EditFigures]) -> dict[str, float]:
-    """How the time divides over the parts of the pipeline, and what is left over."""
+    """Fractions of the time: stages of the pipeline, and the rest."""
     total = sum(figure.timings["total"] for figure in figures) or 1.0
     parts = {part: sum(f.timings[timer] for f in figures for timer in timers) / total for part, timers in PARTS.items()}
     return {**parts, "other": 1 - sum(parts.values())}
 
 
 def table_text(rows: Sequence[dict[str, Any]]) -> str:
-    """The table as the paper prints it, a line each for the paper's own figures, its method here, and ours."""
+    """The table in the layout of the paper: a line each for the printed figures, its method, and ours."""
     head = (
         f"{'Model':9} {'by':32} {'Vertices':>8} {'Triangles':>9} {'step':>7} {'Collisions':>10} {'Regions':>7} "
         f"{'Iterations':>13} {'ms/iteration':>15} {'ms/edit':>15} {'energy':>9} {'left':>5}"
@@ -167,7 +164,9 @@ def _pair(values: Any) -> str:
 
 
 def shares_text(rows: Sequence[dict[str, Any]]) -> str:
-    """The split of the time; the paper's over interface, modeling, detection and response is 15, 15, 51 and 16 %."""
+    """The split of the time. In the paper, interface, modeling, detection and response have 15, 15, 51 and 16
+    %.
+    """
     lines = [
         f"{'Model':9} {'by':6} {'constraints':11} {'threads':>7} " + " ".join(f"{p:>10}" for p in (*PARTS, "other"))
     ]
