@@ -46,7 +46,7 @@ def draw_separation(layout: bpy.types.UILayout, settings: bpy.types.PropertyGrou
     else:
         row = layout.row(align=True)
         row.prop(settings, "separation")
-        row.prop(settings, "automatic_separation", text="", icon="X", invert_checkbox=True)
+        row.prop(settings, "automatic_separation", text="", icon="X")
 
 
 def automatic_guard(context: bpy.types.Context) -> str:

@@ -27,7 +27,7 @@ class STIV_PT_roles(SubPanel, bpy.types.Panel):
         selected = [obj for obj in context.selected_objects if obj.type in {"MESH", "LATTICE"}]
         for obj in selected[:MAX_OBJECTS]:
             row = self.layout.row()
-            row.label(text=obj.name, icon=f"OUTLINER_OB_{obj.type}")
+            row.label(text=obj.name, translate=False, icon=f"OUTLINER_OB_{obj.type}")
             row.prop(obj.stiv, "role", text="")
         if len(selected) > MAX_OBJECTS:
             self.layout.label(text=translate("and {} more").format(len(selected) - MAX_OBJECTS))

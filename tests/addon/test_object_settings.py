@@ -3,7 +3,9 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -119,6 +121,14 @@ def test_the_minimum_distance_is_automatic_until_one_is_chosen() -> None:
     assert settings.separation > 0.0 and not settings.automatic_separation
     settings.automatic_separation = True
     assert settings.separation == 0.0
+
+
+def test_the_panel_of_roles_does_not_translate_names(bar: Any) -> None:
+    from stiv_addon.panels.objects import STIV_PT_roles
+
+    layout = MagicMock()
+    STIV_PT_roles.draw(SimpleNamespace(layout=layout), bpy.context)
+    layout.row().label.assert_called_once_with(text="Bar", translate=False, icon="OUTLINER_OB_MESH")
 
 
 def test_the_panel_of_deformation_draws_handles_and_weights(bar: Any) -> None:
