@@ -59,24 +59,24 @@ def simulate_cloth(
 def _add(name: str, shape: tuple[Floats, Indices]) -> bpy.types.Object:
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(shape[0].tolist(), [], shape[1].tolist())
-    thing = bpy.data.objects.new(name, mesh)
-    bpy.context.scene.collection.objects.link(thing)
-    return thing
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
 
 
 def _add_body(body: tuple[Floats, Indices], end: Floats, frames: int, distance: float) -> None:
-    thing = _add("Body", body)
-    thing.shape_key_add(name="Basis")
-    key = thing.shape_key_add(name="End")
+    obj = _add("Body", body)
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="End")
     key.data.foreach_set("co", end.astype(np.float32).ravel())
     _animate(key, "value", 1.0, frames)
-    thing.modifiers.new("Collision", "COLLISION")
-    thing.collision.thickness_outer = max(distance, 1e-3)  # the minimum in Blender
+    obj.modifiers.new("Collision", "COLLISION")
+    obj.collision.thickness_outer = max(distance, 1e-3)  # the minimum in Blender
 
 
 def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, frames: int) -> bpy.types.Object:
-    thing = _add("Cloth", shape)
-    modifier = thing.modifiers.new("Cloth", "CLOTH")
+    obj = _add("Cloth", shape)
+    modifier = obj.modifiers.new("Cloth", "CLOTH")
     modifier.point_cache.frame_end = frames + 1
     modifier.settings.quality = QUALITY
     if shrink:
@@ -87,7 +87,7 @@ def _add_cloth(shape: tuple[Floats, Indices], shrink: float, distance: float, fr
     collisions.distance_min = max(distance, 1e-3)
     collisions.use_self_collision = True
     collisions.self_distance_min = max(distance, 1e-3)
-    return thing
+    return obj
 
 
 def _animate(owner: Any, name: str, last: float, frames: int) -> None:

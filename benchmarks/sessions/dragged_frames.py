@@ -62,16 +62,16 @@ NewDrag = Callable[[str, Callable[[], Any], Callable[[float], Floats]], Drag]
 
 @dataclass(frozen=True)
 class Tick:
-    """One timer event that solved; seconds of the clock.
+    """One timer event that solved. Times are wall time in seconds.
 
     Attributes:
-        at: since the drag began, at its end.
-        seconds: that it held the interface.
-        solving: of these, the core's.
-        shown: whether an accepted state was written, evaluated, read back and tested in it.
-        behind: with `shown`: how long ago the mouse was where the state's goal is.
-        touches: something interfered.
-        passed: what Blender shows passed the exact test.
+        at: end of the tick, since the start of the drag.
+        seconds: duration, which blocks the interface.
+        solving: time of the core in it.
+        shown: whether it wrote, evaluated, read back and tested an accepted state.
+        behind: with `shown`, the delay of the displayed state behind the mouse.
+        touches: whether anything was in contact.
+        passed: whether the displayed state passed the exact test.
     """
 
     at: float
@@ -85,15 +85,15 @@ class Tick:
 
 @dataclass(frozen=True)
 class DraggedStage:
-    """One drag; seconds of the clock.
+    """One drag. Times are wall time in seconds.
 
     Attributes:
         name: operator and objects.
-        beginning: to read the scene and build what solves.
-        moving: that the mouse moved.
-        ticks: all that solved, in order.
-        settling: from the mouse's rest to the end of the last of them.
-        confirming: what Enter took.
+        beginning: time to read the scene and build the session.
+        moving: time that the mouse moved.
+        ticks: all ticks that solved, in order.
+        settling: time from the rest of the mouse to the end of the last tick.
+        confirming: time of the confirmation with Enter.
     """
 
     name: str

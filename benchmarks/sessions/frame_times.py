@@ -27,16 +27,16 @@ from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
 
 @dataclass(frozen=True)
 class FrameTime:
-    """One frame; seconds of the clock: threads of Blender that wait count processor time too.
+    """One frame, in wall time: waiting threads of Blender also use processor time.
 
     Attributes:
         stage: operator and objects.
-        seconds: all of it.
-        evaluation: Blender's own evaluation in it.
-        writing: the rest of writing: positions into Blender and back, and the exact test of what it shows.
-        solved: timings of the core, by the clock (see stiv.EditResult).
-        touches: something interfered.
-        passed: what Blender shows passed the exact test.
+        seconds: total.
+        evaluation: Blender's evaluation.
+        writing: the rest of writing, reading back and the exact test.
+        solved: timings of the core (see stiv.EditResult).
+        touches: whether anything was in contact.
+        passed: whether the displayed state passed the exact test.
     """
 
     stage: str

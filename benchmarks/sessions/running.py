@@ -52,7 +52,7 @@ class EditFigures:
     intersections: int  #: pairs of triangles in the accepted state, by the exact test
     timings: dict[str, float]
     detections: int = 0
-    step: float = 0.0  #: maximum motion of a vertex to the goal, in diagonals of what may move
+    step: float = 0.0  #: maximum motion of a vertex to the goal, in diagonals of the movable surface
 
     @property
     def touches(self) -> bool:
@@ -123,7 +123,7 @@ def measured_edit(stage: Any, solver: stiv.EditSession, goal: Array) -> EditFigu
 
 
 def step_size(start: Array, goal: Array) -> float:
-    """The maximum motion of a vertex over the diagonal of what moves, (N, 3) each; 0 if nothing moves."""
+    """The maximum motion of a vertex over the diagonal of the moving vertices, (N, 3) each; 0 if nothing moves."""
     motion = np.linalg.norm(goal - start, axis=1)
     moves = start[motion > 0]
     return float(motion.max() / np.linalg.norm(np.ptp(moves, axis=0))) if len(moves) > 1 else 0.0

@@ -73,7 +73,7 @@ class Detector:
     """Finds interference along steps of one surface. Caches its trees between calls.
 
     Vertices that rest between calls cost almost nothing, and so does a step from the same start to a nearby end, as in
-    the next round of an edit. Events equal those of a new detector bit by bit.
+    the next round of an edit. Events exactly equal those of a new detector.
 
     surface       Surface, or triangles (F, 3) over as many vertices as the first step has
     broad_phase   "bvh": bounding volume hierarchies; "hash_grid": a uniform grid; "brute_force": all pairs, for tests

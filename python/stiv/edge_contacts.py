@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from stiv.arrays import Floats, Indices
 
 Point = tuple[Fraction, Fraction, Fraction]
-NEAR = 1e-5  # in sizes of a pair: a vertex farther from an edge is not on it
+NEAR = 1e-5  # in sizes of a pair: a vertex further from an edge is not on it
 DEEP = 1e-3  # barycentric coordinates above this are inside a triangle despite rounding
 INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
 
@@ -26,7 +26,7 @@ def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: In
     positions  (n, 3) of one mesh
     triangles  (f, 3)
 
-    Edges that cross at a point inside both are no seam. A triangle without area counts as an edge.
+    Edges that cross at a point inside both are not a seam. A triangle without area counts as an edge.
     """
     corners = positions[triangles[pairs]].astype(np.float64)  # (k, 2, 3, 3)
     found = _vertex_near_edge(corners)

@@ -81,7 +81,9 @@ def _choice(default: str, name: str, choices: type[Enum]) -> Any:
 class SharedOptions:
     """The options that `stiv.EditOptions` and `stiv.blender.EditSettings` have in common."""
 
-    separation: float = 0.0  #: minimum distance between surfaces, world units; 0: 1e-4 of the diagonal of what may move
+    separation: float = (
+        0.0  #: minimum distance between surfaces, world units; 0: 1e-4 of the diagonal of the movable surface
+    )
     smoothness: float = 0.1  #: damping of the response, above 0: 0.1 spreads it smoothly, 0.01 follows the goal tightly
     #: "per_patch" or "single": one constraint for each patch, or one for all
     constraints: str = _choice("per_patch", "constraints", _native.ConstraintKind)
@@ -125,7 +127,7 @@ class EditOptions(SharedOptions):
     max_sub_edits: int = 6  #: passes of rounds and acceptance
     max_rounds: int = 60  #: detections and responses in a sub-edit
     accumulated_rounds: int = 12  #: rounds that keep the constraints of earlier rounds
-    pull_limit: float = 0.04  #: farthest pull of a drag toward its goal, in diagonals of what may move; 0: none
+    pull_limit: float = 0.04  #: maximum pull of a drag toward its goal, in diagonals of the movable surface; 0: none
     single_precision: bool = True  #: whether controls are stored as float32
     #: frames of stored controls; empty: world coordinates for all
     storage: Sequence[StorageFrame] = field(default=(), metadata={"convert": _storage})
@@ -148,7 +150,7 @@ class EditOptions(SharedOptions):
     def paper_frozen(cls, **others: Any) -> EditOptions:
         """Return `paper` with constant time, normal and weights of a contact in the gradient, for comparison.
 
-        This was `paper` in version 0.1.0. It overshoots, and ends farther from the goal than `paper`.
+        This was `paper` in version 0.1.0. It overshoots, and ends further from the goal than `paper`.
         """
         return cls.paper(**{"volumes": "published_frozen", **others})
 
@@ -169,7 +171,7 @@ def _shown(name: str, value: Any) -> str:
 
 
 def _shape(value: Any) -> str:
-    """Return a description by the shape, or by the type of what has none."""
+    """Return a description by the shape, or by the type if there is none."""
     if isinstance(value, np.ndarray):
         return f"array of shape {value.shape}"
     try:

@@ -65,8 +65,8 @@ def arap(
 def stored_mesh(mesh: Deformation, frame: ArrayLike) -> Deformation:
     """Return a deformation by handles whose surface is stored in single precision.
 
-    A vertex at q is stored as `frame @ float32(inverse(frame) @ q)`. A stored vertex that does not move stays the same
-    bit by bit. `compose` can apply a linear deformation to the stored vertices. Controls are not stored and not
+    A vertex at q is stored as `frame @ float32(inverse(frame) @ q)`. A stored vertex that does not move stays exactly
+    the same. `compose` can apply a linear deformation to the stored vertices. Controls are not stored and not
     rounded.
 
     mesh   of `laplacian` or `arap`

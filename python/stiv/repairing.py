@@ -59,7 +59,9 @@ class RepairResult:
     pairs_before: int  #: number of all pairs before the repair
     fewest_pairs: int  #: number of pairs after the best contraction
     steps: int  #: steps of all contractions
-    deviation: float  #: root mean square distance of the best repair from the start, in diagonals of what may move
+    deviation: (
+        float  #: root mean square distance of the best repair from the start, in diagonals of the movable surface
+    )
     contracted: str  #: contracted part: the name of a body, "all", "shrunk components", "components" or "regions"
     counters: dict[str, int]
     timings: dict[str, float]

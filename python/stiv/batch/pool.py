@@ -33,7 +33,7 @@ class Pool:
         """Workers start when there is work, and are replaced when they die.
 
         command: starts a worker. time_limit: seconds for an entry, 0 for none. log: receives their standard error.
-        threads: at most so many for each worker; STIV_THREADS in the environment takes precedence.
+        threads: limit for each worker; STIV_THREADS in the environment takes precedence.
         """
         self._size = size
         self._threads = threads

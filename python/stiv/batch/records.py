@@ -43,7 +43,7 @@ class Record:
 
 
 def program_version(blender: str = "") -> str:
-    """What results depend on apart from inputs: STIV's version and core, and the Blender used."""
+    """The version of STIV, its core, and the Blender used, on which results depend."""
     versions = [_version("stiv"), file_hash(Path(str(stiv._native.__file__))), _version("bpy"), blender]
     return "/".join(versions)
 

@@ -10,7 +10,7 @@ const JOB_TYPE = {
         { key: "job_file", type: "string", subtype: "file_path", required: true,
           description: "The STIV job, at a path that all workers see" },
         { key: "parts", type: "int32", default: 8,
-          description: "Number of tasks; each runs every so many-th scene" },
+          description: "Number of tasks; each runs an equal share of the scenes" },
         { key: "workers", type: "int32", default: 1,
           description: "Worker processes of each task" },
         { key: "stiv", type: "string", default: "stiv", visible: "submission",
@@ -37,7 +37,7 @@ function compileJob(job) {
     }
 }
 
-// `--resume`: what Flamenco runs a second time goes on where it ended.
+// `--resume`: a task that Flamenco repeats continues where it ended.
 function partTask(settings, part, parts) {
     var args = ["batch", settings.job_file, "--resume", "--part", part + "/" + parts, "--workers", "" + settings.workers];
     if (settings.blender) {

@@ -30,8 +30,8 @@ class Finding:
     """A pair of elements that intersect.
 
     An "intersection" is at `frame` (None: the file has no frames). A "crossing" is on the linear motion from `frame` to
-    `to_frame`, at the fraction `time`, while both poses are clear. A "seam" is no intersection: two faces of an object
-    touch only at coincident vertices.
+    `to_frame`, at the fraction `time`, while both poses are clear. A "seam" is not an intersection: two faces of an
+    object touch only at coincident vertices.
     """
 
     first: Element

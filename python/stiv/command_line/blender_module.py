@@ -62,7 +62,7 @@ def stored_settings(context: Any, path: Path) -> Any:
 def quiet_blender(*, errors: bool = False) -> Iterator[None]:
     """Within, Blender's own messages do not reach standard output. Progress bars do.
 
-    errors: nor do its messages on standard error, such as warnings of renders without a display.
+    errors: also suppress its messages on standard error, such as warnings of renders without a display.
     """
     sys.stdout.flush()
     streams = (1, 2) if errors else (1,)

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 _DESCRIPTION = f"""\
-Tests exactly whether any two triangles meet other than in the vertices and edges they share. Touching, coplanar
-overlap and duplicates count. Faces of an object that touch in coincident vertices alone are a seam: seams are
-counted, and are no intersections. Of a .blend, every mesh of every scene is tested that is shown in the viewport or
-rendered, as Blender evaluates it for both; what is left out is counted. Scripts in it are not run. Mesh files:
-{", ".join(SUFFIXES)}. docs/checks.md says more."""
+Tests exactly whether two triangles intersect apart from the vertices and edges that they share. Contact, coplanar
+overlap and duplicates count as intersections. Faces of an object that only touch at coincident vertices count as
+seams. In a .blend, all visible and rendered meshes of all scenes are tested as Blender evaluates them, and untested
+objects are counted. Scripts in the file do not run. Mesh files: {", ".join(SUFFIXES)}. docs/checks.md has the
+details."""
 _EXAMPLES = """\
 examples:
   stiv check plant.blend

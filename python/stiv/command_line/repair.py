@@ -61,7 +61,7 @@ def add_to(subcommands: Subparsers) -> None:
     )
     parser.add_argument(
         "--max-deviation", type=float, default=0.05, metavar="D",
-        help="maximum deviation: root mean square, in diagonals of what may move (default: 0.05)",
+        help="maximum deviation: root mean square, in diagonals of the movable surface (default: 0.05)",
     )  # fmt: skip
     parser.add_argument(
         "--time-limit", type=float, default=0.0, metavar="S",
