@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The choices and defaults of the add-on, which registers without the package `stiv`, are those of the package."""
 
-import bpy
 import pytest
 
 import stiv
 from stiv import choices
-from stiv.blender import EditSettings
+
+bpy = pytest.importorskip("bpy")
+
+from stiv.blender import EditSettings  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
