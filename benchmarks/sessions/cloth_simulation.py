@@ -35,8 +35,8 @@ def simulate_cloth(
 ) -> ClothRun:
     """Replace the open file by a scene with a cloth and a moving body, and simulate it.
 
-    Meshes are positions (n, 3) and triangles (f, 3). The body moves linearly to `body_end`, (m, 3). There
-    is no gravity. The cloth also collides with itself, and shrinks linearly by the fraction `shrink`.
+    Meshes are positions (n, 3) and triangles (f, 3). The body moves linearly to `body_end`, (m, 3). Gravity
+    is off. The cloth also collides with itself, and shrinks linearly by the fraction `shrink`.
     `distance` is the collision distance, in world units.
     """
     bpy.ops.wm.read_factory_settings(use_empty=True)

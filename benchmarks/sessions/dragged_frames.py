@@ -25,7 +25,7 @@ from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
 
 SPEED = 24.0  # repetitions a second: each would be a frame of its own in a film
 TICK = 1.0 / 60.0  # seconds, of the add-on's timer
-PATIENCE = 60.0  # seconds that a drag may go on solving once the mouse rests
+PATIENCE = 60.0  # seconds that a drag may continue solving after the mouse rests
 
 
 class Drag(Protocol):

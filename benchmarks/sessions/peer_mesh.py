@@ -2,7 +2,7 @@
 """Meshes for ipctk, which its documentation lets a user give less than everything.
 
 everything  the whole mesh
-filter      the vertices that move first, and `make_static_obstacle_filter`: pairs at rest are no candidates
+filter      the vertices that move first, and `make_static_obstacle_filter`: pairs at rest are skipped
 culled      the same, for the triangles that move and those that the bounding box of their motion meets
 """
 

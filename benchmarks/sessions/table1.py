@@ -84,7 +84,7 @@ def row(
         return float(np.mean(values)) if values else 0.0
 
     iterations = mean([figure.iterations for figure in touching])
-    # threads share the work: with several of them processor time is no waiting time
+    # with several threads, processor time differs from waiting time
     processor, clock = (1000 * mean([getattr(f, what) for f in touching]) for what in ("processor", "clock"))
     ms = processor if threads == 1 else clock
     return {

@@ -69,6 +69,6 @@ def results(folder: Path) -> dict[str, bytes]:
 
 
 def record(folder: Path, number: int) -> dict[str, Any]:
-    """What was recorded of a scene."""
+    """The record of a scene."""
     (path,) = [each for each in (folder / "job ü.state").glob("*.json") if f"{number:03}" in each.name]
     return json.loads(path.read_text())

@@ -121,7 +121,7 @@ def test_one_process_at_a_time_runs_a_job(tmp_path, capsys):
     assert results(tmp_path) == {}
 
 
-def test_workers_that_cannot_start_are_told_of(tmp_path, capsys):
+def test_workers_that_cannot_start_are_reported(tmp_path, capsys):
     job = write_job(tmp_path, 1)
     assert run(job, "--blender", "/bin/false") == 2
     assert "worker processes in a row ended before they were ready" in capsys.readouterr().err

@@ -49,7 +49,7 @@ def test_a_blender_is_passed_on(tmp_path):
         ({"job_file": "j", "workers": 0}, "workers: 0 is not"),
     ],
 )
-def test_wrong_settings_are_told_of(tmp_path, settings, message):
+def test_wrong_settings_are_reported(tmp_path, settings, message):
     assert message in compiled(tmp_path, **settings)["error"]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Job files: what is read, and messages that name the entry."""
+"""Job files: valid ones are read, and messages name the entry."""
 
 import contextlib
 import json

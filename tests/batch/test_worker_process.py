@@ -14,7 +14,7 @@ from stiv.command_line.batch import headline
 TELL_THREADS = f"import os, json; print({MARK!r} + json.dumps({{'threads': os.environ['STIV_THREADS']}}))"
 
 
-def threads_told(threads):
+def threads_given(threads):
     replies = queue.Queue()
     worker = WorkerProcess([sys.executable, "-c", TELL_THREADS], lambda of, reply: replies.put(reply), threads=threads)
     try:
@@ -23,12 +23,12 @@ def threads_told(threads):
         worker.kill()
 
 
-@pytest.mark.parametrize(("user", "threads", "told"), [(None, 3, "3"), ("5", 3, "5")])
-def test_a_worker_edits_with_its_share_of_threads_unless_the_user_says_another(monkeypatch, user, threads, told):
+@pytest.mark.parametrize(("user", "threads", "expected"), [(None, 3, "3"), ("5", 3, "5")])
+def test_a_worker_edits_with_its_share_of_threads_unless_the_user_says_another(monkeypatch, user, threads, expected):
     monkeypatch.delenv("STIV_THREADS", raising=False)
     if user is not None:
         monkeypatch.setenv("STIV_THREADS", user)
-    assert threads_told(threads) == told
+    assert threads_given(threads) == expected
 
 
 def test_a_wrong_number_of_threads_is_an_error_of_the_input(monkeypatch):

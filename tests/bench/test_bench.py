@@ -43,7 +43,7 @@ def figures_of(**values: object) -> EditFigures:
     return EditFigures(**{**plain, **rest, **values})
 
 
-def test_recorded_edits_solved_again_by_the_same_options_come_to_the_same():
+def test_repeated_edits_with_the_same_options_have_the_same_results():
     recorded, first = record(session(), {"threads": 1}, lambda note: None)
     again = repeat(recorded, stiv.EditOptions, {"threads": 1})
     assert len(first) == 4 and [f.touches for f in first] == [False, False, True, True]
@@ -140,7 +140,7 @@ def test_the_exponent_of_a_power_law_is_found():
     assert scaling.exponent(rows, "ms") == pytest.approx(1.25)
 
 
-def test_a_step_is_counted_in_diagonals_of_what_it_moves():
+def test_a_step_is_measured_in_diagonals_of_the_moving_vertices():
     start = np.array([[0, 0, 0], [3, 4, 0], [90, 0, 0]], float)
     assert running.step_size(start, start + [[0.5, 0, 0], [0.1, 0, 0], [0, 0, 0]]) == pytest.approx(0.1)
     assert running.step_size(start, start) == 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the benches beside the table compute: shares of motion, prices of detection, models from a folder."""
+"""Comparisons outside the table: fractions of motion, cost of detection, models from a folder."""
 
 import types
 
@@ -68,7 +68,7 @@ def test_models_need_their_folder_and_nothing_else_takes_one(arguments):
     assert program.run(["bench", *arguments]) == 2
 
 
-def test_the_peer_culled_to_what_moves_is_given_every_contact():
+def test_the_culled_mesh_contains_every_contact():
     whole = local_edit()
     step = LinearStep(whole.triangles, whole.start, whole.end)
     less = moving_first(culled(step))

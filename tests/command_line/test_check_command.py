@@ -71,7 +71,7 @@ def test_seams_of_an_object_are_counted_and_no_intersections(tmp_path, capsys, s
         assert program.run(["check", str(path)]) == code
 
 
-def test_doubled_triangles_of_an_object_are_no_seam(tmp_path):
+def test_duplicate_triangles_of_an_object_are_not_a_seam(tmp_path):
     path = tmp_path / "doubled.npz"
     corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], float)
     np.savez(path, vertices=np.concatenate([corners, corners]), triangles=np.arange(6).reshape(2, 3))

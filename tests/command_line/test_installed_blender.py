@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`--blender PATH`. A small program stands in for Blender: it takes the same options and has a Python of its own.
+"""`--blender PATH`. A small program replaces Blender: it accepts the same options and has its own Python.
 
 Where STIV_TEST_BLENDER names an installed Blender, that is used as well.
 """

@@ -48,8 +48,8 @@ def test_a_scene_is_repaired_and_saved(tmp_path, capfd):
     held = points("One")
     code = program.run(["repair", str(source), "-o", str(out), "--move", "Two", "--json", str(report)])
     assert code == 0
-    told = capfd.readouterr().out
-    assert "balls ü.blend: " in told and "mean deviation" in told
+    output = capfd.readouterr().out
+    assert "balls ü.blend: " in output and "mean deviation" in output
     bpy.ops.wm.open_mainfile(filepath=str(out))
     assert check_scene(bpy.context).pairs == ()
     assert np.array_equal(points("One"), held)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv repair` on mesh files: exit codes, report, what is written and what is not."""
+"""`stiv repair` on mesh files: exit codes, report, outputs."""
 
 import numpy as np
 import pytest
@@ -90,19 +90,19 @@ def test_what_is_free_is_copied(tmp_path, capsys):
 def test_what_cannot_be_repaired_ends_with_4_and_writes_nothing(tmp_path, capsys):
     source, out, report = tmp_path / "a.obj", tmp_path / "b.obj", tmp_path / "report.json"
     source.write_text(balls(0.0))
-    out.write_text("what was there")
+    out.write_text("old content")
     assert program.run(["repair", str(source), "-o", str(out), "--json", str(report)]) == 4
-    assert out.read_text() == "what was there"
+    assert out.read_text() == "old content"
     said = read_valid(report, "repair")
     assert (said["status"], said["output"]) == ("refused", None)
     assert said["pairs"][0]["first"]["object"] == "one" and said["pairs"][0]["second"]["object"] == "two"
     assert said["pairs_left"] == said["pairs_before"] > 10
-    told = capsys.readouterr().out
-    assert "triangles coincide" in told and 'object "one", face 0 - object "two", face' in told
+    output = capsys.readouterr().out
+    assert "triangles coincide" in output and 'object "one", face 0 - object "two", face' in output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj", "b.obj", "report.json"]
 
 
-def test_only_what_is_named_moves(tmp_path, capsys):
+def test_only_the_named_object_moves(tmp_path, capsys):
     source, out = tmp_path / "a.obj", tmp_path / "b.obj"
     source.write_text(balls(1.5, 0.7))
     assert program.run(["repair", str(source), "-o", str(out), "--move", "two"]) == 0

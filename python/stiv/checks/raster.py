@@ -21,7 +21,7 @@ class Camera:
     height: float
 
     def seen(self, points: Floats, size: tuple[int, int]) -> Floats:
-        """Column, row and nearness of points, (n, 3), in an image of this width and height."""
+        """Column, row and inverse depth of points, (n, 3), in an image of this width and height."""
         width, height = size
         right, up, near = ((points - self.centre) @ self.axes.T).T
         scale = height / self.height
@@ -45,9 +45,9 @@ def camera_at(points: Floats, direction: Floats, margin: float = 1.15, aspect: f
 def draw(
     positions: Floats, triangles: NDArray[np.int32], colors: Floats, camera: Camera, size: tuple[int, int]
 ) -> tuple[Floats, Floats]:
-    """Draws triangles: the image, (height, width, 3) in [0, 1], and the nearness of each pixel.
+    """Draws triangles: the image, (height, width, 3) in [0, 1], and the inverse depth of each pixel.
 
-    colors: (F, 3), before shading. The background is white, with nearness -inf.
+    colors: (F, 3), before shading. The background is white, with inverse depth -inf.
     """
     width, height = size
     corners = camera.seen(positions, size)[triangles]

@@ -153,7 +153,7 @@ def test_check_reports_intersections_with_strands(make: Any, name: str) -> None:
     assert check_scene(bpy.context, EditSettings(roles={name: "ignored"})).pairs == ()
     bpy.data.objects[name].parent = cube
     bpy.context.view_layer.update()
-    assert check_scene(bpy.context).pairs == ()  # hair grows out of what it hangs on
+    assert check_scene(bpy.context).pairs == ()  # hair intersects its own surface
 
 
 def test_helper_curves_are_not_obstacles_and_named() -> None:
