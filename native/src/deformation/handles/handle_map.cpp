@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "deformation/handles/truncated_map.hpp"
 #include "deformation/metric/axis_metric.hpp"
 #include "deformation/metric/gram_metric.hpp"
 
@@ -133,8 +134,12 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
     keep_in_full();
     return;
   }
-  if (static_cast<double>(driven.size()) * static_cast<double>(factor_->size()) <= limits_.entries)
+  if (static_cast<double>(driven.size()) * static_cast<double>(factor_->size()) <= limits_.entries) {
     keep_answers(driven);
+    return;
+  }
+  constexpr double doubles_per_entry = 2;  // with its place
+  truncated_ = truncated_map(*factor_, drive_, partition_, limits_.negligible, limits_.entries / doubles_per_entry);
 }
 
 /// M d by a solve.
@@ -238,6 +243,7 @@ void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseFie
 }
 
 SparseField HandleMap::pull_back(const SparseField& g) const {
+  if (is_truncated()) return stiv::pull_back(*truncated_, g);
   SparseField covector = whole_field(control_count());
   if (!is_full() && !keeps_answers()) {
     pull_by_solve<Positions>(&g, 1, &covector);
@@ -254,7 +260,7 @@ SparseField HandleMap::pull_back(const SparseField& g) const {
 
 std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const {
   std::vector<SparseField> covectors(g.size());
-  if (is_full() || keeps_answers()) {
+  if (pulls_by_products()) {
     constexpr Index products_per_chunk = 16;
     execution.for_chunks(static_cast<Index>(g.size()), products_per_chunk, [&](Index begin, Index end, Index) {
       for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
@@ -307,6 +313,12 @@ Eigen::MatrixXd HandleMap::gram(const WeightMatrix* surface_gram) const {
 
 std::unique_ptr<Metric> HandleMap::metric(const MetricOptions& options, const WeightMatrix* surface_gram) const {
   ResponseWeights weights = checked_weights(options, control_count());
+  if (is_truncated()) {
+    const Eigen::VectorXd diagonal = gram_diagonal(*truncated_, surface_gram);
+    return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
+      return make_diagonal_metric(diagonal, options.smoothness, active_controls(diagonal, some));
+    });
+  }
   const double products = static_cast<double>(vertex_count()) * control_count() * control_count();
   if (!is_full() || products > limits_.products) {
     const auto product = [&](const ColumnBlock& d) { return gram_product(d, surface_gram); };

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "deformation/handles/handle_partition.hpp"
 #include "deformation/metric/sparse_factor.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/execution.hpp"
 
 namespace stiv {
@@ -15,6 +17,7 @@ struct HandleMapLimits {
   double entries = 256e6 / sizeof(double);  ///< of M, or of the part of K^-1 that M'g needs, if it is kept
   double products = 3e10;                   ///< multiplications for the whole of M'M: a few seconds
   Index probes = 128;                       ///< of M'M, if it is not made; a multiple of 16
+  double negligible = 1e-5;                 ///< entries of a large M, relative to the largest of their column
 };
 
 /// How the vertices of a mesh follow its handles, u = M d: the displacements u, (n, 3), that minimise
@@ -31,7 +34,8 @@ class HandleMap {
   Index control_count() const { return static_cast<Index>(handles_.size()); }
   Index vertex_count() const { return static_cast<Index>(partition_.place.size()); }
   const HandlePartition& partition() const { return partition_; }
-  bool keeps_answers() const { return answers_.size() > 0; }  ///< does M'g use stored columns, not a solve?
+  bool keeps_answers() const { return answers_.size() > 0; }    ///< does M'g use stored columns, not a solve?
+  bool is_truncated() const { return truncated_.has_value(); }  ///< does M'g leave out negligible entries of M?
 
   Positions follow(const Controls& d) const;          ///< M d
   SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
@@ -62,6 +66,7 @@ class HandleMap {
   ColumnBlock gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const;
   Eigen::MatrixXd gram(const WeightMatrix* surface_gram) const;
   bool product_is_cheaper() const;
+  bool pulls_by_products() const { return is_full() || keeps_answers() || is_truncated(); }
   bool is_full() const { return full_.rows() == vertex_count(); }
 
   HandleMapLimits limits_;
@@ -73,8 +78,9 @@ class HandleMap {
   std::vector<unsigned char> needed_;  ///< of a solution, by products with the transpose of `drive_`
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full_;  ///< M, or nothing
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
-      answers_;                       ///< (free, driven): columns of K^-1, or nothing
-  SymmetricMatrix drive_of_answers_;  ///< (driven, m): the rows of `drive_` that have entries
+      answers_;                            ///< (free, driven): columns of K^-1, or nothing
+  std::optional<WeightMatrix> truncated_;  ///< M without negligible entries, or nothing
+  SymmetricMatrix drive_of_answers_;       ///< (driven, m): the rows of `drive_` that have entries
 };
 
 }  // namespace stiv

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "deformation/metric/axis_metric.hpp"
+#include "deformation/metric/gram_metric.hpp"
 #include "stiv/deformation/metric.hpp"
 
 namespace stiv {
@@ -32,6 +33,18 @@ class ControlMetric final : public Metric {
 };
 
 }  // namespace
+
+std::unique_ptr<Metric> make_diagonal_metric(const Eigen::VectorXd& diagonal, double smoothness,
+                                             const ActiveControls& active) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(diagonal.size());
+  if (active.control.empty()) return std::make_unique<ControlMetric>(std::move(weights), false);
+  const double damping = smoothness * diagonal(active.control).mean();
+  for (std::size_t k = 0; k < active.control.size(); ++k) {
+    const Index control = active.control[k];
+    weights[control] = active.root_weight[k] * active.root_weight[k] / (diagonal[control] + damping);
+  }
+  return std::make_unique<ControlMetric>(std::move(weights), false);
+}
 
 std::unique_ptr<Metric> make_control_metric(const MetricOptions& options, Index control_count, bool local) {
   return make_axis_metric(checked_weights(options, control_count), [&](const Eigen::VectorXd& weights) {

@@ -25,4 +25,9 @@ using GramProduct = std::function<ColumnBlock(const ColumnBlock&)>;
 std::unique_ptr<Metric> make_low_rank_metric(const GramProduct& gram, Index rank, double smoothness,
                                              ActiveControls active);
 
+/// J'J replaced by its diagonal, where each control moves mainly a region of its own.
+/// @param diagonal (m) of J'J, of all controls
+std::unique_ptr<Metric> make_diagonal_metric(const Eigen::VectorXd& diagonal, double smoothness,
+                                             const ActiveControls& active);
+
 }  // namespace stiv

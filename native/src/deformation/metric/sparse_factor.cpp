@@ -20,15 +20,17 @@ SparseFactor::SparseFactor(const SymmetricMatrix& matrix, const char* what) {
                      "or its weights are too different: add handles or fixed vertices");
 }
 
+Index SparseFactor::parent(Index column) const {
+  const SymmetricMatrix::InnerIterator first(lower(), column);  // the first entry below the diagonal
+  return first ? static_cast<Index>(first.row()) : -1;
+}
+
 std::vector<unsigned char> SparseFactor::needed_for(const std::vector<Index>& rows) const {
   std::vector<unsigned char> needed(static_cast<std::size_t>(size()), 0);
   for (const Index row : rows) {
-    Index column = factor_.permutationP().indices()[row];
-    while (needed[at(column)] == 0) {
+    for (Index column = place(row); column >= 0; column = parent(column)) {
+      if (needed[at(column)] != 0) break;
       needed[at(column)] = 1;
-      const SymmetricMatrix::InnerIterator parent(lower(), column);  // the first entry below the diagonal
-      if (!parent) break;
-      column = static_cast<Index>(parent.row());
     }
   }
   return needed;

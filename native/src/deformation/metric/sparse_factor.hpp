@@ -36,9 +36,15 @@ class SparseFactor {
   Positions solve(const Positions& right, const std::vector<unsigned char>& needed) const;
   ColumnBlock solve(const ColumnBlock& right, const std::vector<unsigned char>& needed) const;
 
+  // The factor itself: L without its diagonal, by columns, and where the rows of the matrix are in it.
+  const SymmetricMatrix& lower() const { return factor_.matrixL().nestedExpression(); }
+  Eigen::VectorXd pivots() const { return factor_.vectorD(); }
+  Index place(Index row) const { return factor_.permutationP().indices()[row]; }
+  Index row(Index place) const { return factor_.permutationPinv().indices()[place]; }
+  Index parent(Index column) const;  ///< in the elimination tree, or -1
+
  private:
   bool factor(const SymmetricMatrix& matrix);
-  const SymmetricMatrix& lower() const { return factor_.matrixL().nestedExpression(); }
   template <class Block>
   Block solve_block(const Block& right, const std::vector<unsigned char>* needed) const;
 
