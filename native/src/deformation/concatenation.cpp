@@ -226,7 +226,7 @@ class Concatenation final : public Deformation {
     const DeformationPart& part = parts_[at(control_places_.part[row])];
     std::vector<Index> vertices = part.deformation->support(control_places_.row[row]);
     for (Index& vertex : vertices) vertex = part.vertices[at(vertex)];
-    std::sort(vertices.begin(), vertices.end());
+    if (!std::is_sorted(vertices.begin(), vertices.end())) std::sort(vertices.begin(), vertices.end());
     return vertices;
   }
 

@@ -139,7 +139,9 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
     return;
   }
   constexpr double doubles_per_entry = 2;  // with its place
-  truncated_ = truncated_map(*factor_, drive_, partition_, limits_.negligible, limits_.entries / doubles_per_entry);
+  const double products = static_cast<double>(vertex_count()) * control_count();
+  truncated_ = truncated_map(*factor_, drive_, partition_, limits_.negligible,
+                             std::min(limits_.density * products, limits_.entries / doubles_per_entry));
 }
 
 /// M d by a solve.

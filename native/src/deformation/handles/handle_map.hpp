@@ -18,6 +18,7 @@ struct HandleMapLimits {
   double products = 3e10;                   ///< multiplications for the whole of M'M: a few seconds
   Index probes = 128;                       ///< of M'M, if it is not made; a multiple of 16
   double negligible = 1e-5;                 ///< entries of a large M, relative to the largest of their column
+  double density = 1.0 / 16;                ///< most entries of M that are not negligible, relative to n m
 };
 
 /// How the vertices of a mesh follow its handles, u = M d: the displacements u, (n, 3), that minimise
@@ -34,6 +35,8 @@ class HandleMap {
   Index control_count() const { return static_cast<Index>(handles_.size()); }
   Index vertex_count() const { return static_cast<Index>(partition_.place.size()); }
   const HandlePartition& partition() const { return partition_; }
+  const SparseFactor& factor() const { return *factor_; }       ///< of the equations of the free vertices
+  const SymmetricMatrix& drive() const { return drive_; }       ///< (free, m): their right sides' derivatives
   bool keeps_answers() const { return answers_.size() > 0; }    ///< does M'g use stored columns, not a solve?
   bool is_truncated() const { return truncated_.has_value(); }  ///< does M'g leave out negligible entries of M?
 

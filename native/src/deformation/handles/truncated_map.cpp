@@ -2,6 +2,8 @@
 #include "deformation/handles/truncated_map.hpp"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "deformation/metric/decaying_solver.hpp"
 
@@ -25,16 +27,25 @@ std::vector<Index> driving_controls(const SparseFactor& factor, const SymmetricM
   return controls;
 }
 
-std::vector<BlockRow> driven_rows(const SymmetricMatrix& drive, const Index* controls, Index count) {
+std::vector<BlockRow> driven_rows(const SymmetricMatrix& drive, std::span<const Index> controls) {
   std::vector<BlockRow> rows;
-  for (Index lane = 0; lane < count; ++lane)
+  for (std::size_t lane = 0; lane < controls.size(); ++lane)
     for (SymmetricMatrix::InnerIterator entry(drive, controls[lane]); entry; ++entry) {
       BlockRow& row = rows.emplace_back();
       row.row = static_cast<Index>(entry.row());
       row.values.setZero();
-      row.values[lane] = entry.value();
+      row.values[static_cast<Index>(lane)] = entry.value();
     }
   return rows;
+}
+
+/// Columns of M of up to sixteen controls.
+void add_columns(DecayingSolver& solver, const SymmetricMatrix& drive, const HandlePartition& partition,
+                 std::span<const Index> controls, Triplets& entries) {
+  for (const BlockRow& row : solver.solve(driven_rows(drive, controls)))
+    for (std::size_t lane = 0; lane < controls.size(); ++lane)
+      if (const double value = row.values[static_cast<Index>(lane)]; value != 0)
+        entries.emplace_back(partition.free[at(row.row)], controls[lane], value);
 }
 
 /// Vertices that are hard handles follow theirs.
@@ -46,7 +57,7 @@ Triplets held_entries(const HandlePartition& partition) {
   return entries;
 }
 
-/// (G M)_ik M_jk summed over the pairs i, j of one entry of G: rows are ascending.
+/// Adds factor M_ik M_jk for each control k.
 void add_products(const WeightMatrix& map, Index i, Index j, double factor, Eigen::VectorXd& sums) {
   WeightMatrix::InnerIterator a(map, i), b(map, j);
   while (a && b) {
@@ -61,18 +72,20 @@ void add_products(const WeightMatrix& map, Index i, Index j, double factor, Eige
 
 std::optional<WeightMatrix> truncated_map(const SparseFactor& factor, const SymmetricMatrix& drive,
                                           const HandlePartition& partition, double negligible, double limit) {
+  constexpr Index passes = 8;  // the first one, over the whole mesh, predicts the number of entries
   const std::vector<Index> controls = driving_controls(factor, drive);
   const auto count = static_cast<Index>(controls.size());
   DecayingSolver solver(factor, negligible);
   Triplets entries = held_entries(partition);
-  for (Index first = 0; first < count; first += width) {
-    const Index* const some = controls.data() + first;
-    const Index lanes = std::min(width, count - first);
-    for (const BlockRow& row : solver.solve(driven_rows(drive, some, lanes)))
-      for (Index lane = 0; lane < lanes; ++lane)
-        if (row.values[lane] != 0)
-          entries.emplace_back(partition.free[static_cast<std::size_t>(row.row)], some[lane], row.values[lane]);
-    if (static_cast<double>(entries.size()) > limit) return std::nullopt;
+  Index done = 0;
+  for (Index pass = 0; pass < passes; ++pass) {
+    for (Index first = width * pass; first < count; first += width * passes) {
+      const Index lanes = std::min(width, count - first);
+      add_columns(solver, drive, partition, {controls.data() + first, at(lanes)}, entries);
+      done += lanes;
+      if (static_cast<double>(entries.size()) > limit) return std::nullopt;
+    }
+    if (static_cast<double>(entries.size()) * count > limit * done) return std::nullopt;
   }
   WeightMatrix map(static_cast<Index>(partition.place.size()), static_cast<Index>(drive.cols()));
   map.setFromTriplets(entries.begin(), entries.end());
@@ -81,15 +94,15 @@ std::optional<WeightMatrix> truncated_map(const SparseFactor& factor, const Symm
 
 SparseField pull_back(const WeightMatrix& map, const SparseField& g) {
   Controls sum = Controls::Zero(map.cols(), 3);
-  std::vector<unsigned char> reached(static_cast<std::size_t>(map.cols()), 0);
+  std::vector<unsigned char> reached(at(map.cols()), 0);
   for (std::size_t k = 0; k < g.index.size(); ++k)
     for (WeightMatrix::InnerIterator entry(map, g.index[k]); entry; ++entry) {
       sum.row(entry.col()) += entry.value() * g.value[k].transpose();
-      reached[static_cast<std::size_t>(entry.col())] = 1;
+      reached[at(entry.col())] = 1;
     }
   SparseField pulled;
   for (Index control = 0; control < sum.rows(); ++control) {
-    if (reached[static_cast<std::size_t>(control)] == 0) continue;
+    if (reached[at(control)] == 0) continue;
     pulled.index.push_back(control);
     pulled.value.emplace_back(sum.row(control));
   }

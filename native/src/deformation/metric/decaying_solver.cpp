@@ -24,27 +24,27 @@ DecayingSolver::DecayingSolver(const SparseFactor& factor, double negligible)
 
 void DecayingSolver::add_to_path(const BlockRow& right) {
   const Index place = factor_.place(right.row);
-  x_[static_cast<std::size_t>(place)] += right.values;
-  for (Index column = place; column >= 0; column = parent_[static_cast<std::size_t>(column)]) {
-    if (on_path_[static_cast<std::size_t>(column)] != 0) return;
-    on_path_[static_cast<std::size_t>(column)] = 1;
+  x_[at(place)] += right.values;
+  for (Index column = place; column >= 0; column = parent_[at(column)]) {
+    if (on_path_[at(column)] != 0) return;
+    on_path_[at(column)] = 1;
     path_.push_back(column);
   }
 }
 
 void DecayingSolver::substitute_forward() {
   for (const Index column : path_) {
-    const Row known = x_[static_cast<std::size_t>(column)];
+    const Row known = x_[at(column)];
     for (SymmetricMatrix::InnerIterator entry(factor_.lower(), column); entry; ++entry)
-      x_[static_cast<std::size_t>(entry.row())] -= entry.value() * known;
+      x_[at(entry.row())] -= entry.value() * known;
   }
 }
 
 void DecayingSolver::substitute_backward(Index column) {
-  Row sum = x_[static_cast<std::size_t>(column)] / pivots_[column];
+  Row sum = x_[at(column)] / pivots_[column];
   for (SymmetricMatrix::InnerIterator entry(factor_.lower(), column); entry; ++entry)
-    sum -= entry.value() * x_[static_cast<std::size_t>(entry.row())];
-  x_[static_cast<std::size_t>(column)] = sum;
+    sum -= entry.value() * x_[at(entry.row())];
+  x_[at(column)] = sum;
 }
 
 /// Returns the largest entry of each column.
@@ -52,28 +52,29 @@ DecayingSolver::Row DecayingSolver::solve_path() {
   Row largest = Row::Zero();
   for (auto column = path_.rbegin(); column != path_.rend(); ++column) {
     substitute_backward(*column);
-    largest = largest.max(x_[static_cast<std::size_t>(*column)].abs());
+    largest = largest.max(x_[at(*column)].abs());
   }
   return largest;
 }
 
 /// Is a row large on which the subtrees below a column depend?
 bool DecayingSolver::borders_something(Index column) const {
-  if (is_large_[static_cast<std::size_t>(column)] != 0) return true;
+  if (is_large_[at(column)] != 0) return true;
   for (SymmetricMatrix::InnerIterator entry(factor_.lower(), column); entry; ++entry)
-    if (is_large_[static_cast<std::size_t>(entry.row())] != 0) return true;
+    if (is_large_[at(entry.row())] != 0) return true;
   return false;
 }
 
 std::vector<BlockRow> DecayingSolver::solve_beside_path(const Row& negligible) {
   std::vector<BlockRow> rows;
   for (Index column = factor_.size() - 1; column >= 0; --column) {
-    const auto k = static_cast<std::size_t>(column);
+    const std::size_t k = at(column);
     const Index parent = parent_[k];
     if (on_path_[k] == 0) {
-      if (parent < 0 || visits_children_[static_cast<std::size_t>(parent)] == 0) continue;
+      if (parent < 0 || visits_children_[at(parent)] == 0) continue;
       substitute_backward(column);
     }
+    solved_.push_back(column);
     const Row size = x_[k].abs();
     is_large_[k] = (size > border_fraction * negligible).any() ? 1 : 0;
     visits_children_[k] = borders_something(column) ? 1 : 0;
@@ -83,11 +84,13 @@ std::vector<BlockRow> DecayingSolver::solve_beside_path(const Row& negligible) {
 }
 
 void DecayingSolver::clear() {
+  for (const Index column : solved_) {
+    const std::size_t k = at(column);
+    x_[k].setZero();
+    on_path_[k] = is_large_[k] = visits_children_[k] = 0;
+  }
   path_.clear();
-  std::fill(x_.begin(), x_.end(), Row::Zero());
-  std::fill(on_path_.begin(), on_path_.end(), static_cast<unsigned char>(0));
-  std::fill(is_large_.begin(), is_large_.end(), static_cast<unsigned char>(0));
-  std::fill(visits_children_.begin(), visits_children_.end(), static_cast<unsigned char>(0));
+  solved_.clear();
 }
 
 std::vector<BlockRow> DecayingSolver::solve(const std::vector<BlockRow>& right) {

@@ -44,7 +44,8 @@ class DecayingSolver {
   // Per call; zero between calls:
   std::vector<Row> x_;
   std::vector<unsigned char> on_path_, is_large_, visits_children_;
-  std::vector<Index> path_;  ///< ancestors of the right sides' rows, ascending
+  std::vector<Index> path_;    ///< ancestors of the right sides' rows, ascending
+  std::vector<Index> solved_;  ///< columns that were not skipped
 };
 
 }  // namespace stiv
