@@ -17,7 +17,7 @@ struct HandleMapLimits {
   double entries = 256e6 / sizeof(double);  ///< of M, or of the part of K^-1 that M'g needs, if it is kept
   double products = 3e10;                   ///< multiplications for the whole of M'M: a few seconds
   Index probes = 128;                       ///< of M'M, if it is not made; a multiple of 16
-  double negligible = 1e-5;                 ///< entries of a large M, relative to the largest of their column
+  double negligible = 1e-4;                 ///< entries of a large M, relative to the largest of their column
   double density = 1.0 / 16;                ///< most entries of M that are not negligible, relative to n m
 };
 
