@@ -35,15 +35,16 @@ void register_exceptions(py::module_& module) {
                               "Invalid input: the message names object and element. Nothing was changed.");
   start_intersects_error = new_exception(module, "StartIntersectsError", input_error,
                                          "The start intersects itself; `pairs`, (K, 2) int32, lists the triangles.");
-  py::register_local_exception_translator([](std::exception_ptr pointer) {
-    try {
-      if (pointer) std::rethrow_exception(pointer);
-    } catch (const stiv::StartIntersectsError& error) {
-      raise_start_intersects(error);
-    } catch (const stiv::InputError& error) {
-      PyErr_SetString(input_error, error.what());
-    }
-  });
+  py::register_local_exception_translator(
+      [](std::exception_ptr pointer) {  // NOLINT(performance-unnecessary-value-param)
+        try {
+          if (pointer) std::rethrow_exception(pointer);
+        } catch (const stiv::StartIntersectsError& error) {
+          raise_start_intersects(error);
+        } catch (const stiv::InputError& error) {
+          PyErr_SetString(input_error, error.what());
+        }
+      });
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ inline Positions rows_of(const PositionsView& q, std::span<const Index> rows) {
   return some;
 }
 
-/// Puts `some`, (k, 3), in the place of these rows.
+/// Replaces these rows with `some`, (k, 3).
 inline void put_rows(Positions& q, std::span<const Index> rows, const PositionsView& some) {
   for (std::size_t k = 0; k < rows.size(); ++k) q.row(rows[k]) = some.row(static_cast<Index>(k));
 }

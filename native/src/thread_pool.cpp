@@ -17,11 +17,10 @@ namespace stiv {
 
 namespace {
 
-/// Those that the operating system lets this process have; 0 if unknown.
+/// The processors that this process may use; 0 if unknown.
 int allowed_processors() {
 #if defined(__linux__)
-  // hardware_concurrency counts all of the machine, also where a container or a scheduler of jobs left this process
-  // few.
+  // hardware_concurrency counts the whole machine, also in a container or under a job scheduler.
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
 #endif
@@ -49,7 +48,7 @@ ThreadPool::ThreadPool(int count) {
   try {
     for (int k = 0; k < count; ++k) threads_.emplace_back([this] { wait_for_work(); });
   } catch (const std::exception&) {
-    // Those that there are will do.
+    return;  // fewer threads are enough
   }
 }
 

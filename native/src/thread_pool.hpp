@@ -10,23 +10,23 @@
 
 namespace stiv {
 
-/// How many threads a call takes that is told no number: one for each processor that this process may run on, no more
-/// than the environment's STIV_THREADS if that is set, as it is for processes that share a machine (a batch's workers).
+/// The default number of threads: one for each processor that this process may use, at most the environment variable
+/// STIV_THREADS. Processes that share a machine, such as the workers of a batch, set it.
 /// @throws InputError if STIV_THREADS is not a whole number from 1 up
 int usable_processors();
 
-/// Threads that help the calling one with one piece of work after the other: started once, asleep in between, ended
-/// with the object. To start them anew for each loop of a call took longer than many loops.
+/// Threads that help the calling thread, started once and asleep between loops: starting them takes longer than many
+/// loops.
 class ThreadPool {
  public:
-  /// Fewer, or none, where the system refuses them.
+  /// Starts fewer threads, or none, if the system refuses them.
   explicit ThreadPool(int count);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls `work` in the calling thread and in those that wake up before it returns there; returns when it has in all
-  /// of them. It must not throw, and share out what there is to do by itself. One call at a time.
+  /// Calls `work` in the calling thread and in the threads that wake up before it ends there; returns when all have
+  /// ended. It must not throw, and distributes its chunks itself. One call at a time.
   void run(const std::function<void()>& work);
 
  private:
@@ -34,8 +34,8 @@ class ThreadPool {
 
   std::mutex mutex_;
   std::condition_variable begun_, ended_;
-  const std::function<void()>* work_ = nullptr;  // none: what wakes up now comes too late
-  std::uint64_t number_ = 0;                     // of the piece of work, so that nobody does one twice
+  const std::function<void()>* work_ = nullptr;  // null: no work is open
+  std::uint64_t number_ = 0;                     // of the work, so that no thread does it twice
   int busy_ = 0;
   bool closing_ = false;
   std::vector<std::thread> threads_;

@@ -53,7 +53,7 @@ Events CandidateCache::find(const PlaceVertices& place, Proximity proximity, Exe
   return search_.find_among(pairs_, steps_, proximity, execution);
 }
 
-// Far pairs go first: they are most of what a search gives, and need not be sorted.
+// Removes far pairs first: they are the majority, and need no sorting.
 void CandidateCache::prune(const PositionsView& start, const PositionsView& end, Proximity proximity,
                            const Execution& execution) {
   search_.check_step({start, end, proximity});
@@ -91,7 +91,7 @@ void CandidateCache::add_last_search(const Execution& execution) {
   if (search_.has_close_pairs()) replace(united(pairs_, search_.take_close_pairs(execution), execution));
 }
 
-/// The only place that changes the content: everything before it may be interrupted.
+/// Only this changes the content, so that an interruption before leaves it unchanged.
 void CandidateCache::replace(ClosePairs pairs) {
   const Surface& surface = search_.surface();
   std::vector<unsigned char> listed(static_cast<std::size_t>(surface.vertex_count()), 0);

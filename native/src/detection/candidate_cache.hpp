@@ -9,9 +9,10 @@
 
 namespace stiv {
 
-/// Candidates that searches of a detector brought close: few of all pairs, and those that meet next where a response
-/// pushes back. Rounds of an edit ask these first; what they miss, a whole search finds. The content depends on the
-/// searched steps alone, not on the broad phase or the number of threads.
+/// Candidates that full searches of a detector found close together: a small fraction of all pairs. Rounds of an edit
+/// test them first, and search all pairs only if none of these interferes. Calls may come in any order: each first adds
+/// the close pairs of the last search. The content depends on the searched steps alone, neither on the broad phase nor
+/// on the number of threads. (mathematics.md, "The loop")
 class CandidateCache {
  public:
   /// Positions of some vertices at the start and at the end of a step, (k, 3) each.
@@ -23,18 +24,18 @@ class CandidateCache {
   /// The detector must outlive the cache.
   explicit CandidateCache(Detector& detector) : search_(*detector.search_) {}
 
-  /// The events of a step among the cached candidates. `place` is asked for the step of their vertices, in ascending
-  /// order; not at all where nothing is cached.
+  /// The events of a step among the cached candidates. `place` gives the step of their vertices, in ascending order; it
+  /// is not called if nothing is cached.
   /// @throws InputError if the rows are not as many as the vertices, or not finite
   Events find(const PlaceVertices& place, Proximity proximity, Execution& execution);
 
-  /// Prunes candidates that the step of the whole surface, (N, 3), does not bring close. Called when a new edit begins.
+  /// Removes candidates that the step of the whole surface, (N, 3), does not bring close.
   /// @throws Interrupted with nothing changed, as `find`
   void prune(const PositionsView& start, const PositionsView& end, Proximity proximity, const Execution& execution);
 
   void clear();
 
-  /// In ascending order, of what has been searched up to now.
+  /// In ascending order.
   const std::vector<Candidate>& candidates(EventKind kind, const Execution& execution);
   const std::vector<Index>& vertices(const Execution& execution);
 

@@ -26,10 +26,9 @@ struct CandidateBlock {
 void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates,
                   const VertexSteps& vertices, const Vector3& motion, double separation,
                   std::vector<Candidate>& close) {
-  // Broad phases leave out some of those whose boxes are apart, and which ones depends on where boxes were seen from:
-  // what is left does not.
+  // A broad phase may skip pairs whose boxes are apart, depending on its frame. The result must not depend on it.
   const double farthest_boxes = 1.1 * separation;
-  // With less room for rounding than a source has, so that none can have left out what is close.
+  // A tighter bound of rounding than any source uses, so that no source can have skipped a close pair.
   const NearbySteps same_step{motion, separation, 0, 0x1p-44};
   CandidateBlock all, near;
   PairFlags apart;

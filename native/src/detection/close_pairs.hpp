@@ -8,9 +8,9 @@
 
 namespace stiv {
 
-/// Appends the candidates that a step, or one that leads each vertex only a part of its way, may bring within the
-/// separation: where responses push back, those are the pairs that meet next. Ways are those less `motion`, the step's
-/// common one. Of what any broad phase hands out for the step, always the same.
+/// Appends the candidates that may come within the separation in a step, or in a step with a fraction of each vertex's
+/// displacement. Responses push back along the step, so these pairs meet next. Displacements are relative to `motion`,
+/// the common motion. The result is the same for the candidates of any broad phase. (mathematics.md, "The loop")
 void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates,
                   const VertexSteps& vertices, const Vector3& motion, double separation, std::vector<Candidate>& close);
 

@@ -33,7 +33,7 @@ struct EventOrder {
   bool operator<(const EventOrder& other) const { return key < other.key; }
 };
 
-/// The chunks of both kinds of candidates, numbered one after the other.
+/// The chunks of both kinds of candidates, numbered consecutively.
 struct ChunkRange {
   Index faces;  ///< chunks of vertex-face candidates
   Index all;
@@ -58,7 +58,8 @@ constexpr auto append_event = [](const PairTest& test, EventKind kind) {
 void check_proximity(const Proximity& proximity) {
   if (!(proximity.separation >= 0) || !std::isfinite(proximity.separation))
     throw InputError("separation must be finite and not negative, not " + std::to_string(proximity.separation));
-  if (!(proximity.min_clearance_ratio > 0 && proximity.min_clearance_ratio < 1))
+  if (proximity.min_clearance_ratio <= 0 || proximity.min_clearance_ratio >= 1 ||
+      std::isnan(proximity.min_clearance_ratio))
     throw InputError("min_clearance_ratio must lie between 0 and 1, not " +
                      std::to_string(proximity.min_clearance_ratio));
 }

@@ -30,8 +30,8 @@ class PairSearch {
   std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);
   std::optional<double> earliest_time(const Step& step, PairLimit limit, Execution& execution);
 
-  /// The pairs that the step of the last complete search within the limit may bring close (see append_close); none if
-  /// they were taken before.
+  /// Moves out the pairs that the step of the last complete search may bring close (see append_close); none if they
+  /// were taken before.
   ClosePairs take_close_pairs(const Execution& execution);
   bool has_close_pairs() const { return last_.has_value(); }
   void drop_close_pairs() { last_.reset(); }
@@ -44,13 +44,13 @@ class PairSearch {
   const Surface& surface() const { return *surface_; }
 
  private:
-  /// What one chunk found.
+  /// Result of one chunk.
   struct ChunkResult {
     Events events;
     std::int64_t candidates = 0;
     std::int64_t tested = 0;
   };
-  /// What close pairs of a search depend on besides its candidates.
+  /// Parameters of a complete search, from which its close pairs are computed.
   struct WholeSearch {
     Vector3 motion;
     double separation = 0;

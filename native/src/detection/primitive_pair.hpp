@@ -20,7 +20,7 @@ inline std::uint64_t pair_key(Index first, Index second) {
   return static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint64_t>(second);
 }
 
-/// The results of chunks, one after the other, in no more memory than needed.
+/// The results of all chunks in order, in exactly the memory that they need.
 template <class Item>
 std::vector<Item> concatenate(std::span<const std::vector<Item>> chunks) {
   std::size_t count = 0;
@@ -31,7 +31,7 @@ std::vector<Item> concatenate(std::span<const std::vector<Item>> chunks) {
   return all;
 }
 
-/// Finds the primitives that have a vertex.
+/// Finds the primitives at a vertex.
 class VertexIncidence {
  public:
   /// @param primitives (count, size) vertices of edges (size 2) or triangles (size 3)
@@ -46,7 +46,7 @@ class VertexIncidence {
           static_cast<Index>(k / static_cast<std::size_t>(size));
   }
 
-  /// Primitives that have any of the vertices, some more than once; valid until the next call.
+  /// Primitives with any of the vertices, some of them repeatedly; valid until the next call.
   std::span<const Index> primitives_with(std::span<const Index> vertices) {
     found_.clear();
     for (const Index vertex : vertices) {

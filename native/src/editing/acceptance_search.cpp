@@ -7,7 +7,7 @@ namespace stiv {
 
 namespace {
 
-constexpr int max_attempts = 24;  // 2^-24 of a step is the precision of what is stored
+constexpr int max_attempts = 24;  // 2^-24 of a step is the precision of float32
 constexpr double before_contact = 0.9;
 
 State state_at_fraction(const EditCall& call, const State& candidate, double fraction) {

@@ -38,8 +38,8 @@ class CollisionQueries {
   /// Earliest time of any event with the proximity of accepted states; nothing if the step exceeds the pair limit.
   std::optional<double> earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                       Execution& execution);
-  /// The exact static test of a surface, given that `from` passes it. Excluded pairs may intersect, but no more of them
-  /// than in `from`, and no deeper than at the start. (mathematics.md, "Excluded pairs")
+  /// The exact static test of a surface, given that `from` passes it. Excluded pairs may intersect, but not more of
+  /// them than in `from`, and no deeper than at the start. (mathematics.md, "Excluded pairs")
   bool is_intersection_free(const Positions& from, const Positions& to, Execution& execution);
   /// Is a step free of intersections, whatever its clearance, given that its start is? For sessions without excluded
   /// pairs.

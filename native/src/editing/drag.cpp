@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "editing/control_interpolation.hpp"
 #include "editing/sub_edit_loop.hpp"
@@ -32,12 +33,14 @@ void pull(EditCall& call, const Aim& aim, double distance) {
 
 }  // namespace
 
-double farthest_way(const Positions& from, const Positions& to) { return (to - from).rowwise().norm().maxCoeff(); }
+double longest_displacement(const Positions& from, const Positions& to) {
+  return (to - from).rowwise().norm().maxCoeff();
+}
 
 // A stride that took several calls is halved for the next one, any other is doubled.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   for (bool arrives = false; !arrives;) {
-    const double way = farthest_way(drag.followed.surface, aim.surface);
+    const double way = longest_displacement(drag.followed.surface, aim.surface);
     arrives = way <= drag.stride || !call.execution.has_time_budget();
     State next{aim.controls, aim.surface};
     if (!arrives) {
@@ -55,7 +58,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
       drag.stride_took_several_calls = true;
       throw;
     }
-    drag.followed = next;
+    drag.followed = std::move(next);
     drag.stride = drag.stride_took_several_calls
                       ? std::max(std::min(drag.stride, way) / 2, shortest_stride * call.context.pull_distance())
                       : 2 * drag.stride;
@@ -64,7 +67,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
 }
 
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim) {
-  const double increment = farthest_way(drag.followed.surface, aim.surface);
+  const double increment = longest_displacement(drag.followed.surface, aim.surface);
   const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
   return {.distance = context.pull_distance(), .pulls = static_cast<int>(pulls)};
 }

@@ -13,7 +13,7 @@ namespace stiv {
 /// The increments of a drag so far.
 struct DragProgress {
   State followed;  ///< the goal whose increments were applied: the last one, unless the time budget ended its call
-  /// Farthest that a vertex moves in an increment of a call with a time budget. It adapts, so that each call accepts
+  /// Furthest that a vertex moves in an increment of a call with a time budget. It adapts, so that each call accepts
   /// something.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_several_calls = false;
@@ -23,9 +23,10 @@ struct DragProgress {
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag);
 
 struct PullLimits {
-  double distance = std::numeric_limits<double>::infinity();       ///< farthest that a pull moves a vertex of the goal
-  int pulls = 12;                                                  ///< at most so many
-  std::int64_t rounds = std::numeric_limits<std::int64_t>::max();  ///< none begins after so many rounds of the call
+  double distance = std::numeric_limits<double>::infinity();  ///< furthest that a pull moves a vertex of the goal
+  int pulls = 12;                                             ///< the most pulls
+  std::int64_t rounds =
+      std::numeric_limits<std::int64_t>::max();  ///< no pull begins after this many rounds of the call
 };
 
 /// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
@@ -36,7 +37,7 @@ PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& d
 /// what lowers the energy.
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits);
 
-/// The longest way of a vertex between two surfaces.
-double farthest_way(const Positions& from, const Positions& to);
+/// The longest displacement of a vertex between two surfaces.
+double longest_displacement(const Positions& from, const Positions& to);
 
 }  // namespace stiv

@@ -42,8 +42,8 @@ struct EditReport {
   std::vector<Controls> path;  ///< accepted controls, in order
 };
 
-/// What one call of a session works on. `accepted` changes at each acceptance and only then, so it is valid even when
-/// Interrupted is thrown.
+/// The inputs and outputs of one call of a session. `accepted` changes at each acceptance and only then, so it is valid
+/// even when Interrupted is thrown.
 struct EditCall {
   const EditContext& context;
   CollisionQueries& queries;

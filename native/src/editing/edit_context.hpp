@@ -45,7 +45,7 @@ class EditContext {
   const Proximity& round_proximity() const { return round_proximity_; }
   /// The least separation that survives storing.
   double least_separation() const { return least_separation_; }
-  /// Farthest that a pull may move a vertex of the goal; 0: no pulls.
+  /// Furthest that a pull may move a vertex of the goal; 0: no pulls.
   double pull_distance() const { return options_.pull_limit * diagonal_; }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
@@ -66,7 +66,7 @@ class EditContext {
   std::vector<Index> rotation_rows_;
   std::unique_ptr<Metric> metric_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
-  double diagonal_ = 0;  ///< of what may move
+  double diagonal_ = 0;  ///< of the moving vertices
   double least_separation_ = 0;
   std::optional<BodySeparations> body_separations_;
   Positions reference_;  ///< the start, centred

@@ -12,7 +12,7 @@ namespace stiv {
 
 namespace {
 
-constexpr double automatic_fraction = 1e-4;  // of the diagonal; costs about 1 % of E (experiments.md, "Volumes")
+constexpr double automatic_fraction = 1e-4;  // of the diagonal; see experiments.md, "Volumes"
 constexpr double least_units = 4;            // units in the last place
 constexpr double double_noise = 1e-14;       // error of the distance computations, relative to coordinates
 

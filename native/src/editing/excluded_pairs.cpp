@@ -16,7 +16,7 @@ IndexPairs checked(const IndexPairs& pairs, Index triangle_count) {
   IndexPairs ordered;
   for (const auto& [a, b] : pairs) {
     if (std::min(a, b) < 0 || std::max(a, b) >= triangle_count || a == b)
-      throw InputError("exclude: (" + std::to_string(a) + ", " + std::to_string(b) + ") is no pair of the " +
+      throw InputError("exclude: (" + std::to_string(a) + ", " + std::to_string(b) + ") is not a pair of the " +
                        std::to_string(triangle_count) + " triangles");
     ordered.emplace_back(std::min(a, b), std::max(a, b));
   }
@@ -35,7 +35,8 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
   for (Index triangle = 0; triangle < static_cast<Index>(triangles.rows()); ++triangle)
     for (int corner = 0; corner < 3; ++corner) {
       std::vector<Index>& around = around_[triangles(triangle, corner)];
-      if (around.empty() || around.back() != triangle) around.push_back(triangle);  // once, however degenerate
+      if (around.empty() || around.back() != triangle)
+        around.push_back(triangle);  // once, also if the triangle is degenerate
     }
 }
 

@@ -10,20 +10,20 @@
 
 namespace stiv {
 
-/// Pairs of triangles that may intersect. An event belongs to all pairs of a triangle at its first side and one at its
-/// second; it is passed over only if each of them is excluded, so that all other pairs stay guarded: where a vertex
-/// pierces a face, it may go back through only if no triangle around it would be left behind, intersecting anew.
+/// Pairs of triangles that may intersect. An event belongs to every pair of a triangle at its first side and one at its
+/// second. It is ignored only if each of these pairs is excluded, so that all other pairs stay guarded.
+/// (mathematics.md, "Excluded pairs")
 class ExcludedPairs {
  public:
-  /// @throws InputError: a triangle that there is not, or a pair of one with itself
+  /// @throws InputError: a triangle out of range, or a triangle with itself
   ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs);
 
   bool empty() const { return pairs_.empty(); }
 
-  /// Without the events that belong to excluded pairs alone.
+  /// Removes the events that belong to excluded pairs alone.
   void remove_from(Events& events) const;
 
-  /// Intersecting pairs, sorted and smaller index first, that are not excluded.
+  /// The pairs, sorted and with the smaller index first, that are not excluded.
   IndexPairs others(const IndexPairs& pairs) const;
 
  private:

@@ -15,7 +15,7 @@ constexpr int rounds_with_patches = 2;
 constexpr std::size_t max_coupled_constraints = 512;
 
 /// Where the metric does not couple controls, constraints touch few of them, so thousands can be solved together and
-/// do not stiffen what lies between them. Each contact is a constraint from the first round on.
+/// do not stiffen the controls between them. Each contact is a constraint from the first round on.
 constexpr std::size_t max_local_constraints = 8192;
 
 bool may_constrain_each_contact(const EditContext& context, int round) {

@@ -50,7 +50,7 @@ class EditSession::Implementation {
   EditResult edit(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
-      const bool is_mouse_move = farthest_way(accepted_.surface, aim.surface) <= context_.pull_distance();
+      const bool is_mouse_move = longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
       run_sub_edits_by_rotation_steps(call, aim);
       if (!call.report.blocked && !is_mouse_move) refine(call, aim);
     });
@@ -177,9 +177,9 @@ class EditSession::Implementation {
 };
 
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                         Controls controls, EditOptions options)
-    : implementation_(std::make_unique<Implementation>(std::move(surface), std::move(deformation), std::move(controls),
-                                                       std::move(options))) {}
+                         const Controls& controls, EditOptions options)
+    : implementation_(
+          std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls, std::move(options))) {}
 EditSession::~EditSession() = default;
 EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
@@ -199,7 +199,7 @@ bool EditSession::is_step_free(const PositionsView& start, const PositionsView& 
 
 const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
 const Positions& EditSession::surface() const { return implementation_->accepted().surface; }
-std::optional<NearestTriangles> EditSession::least_distance(bool within) const {
+std::optional<NearestTriangles> EditSession::least_distance(bool within) {
   return implementation_->least_distance(within);
 }
 double EditSession::separation() const { return implementation_->context().options().separation; }

@@ -33,7 +33,7 @@ Vector3 along_weight_axes(const EditOptions& options, Index control, const Vecto
   return (along.array().abs() > rounding * displacement.norm()).select(along, 0);
 }
 
-/// Does the goal move controls along pinned axes? What they hit must move aside, which may raise the energy.
+/// Does the goal move controls along pinned axes? The obstacles they hit must move aside, which may raise the energy.
 bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to) {
   if (options.weights.size() == 0) return false;
   const Index values = static_cast<Index>(options.weights.size() / from.rows());

@@ -65,12 +65,12 @@ void check_options(const EditOptions& options, Index control_count) {
 
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control) {
   const std::vector<Index> support = deformation.support(control);
-  const std::string name = "control " + std::to_string(control);
+  std::string name = "control " + std::to_string(control);
   if (support.empty()) return name;
   return "object \"" + surface.bodies()[surface.body_of(support.front())].name + "\", " + name;
 }
 
-std::string describe(const Surface& surface, const StartIntersections& found) {
+std::string describe(const Surface& surface, const StaticPairs& found) {
   std::ostringstream message;
   message << "the start already intersects: " << found.faces.size() << " pairs of faces, "
           << found.loose_edges.size() + found.loose_vertices.size() << " of a loose edge or vertex and a face";

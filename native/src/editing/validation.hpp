@@ -14,12 +14,10 @@ namespace stiv {
 void check_fit(const Surface& surface, const Deformation& deformation);
 void check_options(const EditOptions& options, Index control_count);
 
-/// "object "X", control 7": the object is the first that the control moves.
+/// "object "X", control 7": of the first vertex that the control moves.
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control);
 
-using StartIntersections = StaticPairs;
-
-/// What to say when the start intersects: how often, the first pairs by object and face, and the ways out.
-std::string describe(const Surface& surface, const StartIntersections& found);
+/// The message for a start that intersects: the number of pairs, the first ones by object and face, and the ways out.
+std::string describe(const Surface& surface, const StaticPairs& found);
 
 }  // namespace stiv

@@ -10,7 +10,7 @@
 
 namespace stiv {
 
-CagedSurface without_cage(std::shared_ptr<const Surface> surface) {
+CagedSurface without_cage(const std::shared_ptr<const Surface>& surface) {
   auto identity = make_identity(surface->vertex_count());
   return {surface, std::move(identity), surface};
 }

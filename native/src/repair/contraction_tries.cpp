@@ -54,7 +54,7 @@ Contracted contract_regions(const CagedSurface& caged, const Movable& movable, c
 /// Components apart from each other by shrinking, then what intersects within them.
 Contracted shrink_then_contract(const CagedSurface& caged, const Movable& movable, const ContractionOptions& options,
                                 const Controls& start, Execution& execution) {
-  const Contracted apart = shrink_components(caged, movable, options, start, execution);
+  Contracted apart = shrink_components(caged, movable, options, start, execution);
   if (apart.pairs == 0 || apart.positions == start) return apart;
   Contracted whole = contract_regions(caged, movable, options, apart.positions, execution);
   whole.steps += apart.steps;

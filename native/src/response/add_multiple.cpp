@@ -7,15 +7,13 @@
 #define HWY_TARGET_INCLUDE "response/add_multiple.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 void add_multiple(double* y, double factor, const double* x, std::size_t count) {
-  const hn::CappedTag<double, 8> d;
+  const Doubles d;
   const std::size_t lanes = hn::Lanes(d);
   const auto f = hn::Set(d, factor);
   std::size_t k = 0;

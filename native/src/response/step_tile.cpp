@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "response/step_tile.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 #ifndef STIV_STEP_TILE_TYPES
 #define STIV_STEP_TILE_TYPES
@@ -28,11 +28,6 @@ struct TileProduct {
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
 
 /// Four vectors of products stay in registers while the entries go by.
 HWY_INLINE void multiply_lanes(const TileProduct& p, std::size_t lane) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// No "#pragma once": Highway's header takes part once for each target, and guards itself.
+// No "#pragma once": Highway's header is included once for each target, and has its own guards.
 #include "hwy/highway.h"
 
 #ifndef STIV_VECTOR_DISPATCH_HPP

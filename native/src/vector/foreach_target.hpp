@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Compiles the including file once for each of the targets of stiv/vector_target.hpp, with Highway's headers; nothing
-// of its library is used, so that the module needs none. A file with vector code looks like this:
+// Compiles the including file once for each of the targets of stiv/vector_target.hpp, with Highway's headers; its
+// library is not linked. A file with vector code looks like this:
 //
 //   #undef HWY_TARGET_INCLUDE
 //   #define HWY_TARGET_INCLUDE "folder/this_file.cpp"
@@ -21,11 +21,11 @@
 // Targets between those that are listed there, above them (lower bits), and those with vectors of a length unknown at
 // compile time.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | (HWY_AVX3 - 1) | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
-// What is not used need not be there; fused operations must not be.
+// Instructions that are not used need not be available; fused operations must not be used.
 #define HWY_DISABLE_PCLMUL_AES
 #define HWY_DISABLE_BMI2_FMA
 #define HWY_DISABLE_F16C
-// On arm64 NEON is all that is used and always there. Choosing it when running would add instructions that some
+// On arm64 only NEON is used, which is always available. Choosing it at run time would add instructions that some
 // processors lack (AES), and GCC does not let a struct of vectors have a constructor then.
 #if defined(__aarch64__) && !defined(TOOLCHAIN_MISS_SYS_AUXV_H)
 #define TOOLCHAIN_MISS_SYS_AUXV_H

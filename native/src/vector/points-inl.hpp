@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points in space, one a lane. Included once for each target; see vector/foreach_target.hpp.
+// Points in space, one in each lane. Included once for each target; see vector/foreach_target.hpp.
 #if defined(STIV_VECTOR_POINTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef STIV_VECTOR_POINTS_INL
 #undef STIV_VECTOR_POINTS_INL
@@ -8,16 +8,10 @@
 #define STIV_VECTOR_POINTS_INL
 #endif
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Doubles = hn::ScalableTag<double>;
-using Lanes = hn::Vec<Doubles>;  ///< a double a lane
-using Mask = hn::Mask<Doubles>;  ///< true or false a lane
 
 HWY_INLINE Lanes all(double value) { return hn::Set(Doubles(), value); }
 
@@ -42,13 +36,12 @@ HWY_INLINE Lanes sum_norm(Point a) { return hn::Add(hn::Add(hn::Abs(a.x), hn::Ab
 HWY_INLINE Lanes min3(Lanes a, Lanes b, Lanes c) { return hn::Min(hn::Min(a, b), c); }
 HWY_INLINE Lanes max3(Lanes a, Lanes b, Lanes c) { return hn::Max(hn::Max(a, b), c); }
 
-/// What each of as many rows as there are lanes begins with: four doubles x, y, z and one not looked at, and after
-/// these another four.
+/// The first eight doubles of a row in each lane: x, y, z and padding, twice.
 struct TwoPoints {
   Point first, second;
 };
 
-// load_rows gives both, load_points the first of them; rows begin at a multiple of their size.
+// load_rows gives both, load_points the first; rows are aligned to their size.
 
 #if HWY_MAX_BYTES == 64
 // Pairs of rows are interleaved, which leaves blocks of two lanes (x x | z z | x' x' | z' z') and (y y | - | y' y' | -)

@@ -13,14 +13,14 @@
 namespace stiv {
 
 enum class BroadPhase {
-  bvh,         ///< bounding-volume hierarchies, kept and refitted
-  hash_grid,   ///< cells of equal size, found by hashing; made anew at each step
+  bvh,         ///< bounding-volume hierarchies, refitted from step to step
+  hash_grid,   ///< uniform grid of hashed cells, built for each step
   brute_force  ///< all pairs: the oracle of the others
 };
 
 enum class NarrowPhase {
-  conservative,  ///< advancement by separating planes: never late, never missed
-  polynomial     ///< roots of cubics or of degree-six polynomials, 1/100 early, as the paper has it: misses some
+  conservative,  ///< advancement by separating planes: no contact is missed or late
+  polynomial     ///< roots of polynomials, 1/100 early, as published: misses some contacts
 };
 
 class CandidateCache;
@@ -31,10 +31,10 @@ struct DetectorOptions {
   NarrowPhase narrow_phase = NarrowPhase::conservative;
 };
 
-/// Finds interference along linear steps of one surface; keeps its trees between calls. [P4.1]
-/// Pairs that share a vertex, pairs of bodies that do not meet and pairs of which no vertex moves are left out.
-/// Results do not depend on the number of threads, and not on the broad phase: a narrow phase reports no pair whose
-/// bounds, padded by a little more than half of the separation, stay apart. (swept_vertices.cpp)
+/// Finds interference along linear steps of one surface, with trees that are cached between calls. [P4.1]
+/// Skips pairs that share a vertex, pairs of bodies that are not tested, and pairs without a moving vertex.
+/// Results depend neither on the number of threads nor on the broad phase: no narrow phase reports a pair whose bounds,
+/// padded by a little more than half of the separation, stay apart. (swept_vertices.cpp)
 class Detector {
  public:
   Detector(std::shared_ptr<const Surface> surface, DetectorOptions options = {});
@@ -45,13 +45,13 @@ class Detector {
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
   Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
-  /// The same, or nothing if the step brings more pairs near each other than bounded time and memory allow: then search
-  /// a shorter step. The answer depends on the step alone. Only trees have a limit; where too many primitives lie in
-  /// one place at the start, they refuse any step.
+  /// The same, or nothing if the step has more close pairs than bounded time and memory allow: then search a shorter
+  /// step. The answer depends on the step alone. Only `BroadPhase::bvh` has a limit. If too many primitives overlap at
+  /// the start, every step exceeds it.
   std::optional<Events> find_within_pair_limit(const PositionsView& start, const PositionsView& end,
                                                Proximity proximity, Execution& execution);
 
-  /// The earliest time over all events, `never` when there is none. Cheaper than `find`: later pairs are cut short.
+  /// The earliest time of any event, `never` if there is none. Cheaper than `find`, which examines later pairs too.
   double earliest_time(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
   std::optional<double> earliest_time_within_pair_limit(const PositionsView& start, const PositionsView& end,

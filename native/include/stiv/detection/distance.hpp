@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// Nearest points of two primitives: signed weights as in Event, and the separation vector sum_k w_k x_k.
+/// Closest points of two primitives: signed weights as in Event, and the separation vector sum_k w_k x_k.
 template <class Scalar>
 struct WitnessOf {
   std::array<Scalar, 4> weights{};
@@ -16,16 +16,16 @@ struct WitnessOf {
 };
 using Witness = WitnessOf<double>;
 
-/// Points in space in numbers of some kind: double, or what the narrow phase turns to where doubles cannot tell.
+/// Four points in doubles, or in double-doubles where the narrow phase needs more precision.
 template <class Scalar>
 using Quadruple = std::array<Eigen::Matrix<Scalar, 3, 1>, 4>;
 
-/// Nearest points of point x0 and triangle (x1, x2, x3), clamped; degenerate triangles are segments or points.
+/// Closest points of point x0 and triangle (x1, x2, x3), clamped; degenerate triangles are segments or points.
 /// Source: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
 template <class Scalar>
 WitnessOf<Scalar> point_triangle(const Quadruple<Scalar>& x);
 
-/// Nearest points of segments (x0, x1) and (x2, x3), clamped; parallel and zero-length segments included.
+/// Closest points of segments (x0, x1) and (x2, x3), clamped; parallel and zero-length segments included.
 template <class Scalar>
 WitnessOf<Scalar> segment_segment(const Quadruple<Scalar>& x);
 

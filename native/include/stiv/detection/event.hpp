@@ -15,7 +15,7 @@ enum class EventKind : std::uint8_t {
   edge_edge     ///< vertices: a0, a1 of one edge, b0, b1 of the other
 };
 
-/// Two primitives that come as near as the separation at `time` in [0, 1] of a step. [P3.1; mathematics.md,
+/// Two primitives that reach the separation at `time` in [0, 1] of a step. [P3.1; mathematics.md,
 /// "Continuous detection"]
 /// With the weights w: sum_k w_k = 0 and sum_k w_k x_k(time) is the separation vector, from second to first side.
 struct Event {
@@ -23,8 +23,8 @@ struct Event {
   std::array<Index, 4> vertices{};
   double time = 0;
   std::array<double, 4> weights{};   ///< VF (1, -a, -b, -c); EE (1-s, s, -(1-u), -u)
-  Vector3 normal = Vector3::Zero();  ///< unit; normal . (relative displacement) <= 0; zero when none can be told
-  double start_distance = 0;         ///< distance of the two primitives at the start of the step
+  Vector3 normal = Vector3::Zero();  ///< unit; normal . (relative displacement) <= 0; zero if it is undetermined
+  double start_distance = 0;         ///< at the start of the step
   PairClearance clearance;           ///< of the pair
 };
 

@@ -16,7 +16,7 @@ struct PairMotion {
   std::optional<std::array<Vector3, 4>> reference = std::nullopt;  ///< as Proximity::reference; none: the start
 };
 
-/// What is known of a contact besides who meets.
+/// A contact of a known pair.
 struct Contact {
   double time = 0;
   std::array<double, 4> weights{};
@@ -26,19 +26,19 @@ struct Contact {
 };
 
 /// The first time at which the pair is within `proximity.clearance(d).threshold`, d its distance at the reference, or
-/// nothing if it never is. A pair that starts nearer than that comes no nearer. Conservative: a contact is never missed
-/// and the time is never later than the true one; a report is at most 10 % of the threshold too wide. Distances are
-/// those of the clamped primitives (edges and vertices of a triangle included).
+/// nothing if it never is. A pair that starts nearer than that may come no nearer. Conservative: no contact is missed,
+/// and no time is later than the true one. The distance at a report exceeds the threshold by at most 10 %. Distances
+/// are those of the clamped primitives (edges and vertices of a triangle included).
 ///
-/// A pair that touches at the start is a contact at 0 unless a plane shows that it parts or slides. A pair that moves
-/// as a whole (no displacement relative to its first vertex) is never a contact.
-/// @param latest contacts after this time are not looked for; those up to it come out the same for any value.
+/// A pair that touches at the start is a contact at 0 unless a plane shows that it separates or slides. A pair that
+/// moves as a whole (no displacement relative to its first vertex) is never a contact.
+/// @param latest the search ends at this time; contacts up to it do not depend on it
 std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, Proximity proximity, double latest = 1);
 
-/// The same as the paper has it, for comparison [P4.1, P5.2]: not conservative. Roots in time of the polynomial that is
-/// zero where vertex and plane (or the lines of both edges) are at the threshold's distance, of degree six, or three
-/// without a separation [Provot 1997]; the first at which the primitives themselves are that near. The time is 1/100
-/// early. Contacts on edges and corners at a distance, and within a common plane, are missed or late.
+/// The same as published, for comparison [P4.1, P5.2]: not conservative. The roots in time are those of a polynomial
+/// that is zero where vertex and plane (or the lines of both edges) are at the threshold. It has degree six, or three
+/// without a separation [Provot 1997]. The contact is the first root at which the primitives themselves are that near.
+/// The time is 1/100 early. Contacts on edges and corners at a distance, and within a common plane, are missed or late.
 std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMotion& motion, Proximity proximity,
                                                    double latest = 1);
 

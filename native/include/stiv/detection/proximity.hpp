@@ -52,7 +52,7 @@ struct Proximity {
   }
 
   /// The clearance of a pair at this distance at the reference: h, or a fraction of that distance if it is nearer. It
-  /// is pushed no farther than it was, so that no pair jumps.
+  /// is not pushed beyond that distance, so that no pair jumps.
   PairClearance clearance(double reference_distance) const {
     if (is_apart(reference_distance)) return {separation, separation / 2};
     return {min_clearance_ratio * reference_distance, (1 - min_clearance_ratio) * reference_distance};

@@ -10,23 +10,22 @@
 
 namespace stiv {
 
-/// What the volumes of a response measure.
+/// How interference volumes are defined.
 enum class VolumeKind {
-  relative,   ///< how far two sides approach each other, to a distance (stiv.hpp)
-  published,  ///< how far each side moves by itself, as in the paper (published.hpp); no distance unless one is asked
-              ///< for
+  relative,         ///< by the approach of both sides, up to the clearance (stiv.hpp)
+  published,        ///< by each side's own motion, as in the paper (published.hpp); without a separation by default
   published_frozen  ///< the same with PublishedGradient::frozen
 };
 
-/// The separation of two bodies, or of a body from itself, where it is not that of the scene.
+/// The separation of two bodies, or of a body from itself, instead of that of the scene.
 struct BodyPairSeparation {
   Index first = 0, second = 0;
   double separation = 0;
 };
 
-/// How an edit is solved. Every default is the one recommended.
+/// How an edit is solved. The defaults are recommended.
 struct EditOptions {
-  double separation = 0;  ///< h that surfaces keep, world units; 0: 1e-4 of the diagonal of what may move
+  double separation = 0;  ///< h, the minimum distance, world units; 0: 1e-4 of the diagonal of the moving vertices
   std::vector<BodyPairSeparation> pair_separations;  ///< of bodies, instead of h
   /// In (0, 1). A pair of primitives nearer than h at the start of the session keeps this fraction of its distance,
   /// within a body and between bodies. Within a body, this bounds the compression of a mesh finer than h.
@@ -35,25 +34,24 @@ struct EditOptions {
   /// Response of each control, (m), or of each of its coordinates, (3 m): 0 pins. Empty: all 1. As in MetricOptions.
   Eigen::VectorXd weights;
   std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
-  /// Pairs of triangles that may intersect, at the start and later: their number that does never grows from one
-  /// accepted state to the next, and no other pair ever intersects. What belongs to such pairs alone is not detected.
-  /// Two closed bodies never have more volume in common than at the start of the session, and of an open body no more
-  /// area, counted as it was at the start, is inside of a closed one.
+  /// Pairs of triangles that may intersect. No other pair ever does, and the number of these that do never grows.
+  /// Events that belong to such pairs alone are ignored. The common volume of two closed bodies, and the area of an
+  /// open body inside a closed one, never exceed those of the start. (mathematics.md, "Excluded pairs")
   IndexPairs excluded;
   ConstraintKind constraints = ConstraintKind::per_patch;
-  ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear keeps no constraints from round to round
+  ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear does not accumulate constraints
   MetricKind metric = MetricKind::energy;
   VolumeKind volumes = VolumeKind::relative;
   NarrowPhase narrow_phase = NarrowPhase::conservative;  ///< of the rounds; acceptance is always conservative and exact
   BroadPhase broad_phase = BroadPhase::bvh;
   int max_sub_edits = 6;
-  int max_rounds = 60;                ///< a sub-edit
-  int accumulated_rounds = 12;        ///< rounds that keep the constraints of the rounds before
-  double pull_limit = 0.04;           ///< a drag's pull toward its goal, in diagonals of what may move; 0: none
-  bool single_precision = true;       ///< controls are stored as float32; false: as they are
-  std::vector<StorageFrame> storage;  ///< frames of stored controls; empty with single_precision: world frame for all
-  double time_budget = 0;             ///< seconds an edit, but not less than one round; 0: none
-  int threads = 0;                    ///< 0: all
+  int max_rounds = 60;          ///< in a sub-edit
+  int accumulated_rounds = 12;  ///< rounds that accumulate constraints
+  double pull_limit = 0.04;  ///< longest pull of a drag toward its goal, in diagonals of the moving vertices; 0: none
+  bool single_precision = true;       ///< controls are stored as float32; false: as doubles
+  std::vector<StorageFrame> storage;  ///< empty with single_precision: the world frame for all
+  double time_budget = 0;             ///< seconds for each edit, at least one round; 0: no limit
+  int threads = 0;                    ///< 0: one for each processor
 };
 
 }  // namespace stiv

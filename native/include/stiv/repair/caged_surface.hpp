@@ -18,7 +18,7 @@ struct CagedSurface {
 };
 
 /// A surface whose vertices are all controls: it is its own cage.
-CagedSurface without_cage(std::shared_ptr<const Surface> surface);
+CagedSurface without_cage(const std::shared_ptr<const Surface>& surface);
 
 /// (m) of (N): nonzero for the controls that move a vertex which is marked. `supports` are those of all controls.
 std::vector<unsigned char> controls_moving(const std::vector<unsigned char>& vertices,

@@ -21,8 +21,7 @@ Vector3 across(const Positions& q, Index vertex, const Edge& edge) {
 
 }  // namespace
 
-RigidCells::RigidCells(SymmetricMatrix weights, Positions rest)
-    : weights_(std::move(weights)), rest_(std::move(rest)) {}
+RigidCells::RigidCells(const SymmetricMatrix& weights, Positions rest) : weights_(weights), rest_(std::move(rest)) {}
 
 Eigen::Matrix3d RigidCells::spread(const Positions& u, Index vertex) const {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

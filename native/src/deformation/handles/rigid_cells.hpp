@@ -13,7 +13,7 @@ namespace stiv {
 class RigidCells {
  public:
   /// @param weights of the edges, (n, n)
-  RigidCells(SymmetricMatrix weights, Positions rest);
+  RigidCells(const SymmetricMatrix& weights, Positions rest);
 
   /// The local step: the rotation of each cell from rest to positions rest + u.
   std::vector<RotationFit> fit(const Positions& u) const;

@@ -61,7 +61,7 @@ std::shared_ptr<const LinearDeformation> make_lattice(const LatticeDefinition& l
   LatticeSums sums(lattice_axes(lattice), placed.rest_vertices,
                    lattice_factors(lattice, placed.rest_vertices, placed.influence));
   const Positions offset = placed.vertices - sums.sum(placed.points, Execution(1));
-  return std::make_shared<Lattice>(make_linear(std::move(weights), offset), std::move(sums));
+  return std::make_shared<Lattice>(make_linear(weights, offset), std::move(sums));
 }
 
 }  // namespace stiv

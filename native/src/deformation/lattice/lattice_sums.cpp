@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "deformation/lattice/lattice_sums.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 #ifndef STIV_LATTICE_SUMS_TYPES
 #define STIV_LATTICE_SUMS_TYPES
@@ -31,11 +31,6 @@ struct LatticeProduct {
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
 
 constexpr std::size_t four_points = 16;  // numbers of the four that follow each other along u
 constexpr std::size_t lane_count = hn::MaxLanes(Doubles());

@@ -20,8 +20,8 @@ using Entry = WeightMatrix::InnerIterator;
 
 class Linear final : public LinearDeformation {
  public:
-  Linear(WeightMatrix matrix, Positions offset)
-      : matrix_(std::move(matrix)), columns_(matrix_), offset_(std::move(offset)) {}
+  Linear(const WeightMatrix& matrix, Positions offset)
+      : matrix_(matrix), columns_(matrix_), offset_(std::move(offset)) {}
 
   Index control_count() const override { return static_cast<Index>(matrix_.cols()); }
   Index vertex_count() const override { return static_cast<Index>(matrix_.rows()); }

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "deformation/linear/weighted_sums.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 #ifndef STIV_WEIGHTED_SUMS_TYPES
 #define STIV_WEIGHTED_SUMS_TYPES
@@ -30,8 +30,6 @@ struct WeightedSums {
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Coordinates = hn::CappedTag<double, 4>;  // all of a point, or two of them at a time
 using Some = hn::Vec<Coordinates>;

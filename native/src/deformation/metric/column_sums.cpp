@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "deformation/metric/column_sums.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "vector/dispatch.hpp"
+#include "vector/doubles-inl.hpp"
 
 #ifndef STIV_COLUMN_SUMS_TYPES
 #define STIV_COLUMN_SUMS_TYPES
@@ -32,11 +32,6 @@ constexpr std::size_t tile_rows = 32;  // four vectors of the widest target; a m
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Doubles = hn::CappedTag<double, 8>;
-using Lanes = hn::Vec<Doubles>;
 
 /// Sums of some rows along the three axes stay in registers while all columns go by.
 HWY_INLINE void add_tile(const ColumnSums& s, std::size_t row) {

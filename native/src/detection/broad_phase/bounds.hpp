@@ -25,8 +25,8 @@ inline bool overlap(const Bounds& a, const Bounds& b) {
          a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
-/// A box and whether anything in it is active, as eight numbers of which a union takes the lesser one each: the low
-/// corner, the negated high corner, -1 for active or 1 for not, and nothing.
+/// A box and whether anything in it is active, as eight numbers whose minima give the union: the low
+/// corner, the negated high corner, -1 if active or else 1, and padding.
 struct alignas(32) PackedBox {
   std::array<float, 8> values;
 
@@ -34,7 +34,7 @@ struct alignas(32) PackedBox {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     return {{infinity, infinity, infinity, infinity, infinity, infinity, 1, 0}};
   }
-  /// What lies beyond the largest number lies at it, so that no sum of a low and a negated high is undefined.
+  /// Clamps to finite numbers, so that no sum of a low and a negated high is undefined.
   static PackedBox of(const Bounds& box, bool active) {
     constexpr float least = std::numeric_limits<float>::lowest();
     PackedBox packed{{box.low[0], box.low[1], box.low[2], -box.high[0], -box.high[1], -box.high[2]}};
@@ -50,7 +50,7 @@ struct alignas(32) PackedBox {
   void include(const PackedBox& other) {
     for (std::size_t k = 0; k < 8; ++k) values[k] = other.values[k] < values[k] ? other.values[k] : values[k];
   }
-  /// Is the other one nowhere larger, and not active unless this one is?
+  /// Does it contain the other box, and is it active if the other is?
   bool contains(const PackedBox& other) const {
     bool inside = true;
     for (std::size_t k = 0; k < 7; ++k) inside &= values[k] <= other.values[k];

@@ -15,34 +15,34 @@
 
 namespace stiv {
 
-/// Which groups of primitives can form a pair that matters. Symmetric; empty: all.
+/// Which groups of primitives can form relevant pairs. Symmetric; empty: all.
 class GroupTable {
  public:
   GroupTable() = default;
   GroupTable(Index groups, std::vector<unsigned char> meets) : groups_(groups), meets_(std::move(meets)) {}
 
   bool empty() const { return meets_.empty(); }
-  bool meet(Index a, Index b) const { return empty() || meets_[static_cast<std::size_t>(a * groups_ + b)] != 0; }
+  bool meet(Index a, Index b) const { return empty() || meets_[static_cast<std::size_t>(a) * groups_ + b] != 0; }
 
  private:
   Index groups_ = 0;
   std::vector<unsigned char> meets_;  // (groups, groups)
 };
 
-/// Pairs that a traversal found, as one array a side; grows, and is used again.
+/// Pairs that a traversal found, one array for each side. Its memory is reused.
 struct PairBuffer {
   std::vector<Index> first, second;
   std::size_t count = 0;
 
-  /// From so many pairs on, `full(*this)` is called now and then: it may take them out, or raise the limit, and returns
-  /// whether to go on.
+  /// Above this number of pairs, `full(*this)` is called now and then. It may remove pairs or raise the limit, and
+  /// returns whether to continue.
   std::size_t limit = std::numeric_limits<std::size_t>::max();
   std::function<bool(PairBuffer&)> full;
 
   PrimitivePair operator[](std::size_t k) const { return {first[k], second[k]}; }
 };
 
-/// Primitives as rows of vertices, so that a traversal can leave out pairs that share one.
+/// Primitives as rows of vertices, so that a traversal can skip pairs that share one.
 struct CornerRows {
   const Index* rows = nullptr;  ///< (n, size)
   Index size = 0;               ///< 1, 2 or 3; 0: none are given
@@ -66,40 +66,41 @@ class Bvh {
 
   Index size() const { return size_; }
 
-  /// New boxes, same number and order. `active[i]` (empty: all) tells whether primitive i can be part of a pair that
-  /// matters; two subtrees without any active primitive are never compared.
+  /// New boxes, same number and order. `active[i]` (empty: all) tells whether primitive i can form a relevant
+  /// pair; two subtrees without any active primitive are never compared.
   void refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active = {});
 
   /// The same with `box_of(primitive)`, a PackedBox, on several threads.
   template <class BoxOf>
   void refit(const BoxOf& box_of, const Execution& execution);
 
-  /// The same for some primitives, each listed at least once; costs what those cost.
+  /// The same for some primitives, each listed at least once; the cost is theirs alone.
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
   /// Other corners for the same primitives.
   void set_corners(const CornerRows& corners, const Execution& execution);
 
-  /// Two subtrees to be compared, a unit of work.
+  /// Two subtrees to compare: a unit of work.
   struct Task {
-    Index level, node;              ///< of the tree asked
+    Index level, node;              ///< of this tree
     Index other_level, other_node;  ///< of the other tree
   };
 
-  /// Work for about so many turns, of the same trees always the same: together all pairs (i of this tree, j of `other`)
-  /// whose boxes overlap and of which one is active, but those of groups that do not meet and, if both trees know their
-  /// corners, those that share one. Within one tree each unordered pair comes once, and i != j.
+  /// About this many tasks, always the same ones for the same trees. Together they cover all pairs (i of this tree, j
+  /// of `other`) with overlapping boxes of which one is active. Pairs of groups that are not tested are skipped; if
+  /// both trees know their corners, so are pairs that share one. Within one tree each unordered pair comes once, and i
+  /// != j.
   std::vector<Task> tasks(const Bvh& other, const GroupTable& groups, std::size_t about = 256) const;
 
   /// Appends the pairs of one task, in an order that depends on the trees alone.
   void overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const;
 
-  /// All pairs at once. Several threads work; the pairs come out the same for any number of them.
+  /// All pairs at once; the same for any number of threads.
   static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution);
   static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& tree, const Execution& execution);
 
-  /// What a traversal reads of a tree.
+  /// A node as traversals read it.
   struct Node {
     alignas(32) float planes[7][width];  ///< PackedBox::values of eight children, absent ones empty
   };
@@ -166,8 +167,7 @@ void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
 
 template <class BoxOf>
 void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
-  // Marks of what is listed are kept nowhere: neighbours in the list mostly share a block, and to refit one twice is
-  // harmless.
+  // Neighbours in the list mostly share a block, and refitting one twice is harmless.
   touched_.clear();
   for (const Index primitive : primitives) {
     const Index block = places_[primitive] / width;

@@ -27,8 +27,8 @@ GroupTable table_of_bodies(const Surface& surface) {
   return all ? GroupTable() : GroupTable(count, std::move(meets));
 }
 
-/// Trees over vertices, edges and faces, and the pairs that they gave: built at the first step; at the others, what
-/// did not change is neither refitted nor compared again.
+/// Trees over vertices, edges and faces, built at the first step, and their pairs. Later steps neither refit nor
+/// compare what did not change.
 class BvhSource final : public CandidateSource {
  public:
   explicit BvhSource(const Surface& surface)
@@ -44,9 +44,10 @@ class BvhSource final : public CandidateSource {
 
   void update(const Step& step, const Execution& execution) override {
     separation_ = step.proximity.separation;
-    // Whatever is cancelled half way counts as not done: then everything is made anew.
+    // If this is cancelled, the next step starts from scratch.
     const bool refitted = std::exchange(refitted_, false), collected = std::exchange(collected_, false);
-    SweptVertices::Change change = swept_.update(step, execution, collected);
+    SweptVertices::Change change =
+        swept_.update(step, execution, collected ? SweptVertices::Reuse::allowed : SweptVertices::Reuse::forbidden);
     if (!refitted) change = SweptVertices::Change::all;
     if (change == SweptVertices::Change::none) {
       refitted_ = collected_ = true;
@@ -90,11 +91,11 @@ class BvhSource final : public CandidateSource {
  private:
   static constexpr std::size_t batch_size = 4096;
 
-  /// Work of one kind, and what it gave.
+  /// Tasks of one kind and their results.
   struct Pairs {
     std::vector<Bvh::Task> tasks;
     std::vector<std::vector<Candidate>> near;
-    std::vector<Index> fruitful;  ///< tasks that gave any: of a local edit, few
+    std::vector<Index> fruitful;  ///< tasks with any result; few in a local edit
   };
 
   const Pairs& of(EventKind kind) const { return pairs_[static_cast<std::size_t>(kind)]; }
@@ -105,7 +106,7 @@ class BvhSource final : public CandidateSource {
     return kind == EventKind::vertex_face ? faces_.tree() : edges_.tree();
   }
 
-  /// Traverses the trees and keeps the pairs, unless they are too many to be kept: then each visit traverses again.
+  /// Traverses the trees and caches the pairs. If they are too many to cache, each visit traverses again.
   void collect(const Execution& execution) {
     for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
       Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
@@ -141,11 +142,11 @@ class BvhSource final : public CandidateSource {
       near_ += static_cast<std::int64_t>(near.size() - before);
       return few_enough();
     });
-    // A long session brings every task its largest step once: what that took is not kept for good.
+    // In a long session every task meets its largest step once; its memory is released again.
     if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
   }
 
-  /// Calls `take(some)` with the pairs of a task, some at a time, until it returns false.
+  /// Calls `take(batch)` with the pairs of a task, batch by batch, until it returns false.
   template <class Take>
   void traverse(EventKind kind, Index task, const Take& take) const {
     PairBuffer found;
@@ -159,7 +160,7 @@ class BvhSource final : public CandidateSource {
     if (found.count > 0) take(found);
   }
 
-  /// Appends the pairs that may interfere in this step or in one nearby.
+  /// Appends the pairs that may interfere in this step or in a nearby one.
   void append_near(EventKind kind, const PairBuffer& found, std::vector<Candidate>& near) const {
     const NearbySteps steps{swept_.motion(), separation_, SweptVertices::slack};
     PairBlock block;
@@ -182,9 +183,8 @@ class BvhSource final : public CandidateSource {
           near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
   }
 
-  /// Dense scenes compare four pairs a primitive and keep three; these bounds make for a fraction of a second, and for
-  /// less memory than the trees take. Counts only grow, so whether they exceed a bound does not depend on who counts
-  /// first.
+  /// Dense scenes compare four pairs for each primitive and cache three. These bounds mean a fraction of a second, and
+  /// less memory than the trees. Counts only grow, so exceeding a bound does not depend on the order of threads.
   bool few_enough() const {
     const std::int64_t primitives = surface_.vertex_count() + surface_.edges().rows() + surface_.triangles().rows();
     return compared_ <= std::max<std::int64_t>(1 << 21, 16 * primitives) &&
@@ -202,7 +202,7 @@ class BvhSource final : public CandidateSource {
   std::array<Pairs, 2> pairs_;
   std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
   bool refitted_ = false;                            // the trees are those of the boxes
-  bool collected_ = false;                           // the pairs kept are all that matter
+  bool collected_ = false;                           // the cached pairs are complete
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ namespace stiv {
 /// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
 using Candidate = PrimitivePair;
 
-/// A broad phase: hands out candidates in chunks that threads work on side by side. Chunks and the candidates of a
-/// chunk do not depend on the number of threads. Candidates are relevant (see Relevance), and each comes once; pairs
-/// whose padded bounds stay apart (see SweptVertices) may be left out.
+/// A broad phase: gives candidates in chunks, for threads to share. Chunks and the candidates of a chunk do not depend
+/// on the number of threads. Candidates are relevant (see Relevance) and unique. Pairs whose padded bounds stay apart
+/// (see SweptVertices) may be skipped.
 class CandidateSource {
  public:
-  /// Takes some of a chunk's candidates; may overwrite them, the source does not look at them again.
+  /// Takes some candidates of a chunk, and may overwrite them.
   using Sink = std::function<void(std::span<Candidate>)>;
 
   virtual ~CandidateSource() = default;
@@ -32,8 +32,8 @@ class CandidateSource {
   virtual void update(const Step& step, const Execution& execution) = 0;
   /// The step of the last update, for vector code to load.
   virtual const VertexSteps& vertex_steps() const = 0;
-  /// Are the candidates of the step few enough for bounded time and memory? Depends on the step alone. Visits go
-  /// through all of them either way.
+  /// Are the candidates few enough for bounded time and memory? Depends on the step alone. Visits are complete either
+  /// way.
   virtual bool is_within_pair_limit() const { return true; }
   virtual Index chunk_count(EventKind kind) const = 0;
   virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;

@@ -10,7 +10,7 @@ namespace stiv {
 
 namespace {
 
-/// Collects candidates and hands them out in batches, so that memory does not grow with their number.
+/// Passes candidates on in batches, so that memory does not grow with their number.
 class Batches {
  public:
   Batches(EventKind kind, const Relevance& relevance, const CandidateSource::Sink& sink)
@@ -37,7 +37,7 @@ class Batches {
   std::vector<Candidate> batch_;
 };
 
-/// Uniform grid of cells that are found by hashing. A pair is handed out by the first cell that both boxes reach.
+/// Uniform grid of hashed cells. A pair comes from the first cell that both boxes reach.
 /// Source: Teschner, Heidelberger, Müller, Pomeranets, Gross, "Optimized Spatial Hashing for Collision Detection of
 /// Deformable Objects", VMV 2003; there for tetrahedra, with cells of the mean size of an edge.
 class HashGrid final : public CandidateSource {

@@ -8,14 +8,14 @@
 
 namespace stiv {
 
-/// A finite point, and whose it is: side by side, because splitting goes over all of them many times.
+/// A finite point and its index, adjacent in memory because splitting reads them many times.
 struct alignas(16) NumberedPoint {
   std::array<float, 3> position;
   Index number;  ///< at least 0, no two equal
 };
 
-/// Moves the `half` first along the longest axis to the front. Equal positions are told apart by number, so that which
-/// ones these are depends on the points alone. The order within both parts depends on the order before.
+/// Moves the first `half` points along the longest axis to the front. Ties are broken by number, so the split depends
+/// on the points alone. The order within both sides depends on the order before.
 void split_at_median(std::span<NumberedPoint> points, std::size_t half);
 
 }  // namespace stiv

@@ -12,8 +12,8 @@
 
 namespace stiv {
 
-/// Primitives of one kind as rows of `size` vertices, with a tree over them: built at the first step, and again once a
-/// deformation has spoiled its order.
+/// Primitives of one kind as rows of `size` vertices, with a tree over them, rebuilt when a deformation has degraded
+/// it.
 template <Index size>
 class PrimitiveTree {
  public:
@@ -36,8 +36,7 @@ class PrimitiveTree {
   const Bvh& tree() const { return *tree_; }
 
  private:
-  /// To find the primitives of fewer vertices than one in so many takes less time than to refit all, which several
-  /// threads share.
+  /// Below one changed vertex in this many, finding their primitives is faster than refitting all on several threads.
   static constexpr std::size_t few = 16;
 
   std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
@@ -45,7 +44,7 @@ class PrimitiveTree {
                                                                   static_cast<std::size_t>(size));
   }
 
-  /// Sorted by where things are at the start: a first step may take them anywhere.
+  /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start) {
     std::vector<Eigen::Vector3f> centres(count_);
     std::vector<Index> bodies(count_);
@@ -57,13 +56,12 @@ class PrimitiveTree {
       bodies[primitive] = surface_.body_of(row(primitive)[0]);
     }
     tree_.emplace(centres, bodies, CornerRows{rows_, size});
-    // Needed once few vertices move; made here all the same, so that a long session's memory does not grow by it late.
+    // Needed only when few vertices move; built here so that memory does not grow late in a session.
     if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
     spread_ = spread(start);
   }
 
-  /// How far what shares a block lies apart, in parts of the whole extent, the mean over some blocks: what a
-  /// deformation that keeps neighbours together leaves as it is.
+  /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbours stay together.
   double spread(const PositionsView& start) const {
     constexpr std::size_t stride = 8;
     const std::vector<Index>& order = tree_->order();
@@ -80,7 +78,7 @@ class PrimitiveTree {
     return sum > 0 ? sum / (blocks * whole.sizes().sum()) : 0;
   }
 
-  /// Has the surface been deformed so much since the tree was built that another one pays?
+  /// Has the surface been deformed so much that rebuilding pays?
   bool is_spoiled(const PositionsView& start) const { return spread(start) > 2 * spread_; }
 
   const Surface& surface_;

@@ -17,7 +17,7 @@ bool Relevance::relevant(EventKind kind, const std::array<Index, 4>& v) const {
          surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3])) & !surface_.in_one_recut_face(v);
 }
 
-// Places are written without branches; only the count tells which of them stay.
+// Without branches: each candidate is written, and the count decides whether it stays.
 std::span<Candidate> Relevance::select(EventKind kind, std::span<Candidate> candidates) const {
   std::size_t count = 0;
   for (const Candidate candidate : candidates) {

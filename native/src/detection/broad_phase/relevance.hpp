@@ -10,8 +10,8 @@
 
 namespace stiv {
 
-/// The vertices of a candidate in the order of Event::vertices; of two edges, the one with the lower number first.
-/// Here, because it is a few loads for each of very many candidates.
+/// The vertices of a candidate in the order of Event::vertices; of two edges, the one with the lower index first.
+/// Inline: called once per candidate.
 inline std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, const Candidate& candidate) {
   if (kind == EventKind::vertex_face) {
     const Index* const face = surface.triangles().data() + 3 * static_cast<std::ptrdiff_t>(candidate.second);
@@ -23,8 +23,8 @@ inline std::array<Index, 4> vertices_of(const Surface& surface, EventKind kind, 
   return {a[0], a[1], b[0], b[1]};
 }
 
-/// Which pairs of primitives can interfere at all during a step: those that share no vertex, of which a vertex moves,
-/// and whose bodies meet.
+/// Selects the pairs that can interfere in a step: they share no vertex, one of their vertices moves, and their bodies
+/// are tested against each other.
 class Relevance {
  public:
   Relevance(const Surface& surface, const Step& step);

@@ -35,7 +35,7 @@ float round_down(double value) {
 
 }  // namespace
 
-/// Where some vertices go.
+/// Extent of the steps of some vertices.
 struct SweptVertices::Survey {
   Vector3 low = Vector3::Constant(never), high = -low;
   bool valid = true;
@@ -63,7 +63,7 @@ std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& 
   const Index count = surface_.vertex_count();
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
-    constexpr Index run = 32;  // most vertices are as they were, and so are their neighbours
+    constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbours
     const auto same = [&](Index first, Index number) {
       return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
     };
@@ -95,7 +95,7 @@ SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& e
   return whole;
 }
 
-/// The frame there is, if it serves; with the motion of this step.
+/// The current frame if it is still suitable; with the motion of this step.
 SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& survey) const {
   Frame frame = frame_;
   frame.separation = step.proximity.separation;
@@ -165,7 +165,7 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
   });
 }
 
-/// Do the boxes hold the step, as seen from a frame with its motion? Not one with a number that is not finite.
+/// Do the boxes contain the step in a frame with its motion? False for numbers that are not finite.
 bool SweptVertices::holds(const Step& step, const Execution& execution) const {
   if (step.proximity.separation != frame_.separation) return false;
   const bool all = step.motion != frame_.motion;
@@ -178,7 +178,7 @@ bool SweptVertices::holds(const Step& step, const Execution& execution) const {
   return near;
 }
 
-/// What neither differs from its box now nor did so in the last step is there already. Holds if cancelled half way.
+/// Vertices whose step equals that of their box, now and in the last step, are up to date. Valid also if cancelled.
 void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   if (!complete_) {
     steps_.update(step.start, step.end, execution);
@@ -191,17 +191,17 @@ void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   outdated_ = changed_;
 }
 
-SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, bool may_stay) {
+SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, Reuse reuse) {
   const Index count = surface_.vertex_count();
   changed_ = changed_in(step, execution);
-  if (complete_ && may_stay && holds(step, execution)) {
+  if (complete_ && reuse == Reuse::allowed && holds(step, execution)) {
     take_steps(step, execution);
     return Change::none;
   }
   const Frame frame = frame_for(step, survey(step, execution));
   take_steps(step, execution);
   const bool all = !complete_ || frame != frame_;
-  complete_ = false;  // until all is done: it may be cancelled half way
+  complete_ = false;  // until the end: this may be cancelled
   frame_ = frame;
   if (all) {
     boxes_.resize(count);

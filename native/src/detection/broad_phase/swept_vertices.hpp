@@ -8,30 +8,31 @@
 
 namespace stiv {
 
-/// Boxes of the moving vertices, kept from step to step: only vertices whose step is another get another box, and none
-/// does as long as all of them stay within the boxes that they have. A box is active if its vertex moves.
+/// Boxes of the swept vertices, cached from step to step. Only vertices with a different step get a new box, and none
+/// does while all stay within their boxes. A box is active if its vertex moves.
 ///
-/// Boxes are padded so that pairs that come within the separation, by whatever the narrow phase may err, overlap; and
-/// by `slack` times the vertex's displacement, so that other ends of the same start stay inside: those within the slack
-/// of the segment that the vertex moves along.
+/// The padding covers the separation and the error of the narrow phase. It also covers `slack` times the vertex's
+/// displacement, so that steps from the same start stay inside if they end near the segment of the vertex.
 class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
 
+  /// Whether boxes that contain the step may stay.
+  enum class Reuse { allowed, forbidden };
+
   enum class Change {
-    none,  ///< the start is as it was, and so are all boxes; they hold the new step
-    some,  ///< those of `changed` are new
+    none,  ///< the start and all boxes are unchanged; they contain the new step
+    some,  ///< the boxes of `changed` are new
     all
   };
 
-  /// @param may_stay false: boxes that hold the step are made anew all the same
   /// @throws InputError as Surface::check_positions
-  Change update(const Step& step, const Execution& execution, bool may_stay = true);
+  Change update(const Step& step, const Execution& execution, Reuse reuse = Reuse::allowed);
 
-  /// Boxes grow by this part of the displacement of their vertex in the frame, its largest component.
-  /// Little, for what responses change of a step is far more than boxes can be padded by.
+  /// Fraction of a vertex's displacement in the frame (its largest component) by which its box is padded. Small,
+  /// because responses change a step by far more than padding can cover.
   static constexpr double slack = 1.0 / 1024;
-  /// The displacement of the frame that boxes are seen from.
+  /// The displacement of the frame of the boxes.
   const Vector3& motion() const { return frame_.motion; }
 
   /// The step of the last update.
@@ -48,11 +49,11 @@ class SweptVertices {
   }
 
  private:
-  /// Where boxes are seen from. It stays the same from step to step where it can, so that boxes stay the same.
+  /// The frame of the boxes. It changes as rarely as possible, so that boxes stay valid.
   struct Frame {
     Vector3 centre = Vector3::Zero();
     Vector3 motion = Vector3::Zero();  ///< displacement in a step, see common_motion
-    double radius = -1;                ///< no coordinate is farther from the centre, at the start or at the end
+    double radius = -1;                ///< bound of the coordinates relative to the centre, at the start and at the end
     double separation = 0;
 
     bool operator==(const Frame&) const = default;
@@ -71,12 +72,12 @@ class SweptVertices {
 
   const Surface& surface_;
   Frame frame_;
-  Positions start_, end_;  // for which each box was made
+  Positions start_, end_;  // of the step for which each box was computed
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
   VertexSteps steps_;
   std::vector<Index> outdated_;  // vertices whose step in `steps_` may differ from that of their box
-  bool complete_ = false;        // there is a box for each vertex, all seen from the frame
+  bool complete_ = false;        // each vertex has a box in this frame
 };
 
 }  // namespace stiv

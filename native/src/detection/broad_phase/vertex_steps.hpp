@@ -8,22 +8,22 @@
 
 namespace stiv {
 
-/// Where a vertex starts and ends, in one line of the cache.
+/// Start and end of a vertex, in one cache line.
 struct alignas(64) VertexStep {
   double start[4];  ///< x, y, z, 0
   double end[4];
 };
 
-/// The step of all vertices, made for vector code to load. Keeps its memory from step to step.
+/// The step of all vertices, laid out for vector code. Memory is reused from step to step.
 class VertexSteps {
  public:
-  /// Takes all of a step. Rows of `start` and `end` are positions, (N, 3).
+  /// Sets the step of all vertices. Rows of `start` and `end` are positions, (N, 3).
   void update(const PositionsView& start, const PositionsView& end, const Execution& execution);
-  /// Takes what it is for some vertices.
+  /// Updates some vertices.
   void update(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
               const Execution& execution);
 
-  /// Takes a step of which only the rows of some vertices are given, (k, 3) each; the others stay what they were.
+  /// Updates some vertices from their rows, (k, 3) each.
   void update_rows(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
                    Index vertex_count);
 

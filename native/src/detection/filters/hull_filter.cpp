@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// A pair a lane, seen from where its first vertex starts.
+/// One pair in each lane, relative to the start of its first vertex.
 struct PairHulls {
   Point start[4], end[4];
 };
@@ -30,7 +30,7 @@ HWY_INLINE PairHulls load_hulls(const PairBlock& pairs, std::size_t first, const
   return hulls;
 }
 
-/// What a vertex may reach along a direction.
+/// The range of a vertex along a direction.
 struct Span {
   Lanes low, high;
 };
@@ -60,9 +60,8 @@ HWY_INLINE Mask separates(Point normal, const PairHulls& hulls, Lanes clearance)
   return hn::Gt(gap<kind>(normal, hulls), hn::Add(hn::Mul(clearance, sum_norm(normal)), all(underflow)));
 }
 
-/// Its bound of rounding is by default eight times that of the plane filter: it covers the frame's motion, and that
-/// other steps have somewhat larger coordinates than this one, so that what is dropped here, the plane filter would
-/// drop.
+/// Its bound of rounding is by default eight times that of the plane filter. It covers the motion of the frame and the
+/// larger coordinates of other steps. So it drops only pairs that the plane filter would drop too.
 template <EventKind kind>
 HWY_INLINE Mask are_hulls_apart(const PairHulls& hulls, const NearbySteps& steps) {
   Lanes reach = all(0), magnitude = all(0);

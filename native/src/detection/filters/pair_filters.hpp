@@ -29,7 +29,7 @@ struct PairBlock {
 /// 1 or 0 for each pair of a block.
 using PairFlags = std::array<unsigned char, PairBlock::capacity>;
 
-// Each filter flags the pairs that it shows farther apart than `separation` for the whole step.
+// Each filter flags the pairs that it proves further apart than `separation` for the whole step.
 
 /// By the planes across the axes. Rounding is not allowed for.
 void find_apart_by_boxes(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The step of a pair a lane, and planes between its sides. Included once for each target; see
+// The step of one pair in each lane, and planes between its sides. Included once for each target; see
 // vector/foreach_target.hpp.
 #if defined(STIV_PAIR_STEP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef STIV_PAIR_STEP_INL
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// A pair a lane, seen from its first vertex: the others at the start and at the end of the step.
+/// One pair in each lane: positions relative to the first vertex, at the start and at the end of the step.
 struct PairStep {
   Point start[3], end[3];
 };
@@ -61,8 +61,8 @@ HWY_INLINE Lanes least_gap(Gaps first, Gaps last) {
   return hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
 }
 
-/// Does the plane keep the sides farther apart, times the length of its normal, for the whole step? The comparison is
-/// strict and allows for underflow, so that a normal that vanishes separates nothing.
+/// Does the plane separate the sides by more than `distance`, times the length of its normal, for the whole step? The
+/// comparison is strict and allows for underflow, so that a zero normal separates nothing.
 template <EventKind kind>
 HWY_INLINE Mask keeps_apart(Point normal, const PairStep& step, Lanes distance) {
   constexpr double underflow = 0x1p-970;  // the least normal number over 2^-52

@@ -44,7 +44,8 @@ template <EventKind kind>
 HWY_INLINE Mask apart(const PairStep& step, double separation) {
   const Lanes clearance = hn::Add(all(separation), rounding_of(step));
   const Mask at_start = plane_separates<kind>(normal_of<kind>(step.start), step, clearance);
-  constexpr bool few_lanes = HWY_MAX_BYTES <= 2 * sizeof(double);  // of many, some always need another plane
+  constexpr bool few_lanes =
+      HWY_MAX_BYTES <= 2 * sizeof(double);  // with many lanes, some pair always needs another plane
   if (few_lanes && hn::AllTrue(Doubles(), at_start)) return at_start;
   const Point middles = between_middles<kind>(step.start);
   const Mask between = hn::Or(at_start, plane_separates<kind>(middles, step, clearance));
@@ -62,7 +63,7 @@ void find_apart_by_planes(EventKind kind, const PairBlock& pairs, const VertexSt
     flag_pairs<apart<EventKind::edge_edge>>(pairs, vertices, separation, result);
 }
 
-/// From a point to the nearest one of a segment; to its first end where it has no length.
+/// From a point to the closest point of a segment; to its first end if it has zero length.
 HWY_INLINE Point to_segment(Point from, Point a, Point b) {
   const Lanes zero = hn::Zero(Doubles());
   const Point along = b - a, first = a - from;
@@ -76,7 +77,7 @@ HWY_INLINE Point shorter(Point a, Point b) {
   return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y), hn::IfThenElse(first, a.z, b.z)};
 }
 
-/// Between the nearest points of both sides, or the opposite, where one lies on the rim of its side.
+/// Between the closest points of both sides, up to sign, if one lies on the boundary of its side.
 template <EventKind kind>
 HWY_INLINE Point between_closest_boundary_points(const Point* x) {
   const Lanes zero = hn::Zero(Doubles());
@@ -94,7 +95,7 @@ template <EventKind kind>
 HWY_INLINE Mask are_apart_along_closest_points(const PairStep& step, double separation) {
   const Point normal = between_closest_boundary_points<kind>(step.start);
   const Lanes length = hn::Mul(all(1 + 0x1p-48), hn::Sqrt(dot(normal, normal)));
-  const Lanes rounding = hn::Mul(all(16), rounding_of(step));  // more than what an advance ends within
+  const Lanes rounding = hn::Mul(all(16), rounding_of(step));  // more than the tolerance of an advancement
   return keeps_apart<kind>(normal, step,
                            hn::Add(hn::Mul(all(separation), length), hn::Mul(rounding, sum_norm(normal))));
 }

@@ -12,8 +12,8 @@ namespace stiv {
 template <class Scalar>
 using VectorOf = Eigen::Matrix<Scalar, 3, 1>;
 
-/// A pair seen from its first vertex, which thereby rests at the origin: motion common to all four vertices vanishes
-/// (exactly where the displacements are equal), and so does the rounding that a far origin brings.
+/// A pair relative to its first vertex, which thus rests at the origin. Motion common to all four vertices vanishes
+/// (exactly if the displacements are equal), and so does the rounding error of a far origin.
 template <class Scalar>
 struct RelativeMotion {
   RelativeMotion(EventKind event_kind, const PairMotion& motion);

@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// Where an advancement ended: the pair is known to keep the threshold up to `time`.
+/// The end of an advancement: the pair provably stays beyond the threshold up to `time`.
 template <class Scalar>
 struct Approach {
   Scalar time = 0;
@@ -22,8 +22,8 @@ template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
                                         const Scalar& time, double latest);
 
-/// A time from which a pair that touches, or is at the threshold, at the start is shown to be apart by more than the
-/// threshold, 1 if it slides along a plane for the whole step and comes no nearer, 0 if neither can be shown.
+/// For a pair that touches, or is at the threshold, at the start: a time from which it is provably beyond the
+/// threshold. 1 if it slides along a plane for the whole step, 0 if neither can be proved.
 double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold);
 
 }  // namespace stiv

@@ -5,10 +5,10 @@
 
 namespace stiv {
 
-/// What is told of a contact that a narrow phase found.
+/// Completes a contact that a narrow phase found.
 Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>& approach, double start_distance);
 
-/// What the pair keeps by its distance at the reference, `start_distance` if that is the start of the step.
+/// The clearance of the pair by its distance at the reference: `start_distance` if that is the start of the step.
 PairClearance pair_clearance(EventKind kind, const PairMotion& motion, const Proximity& proximity,
                              double start_distance);
 

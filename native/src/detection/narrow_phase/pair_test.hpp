@@ -11,8 +11,8 @@
 
 namespace stiv {
 
-/// What is done with candidates, whichever broad phase they come from: those that one fixed plane shows apart are left
-/// out, and the narrow phase decides the rest.
+/// Tests candidates of any broad phase: filters remove pairs that a fixed plane separates, and the narrow phase decides
+/// the rest.
 class PairTest {
  public:
   /// @param vertices the step: of all vertices, or of those of all candidates

@@ -86,7 +86,7 @@ struct Kept {
     Positions end = q;
     for (Index row = 0; row < end.rows(); row += 2) end(row, 2) += 1e-3;  // what rests is not looked at
     const Step step{q, end, {0.01, 0.5}};
-    swept.update(step, Execution(1), false);
+    swept.update(step, Execution(1), SweptVertices::Reuse::forbidden);
     tree.update(step, swept, SweptVertices::Change::all, Execution(1));
   }
 
