@@ -6,7 +6,8 @@ from pathlib import Path
 
 from tools.interface_messages import messages
 
-GUIDE = (Path(__file__).resolve().parents[2] / "docs/user_guide.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = (ROOT / "docs/user_guide.md").read_text(encoding="utf-8")
 BLENDERS = {
     "Adjust Last Operation", "Add-ons", "Cursor", "Edge", "Edge Center", "Face", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Keymap", "Lattice", "Library Override", "Make", "Mesh", "Normal",
@@ -20,3 +21,15 @@ def test_every_label_of_the_guide_is_in_the_interface() -> None:
     labels = {label for path in paths for label in re.split(r" > |: ", path)}
     assert len(labels) > 50
     assert labels <= messages() | BLENDERS | {part for text in messages() for part in text.split(": ")}
+
+
+def test_every_message_of_the_guide_is_in_the_sources() -> None:
+    folders = (ROOT / "addon", ROOT / "python/stiv/blender", ROOT / "native/src")
+    paths = [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".cpp")]
+    sources = "\n".join(path.read_text(encoding="utf-8") for path in paths)
+    table = GUIDE.split("| message | meaning |")[1].split("\n\n")[0]
+    rows = re.findall(r"^\| ([^|-][^|]*) \|", table, re.MULTILINE)
+    assert len(rows) > 8
+    for row in rows:
+        for words in re.split(r"\.\.\.|\"[XY]\"|Wall", row):
+            assert words.strip(" ,:") in sources, row
