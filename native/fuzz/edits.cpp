@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edits, drags and settling of a small scene, one after the other: every accepted state is free by the exact test of
+// Consecutive edits, drags and settling of a small scene: every accepted state is free by the exact test of
 // each pair, every step to it by a detection that keeps nothing, and a call that fails or is cancelled leaves no trace.
 #include <algorithm>
 
@@ -124,12 +124,12 @@ void require_accepted(const tests::Scene& scene, const Controls& before, const E
     IntersectionTest intersections(scene.surface);
     Execution execution(1);
     fuzz::require(from == to || is_step_free(detector, intersections, from, to, {0, 0.5}, execution),
-                  "steps go through nothing");
+                  "steps are free of intersections");
     from = to;
   }
 }
 
-/// Goals that are no goals are refused with nothing changed.
+/// Invalid goals are rejected without any change.
 void require_refused(fuzz::Input& input, EditSession& session, Controls goal) {
   const Controls before = session.controls();
   goal(input.below(static_cast<Index>(goal.rows())), input.below(3)) = std::numeric_limits<double>::quiet_NaN();

@@ -51,8 +51,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     motion.end[k] = scale * input.point(on_grid);
     if (flat) motion.start[k][2] = motion.end[k][2] = 0;
   }
-  // What the search finds is a contact but for the rounding of extended arithmetic, which is too small to tell points
-  // of the grid from each other.
+  // The search finds contacts up to the rounding of extended arithmetic, which is too small to distinguish points
+  // of the grid.
   const double certain = separation * (1 - 1e-9) - (on_grid ? 0 : 0x1p-54 * magnitude(motion));
   const reference::Answer answer = reference::first_time(kind, motion, certain, 0x1p-7L);
   for (const auto& order : orders(kind)) {

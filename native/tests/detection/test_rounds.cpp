@@ -88,7 +88,7 @@ const Event* event_of_pair(const Events& events, const Event& wanted) {
 
 }  // namespace
 
-TEST_CASE("rounds: a detector that keeps its pairs finds the same, bit by bit, as one that looks at all of them") {
+TEST_CASE("rounds: a detector with cached pairs finds exactly the events of one that tests all pairs") {
   for (const unsigned seed : {1U, 2U, 3U}) {
     MovingScene scene = stirred_sheets(9, 3, 0.06, seed);
     compare_rounds(scene, seed);
@@ -191,7 +191,7 @@ TEST_CASE("rounds: rows of cached vertices that are too few or not finite are re
   CHECK_THROWS_AS(find(), InputError);
 }
 
-TEST_CASE("rounds: edits one after the other, each from where the last one ended, with parts at rest") {
+TEST_CASE("rounds: consecutive edits, each from the end of the previous one, with static parts") {
   MovingScene scene = stirred_sheets(10, 3, 0, 5);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> noise(-0.03, 0.03);

@@ -5,7 +5,7 @@
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/editing/session.hpp"
 
-// What tests of editing sessions ask of the small scenes.
+// Helpers of the tests of sessions for the small scenes.
 namespace stiv::tests {
 
 inline constexpr Index upper_sheet = 49;  // vertices of two_sheets' first body

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an edit makes of the pairs that edits before brought close: it is asked first, and changes no promise.
+// Edits test the pairs that earlier edits brought close first, which does not affect the guarantee.
 #include <doctest/doctest.h>
 
 #include <random>
@@ -41,11 +41,11 @@ TEST_CASE("pairs kept: an edit like the one before searches all pairs once, a re
   EditSession session = pressing(scene), restored = session_of(scene);
   restored.restore(session.controls(), session.controls());
   const Controls goal = pressed(session);
-  const EditResult again = edit(session, goal), anew = edit(restored, goal);
+  const EditResult again = edit(session, goal), restarted = edit(restored, goal);
   CHECK(again.status == EditStatus::corrected);
   CHECK(again.counters.detections == 1);
-  CHECK(anew.counters.detections == 2);
-  CHECK(again.energy == doctest::Approx(anew.energy).epsilon(1e-9));
+  CHECK(restarted.counters.detections == 2);
+  CHECK(again.energy == doctest::Approx(restarted.energy).epsilon(1e-9));
   CHECK(is_free(scene, again.surface));
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("pairs kept: a session that was restored gives what a new one gives, t
   CHECK(edit(used, goal).controls == edit(fresh, goal).controls);
 }
 
-TEST_CASE("pairs kept: a session whose edit was cancelled goes on as if restored") {
+TEST_CASE("cached candidates: a session whose edit was cancelled continues as if restored") {
   const Scene scene = two_sheets();
   EditSession cancelled = pressing(scene), restored = session_of(scene);
   const Controls before = cancelled.controls(), goal = elsewhere(before);

@@ -31,7 +31,7 @@ Eigen::Matrix3d matrix(const Vector3& v) {
 
 }  // namespace
 
-TEST_CASE("goal: points are interpolated, the end is met bit by bit") {
+TEST_CASE("goal: points are interpolated and end exactly") {
   const Controls from = Controls::Random(5, 3), to = Controls::Random(5, 3);
   CHECK(interpolate(from, to, 1, {}) == to);
   CHECK(interpolate(from, to, 0, {}) == from);
@@ -65,7 +65,7 @@ TEST_CASE("goal: increments of rotations are composed, those of points are added
   }
 }
 
-TEST_CASE("goal: what does not turn keeps its rotation vector bit by bit, beyond half a turn too") {
+TEST_CASE("goal: without rotation, the rotation vector does not change at all, even beyond half a turn") {
   const Controls base = placement(Vector3::Zero(), Vector3(0, 0, 1.5 * pi));
   const Controls from = placement(Vector3::Zero(), Vector3(0.1, 0.2, 0.3));
   CHECK(moved_alike(base, from, placement(Vector3::Ones(), from.row(1)), {1}).row(1) == base.row(1));

@@ -62,7 +62,7 @@ TEST_CASE("session: a sheet pushed fully through another in one edit ends on its
   CHECK(result.surface.bottomRows(result.surface.rows() - upper_sheet).col(2).minCoeff() < -0.1);
 }
 
-TEST_CASE("session: an edit goes on from its first answer while that is cheap, and comes nearer to the goal") {
+TEST_CASE("session: an edit continues from its first solution while that is cheap, and ends closer to the goal") {
   const Scene scene = two_sheets();
   const Controls goal = moved(scene.controls, upper_sheet, Vector3(0, 0, -1));
   EditOptions first_answer;
@@ -110,7 +110,7 @@ TEST_CASE("session: everything pinned is blocked at the contact and names the bo
   CHECK(result.surface(0, 2) > 0);
 }
 
-TEST_CASE("session: the events told are those of the last responding round, whether anything can give way or not") {
+TEST_CASE("session: reported events are those of the last responding round, whether anything can yield or not") {
   const Scene scene = two_sheets();
   const Controls goal = moved(scene.controls, upper_sheet, Vector3(0.1, 0.2, -1)).cast<float>().cast<double>();
   for (const double weight : {0.0, 1.0}) {
@@ -132,7 +132,7 @@ TEST_CASE("session: the events told are those of the last responding round, whet
   }
 }
 
-TEST_CASE("session: pinned controls do not give way, the others do") {
+TEST_CASE("session: pinned controls do not yield, the others do") {
   const Scene scene = two_sheets();
   EditOptions options;
   options.weights = Eigen::VectorXd::Ones(scene.controls.rows());

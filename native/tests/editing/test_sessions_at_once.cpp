@@ -15,7 +15,7 @@ using namespace stiv::tests;
 
 namespace {
 
-/// A drag, a settling and an edit; what they came to.
+/// Results of a drag, settling and an edit.
 std::array<Controls, 3> solved(const Scene& scene, double shift) {
   EditSession session(scene.surface, scene.deformation, scene.controls);
   Controls goal = scene.controls;
@@ -28,7 +28,7 @@ std::array<Controls, 3> solved(const Scene& scene, double shift) {
 
 }  // namespace
 
-TEST_CASE("sessions: four at once over one surface give what they give one after the other, bit by bit") {
+TEST_CASE("sessions: four parallel ones over one surface give exactly the serial results") {
   const Scene scene = two_sheets(8);
   constexpr std::size_t count = 4;
   std::array<std::array<Controls, 3>, count> alone, at_once;

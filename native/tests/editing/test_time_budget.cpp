@@ -27,7 +27,7 @@ HurriedDrag drag_hurried(EditSession& session, const Controls& goal) {
 
 }  // namespace
 
-TEST_CASE("session: a drag that its time ended goes on with its increment, and accepts what it would have at once") {
+TEST_CASE("session: a drag whose time ended continues with its increment, and accepts the same state") {
   const Scene scene = two_sheets();
   EditSession hurried = session_of(scene), unhurried = session_of(scene);
   Execution execution(1);

@@ -78,8 +78,8 @@ struct Kept {
     update(first);
     before = tree.tree();
     update(second);
-    as_it_was = before;
-    as_it_was->refit([&](Index face) { return swept.box_of(corners(face)); }, Execution(1));
+    unchanged = before;
+    unchanged->refit([&](Index face) { return swept.box_of(corners(face)); }, Execution(1));
   }
 
   void update(const Positions& q) {
@@ -97,7 +97,7 @@ struct Kept {
   std::shared_ptr<const Surface> surface;
   SweptVertices swept;
   PrimitiveTree<3> tree;
-  std::optional<Bvh> before, as_it_was;  // its tree at first, and that one refitted instead
+  std::optional<Bvh> before, unchanged;  // its tree at first, and that one refitted instead
 };
 
 }  // namespace
@@ -105,8 +105,8 @@ struct Kept {
 TEST_CASE("primitive tree: built again once neighbours are apart, which leaves a fraction of the nodes to visit") {
   const Kept kept(placed(in_order()), placed(shuffled()));
   CHECK(kept.tree.tree().order() != kept.before->order());
-  CHECK(pairs(kept.tree.tree()) == pairs(*kept.as_it_was));
-  const std::int64_t fresh = visited(kept.tree.tree()), stale = visited(*kept.as_it_was);
+  CHECK(pairs(kept.tree.tree()) == pairs(*kept.unchanged));
+  const std::int64_t fresh = visited(kept.tree.tree()), stale = visited(*kept.unchanged);
   MESSAGE(fresh << " pairs of nodes instead of " << stale << " for " << count << " triangles");
   CHECK(10 * fresh < stale);
   // To sort so many, which is what building is, takes about as many comparisons of one number each as this; a pair of
@@ -124,5 +124,5 @@ TEST_CASE("primitive tree: kept while neighbours stay together, however far they
   }
   const Kept kept(rest, bent);
   CHECK(kept.tree.tree().order() == kept.before->order());
-  CHECK(pairs(kept.tree.tree()) == pairs(*kept.as_it_was));
+  CHECK(pairs(kept.tree.tree()) == pairs(*kept.unchanged));
 }

@@ -123,15 +123,15 @@ TEST_CASE("closest-point filter: with the normals, it tells the distance of pair
     const Batch batch = carried(make, PairBlock::capacity);
     for (std::size_t k = 0; k < PairBlock::capacity; ++k) {
       const double distance = distance_at_start(kind, batch.motions[k]);
-      const auto by_rims = [&](double separation) {
+      const auto by_closest_points = [&](double separation) {
         return flagged(find_apart_by_closest_points, kind, batch, separation)[k];
       };
       const auto by_normals = [&](double separation) {
         return flagged(find_apart_by_planes, kind, batch, separation)[k];
       };
-      CHECK(by_rims((1 + 1e-9) * distance) == 0);
+      CHECK(by_closest_points((1 + 1e-9) * distance) == 0);
       // A normal is taken to be as long as the sum of its components.
-      CHECK(by_rims((1 - 1e-9) * distance) + by_normals(0.57 * distance) > 0);
+      CHECK(by_closest_points((1 - 1e-9) * distance) + by_normals(0.57 * distance) > 0);
     }
   }
 }

@@ -71,7 +71,7 @@ TEST_CASE("narrow phase: a head-on vertex meets the face when the gap is used up
   CHECK(contact->weights == std::array<double, 4>{1, -0.5, -0.25, -0.25});
 }
 
-TEST_CASE("narrow phase: what a pair keeps is told by its distance at the reference") {
+TEST_CASE("narrow phase: the distance at the reference determines the clearance of a pair") {
   PairMotion motion;
   motion.start = {Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
   motion.end = motion.start;
@@ -84,7 +84,7 @@ TEST_CASE("narrow phase: what a pair keeps is told by its distance at the refere
   };
   CHECK(from(1, 0.8)->time == doctest::Approx(0.6).epsilon(1e-3));  // it keeps 0.4
   CHECK(from(1, 0.8)->clearance.threshold == 0.4);
-  CHECK(from(1, 0.2)->time == doctest::Approx(0.9).epsilon(1e-3));  // half of 0.2, though it starts farther away
+  CHECK(from(1, 0.2)->time == doctest::Approx(0.9).epsilon(1e-3));  // half of 0.2, although it starts further away
   CHECK(from(1, 0.2)->clearance.threshold == doctest::Approx(0.1));
   CHECK(from(0.15, 0.2)->time == doctest::Approx(1 / 3.0).epsilon(1e-2));
   CHECK(from(0.1, 0.2)->time == 0);   // as near as it may
@@ -113,7 +113,7 @@ TEST_CASE("narrow phase: the result does not depend on the scale") {
     }
 }
 
-TEST_CASE("narrow phase: common motion is no contact") {
+TEST_CASE("narrow phase: common motion is not a contact") {
   MotionMaker make(5);
   for (int trial = 0; trial < 200; ++trial)
     for (const EventKind kind : both_kinds) {
