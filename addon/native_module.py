@@ -52,5 +52,5 @@ class NeedsNativeModule(Mixin):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """Everywhere, unless a subclass says otherwise."""
+        """Whether the context allows the operator; subclasses override this."""
         return True

@@ -167,7 +167,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
 
 
 class StivHandleGroup(bpy.types.PropertyGroup):
-    """A handle: `name` is that of a vertex group, empty for a new row."""
+    """A handle; `name` is the name of its vertex group, empty for a new row."""
 
 
 class StivLoop(bpy.types.PropertyGroup):

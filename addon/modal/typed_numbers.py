@@ -94,7 +94,7 @@ class TypedNumber:
         return self if self.expression else TypedNumber(self.text, expression=True)
 
     def _shortened(self) -> TypedNumber:
-        """Without the last digit; without digits, also without sign and inversion."""
+        """Without the last digit; if there is none, without sign and inversion."""
         if not self.digits:
             return TypedNumber(expression=self.expression)
         return replace(self, digits=self.digits[:-1])
@@ -117,7 +117,7 @@ class TypedValues:
         return any(number.active for number in self.numbers)
 
     def typed(self, character: str) -> TypedValues:
-        """After one more character for the current number; backspace in an empty one selects the previous one."""
+        """With a character added to the current number; backspace in an empty number selects the previous one."""
         number = self.numbers[self.index]
         if character == "\b" and not number.active and self.index > 0:
             return replace(self, index=self.index - 1)

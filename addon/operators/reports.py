@@ -42,7 +42,7 @@ def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blen
 
 
 def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:
-    """Report the error that Blender raises for the error report of an operator called by this one."""
+    """Report the error of a nested operator, which Blender raises as a RuntimeError."""
     operator.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
     return {"CANCELLED"}
 

@@ -11,7 +11,7 @@ from .. import native_module
 
 
 class SidebarPanel:
-    """Base: a panel in the tab."""
+    """Base of panels in the tab."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -19,7 +19,7 @@ class SidebarPanel:
 
 
 class SubPanel(SidebarPanel):
-    """Base: a panel within the first panel of the tab."""
+    """Base of panels within the first panel of the tab."""
 
     bl_parent_id = "STIV_PT_edit"
 

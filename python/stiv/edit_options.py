@@ -81,9 +81,8 @@ def _choice(default: str, name: str, choices: type[Enum]) -> Any:
 class SharedOptions:
     """The options that `stiv.EditOptions` and `stiv.blender.EditSettings` have in common."""
 
-    separation: float = (
-        0.0  #: minimum distance between surfaces, world units; 0: 1e-4 of the diagonal of the movable surface
-    )
+    #: minimum distance between surfaces, world units; 0: 1e-4 of the diagonal of the movable surface
+    separation: float = 0.0
     smoothness: float = 0.1  #: damping of the response, above 0: 0.1 spreads it smoothly, 0.01 follows the goal tightly
     #: "per_patch" or "single": one constraint for each patch, or one for all
     constraints: str = _choice("per_patch", "constraints", _native.ConstraintKind)
@@ -116,7 +115,7 @@ class EditOptions(SharedOptions):
     exclude: ArrayLike | str | None = field(default=None, metadata={"convert": _excluded_pairs})
     #: "lcp": contacts only push; "linear": they also pull, and each round starts without constraints
     solver: str = _choice("lcp", "solver", _native.ConstraintSolver)
-    #: norm that a step minimises: "energy", of the motion of the surface; "controls", of the controls [Algorithm 1]
+    #: norm that a step minimizes: "energy", of the motion of the surface; "controls", of the controls [Algorithm 1]
     metric: str = _choice("energy", "metric", _native.MetricKind)
     #: "relative": by the approach of two sides; "published": by each side's own motion, with Appendix A's gradient;
     #: "published_frozen": the same with constant time, normal and weights of a contact

@@ -78,7 +78,7 @@ def read_edit_script(path: Path | str) -> EditScript:
 
 
 def parse_edit_script(data: object) -> EditScript:
-    """The script of parsed JSON. Raises InputError naming step and field."""
+    """The script from parsed JSON. Raises InputError naming step and field."""
     fields = require_format(data, SCHEMA, (VERSION,))
     steps = fields.get("steps")
     if not isinstance(steps, list):

@@ -37,7 +37,7 @@ class RepairOptions:
     moves: ArrayLike | None = None  #: (m,) bool: controls that may move; None: all of deformable bodies
     #: merge coincident vertices first, which gives the result its own surface. Not with a deformation
     weld: bool = False
-    good_deviation: float = 0.01  #: a repair that deviates no more is accepted at once; otherwise others are also tried
+    good_deviation: float = 0.01  #: a repair within this deviation is accepted at once; otherwise, others are tried
     max_deviation: float = 0.05  #: repairs that deviate more are refused
 
 
@@ -59,10 +59,9 @@ class RepairResult:
     pairs_before: int  #: number of all pairs before the repair
     fewest_pairs: int  #: number of pairs after the best contraction
     steps: int  #: steps of all contractions
-    deviation: (
-        float  #: root mean square distance of the best repair from the start, in diagonals of the movable surface
-    )
-    contracted: str  #: contracted part: the name of a body, "all", "shrunk components", "components" or "regions"
+    #: root mean square distance of the best repair from the start, in diagonals of the movable surface
+    deviation: float
+    contracted: str  #: what was contracted: the name of a body, "all", "shrunk components", "components" or "regions"
     counters: dict[str, int]
     timings: dict[str, float]
 

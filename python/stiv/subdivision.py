@@ -68,7 +68,7 @@ def subdivision_weights(
 ) -> Weights:
     """Return the weights of the cage's vertices for the vertices of the subdivided mesh, (n, V).
 
-    Vertices have Blender's order: those of the cage, those inside edges edge by edge, those inside faces.
+    Vertices are in Blender's order: those of the cage, then those inside edges (edge by edge), then those inside faces.
 
     levels         0 to 6: an edge is divided into 2^levels; 0 returns the cage
     limit_surface  whether vertices are on the limit surface instead of on the refined mesh

@@ -15,7 +15,7 @@ from ..reports import report_error
 
 
 class ExclusionOperator(NeedsNativeModule):
-    """Base: changes the exclusions of the scene."""
+    """Base of operators that change the exclusions of the scene."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 

@@ -11,7 +11,7 @@ from ...translations import translate
 
 
 class _HandleOperator(NeedsNativeModule):
-    """Base: for the active mesh."""
+    """Base of operators on the active mesh."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 

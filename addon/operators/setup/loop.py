@@ -14,7 +14,7 @@ from ..reports import report_error
 
 
 class _LoopOperator(NeedsNativeModule):
-    """Base: for the active mesh in Object Mode, where Blender's undo restores all objects."""
+    """Base of operators on the active mesh in Object Mode, where Blender's undo restores all objects."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
     needs_refined = True

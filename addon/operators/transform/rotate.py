@@ -33,7 +33,7 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
         return Rotation(self.angle, axis / length)
 
     def own_values(self) -> tuple[object, ...]:
-        """The properties, for comparison."""
+        """The values of the properties, for comparison."""
         return (self.angle, *self.axis)
 
     @staticmethod

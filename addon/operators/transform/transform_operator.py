@@ -140,5 +140,5 @@ def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None
     """Show in the panel which objects the edit does not guard, and which exclusions it dropped."""
     check = context.window_manager.stiv_check
     check.left_out = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried)
-    if edit.dropped_exclusions:  # `summary` has more warnings, but looks at every triangle, too slow for a drag
+    if edit.dropped_exclusions:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
         check.summary = edit.dropped_exclusions

@@ -26,7 +26,7 @@ from stiv.exit_codes import ExitCode
 
 SCHEMA, VERSION = "stiv-batch-report", 2
 
-# Runs commands: names, commands, and a function to call with the number and record of each finished one.
+# Runs named commands. The callback receives the index and the record of each command as it finishes.
 Runner = Callable[[Sequence[str], Sequence[Sequence[str]], Callable[[int, Record], None]], None]
 
 
@@ -37,7 +37,7 @@ class RunOptions:
     state: Path  #: folder of the records
     resume: bool = False
     blender: str = ""
-    lock: str = "lock"  #: name of the lock file; parts of a job that run at the same time have their own
+    lock: str = "lock"  #: name of the lock file; concurrent parts of a job need different names
 
 
 def run_job(

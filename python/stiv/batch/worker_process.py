@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker process from the side of its owner, which sends commands and receives replies."""
+"""The owner's side of a worker process: sends commands and receives replies."""
 
 from __future__ import annotations
 

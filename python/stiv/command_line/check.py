@@ -126,7 +126,7 @@ def _check_arguments(arguments: argparse.Namespace) -> None:
 
 
 def _expanded(names: Iterable[str]) -> Iterator[Path]:
-    """The named files. Expands patterns that the shell has not expanded."""
+    """The files of the arguments. Expands patterns that the shell has not expanded."""
     for name in names:
         matches = [] if Path(name).exists() else sorted(glob.glob(name))
         yield from map(Path, matches or [name])

@@ -61,11 +61,11 @@ def add_to(subcommands: Subparsers) -> None:
     )
     parser.add_argument(
         "--max-deviation", type=float, default=0.05, metavar="D",
-        help="maximum deviation: root mean square, in diagonals of the movable surface (default: 0.05)",
+        help="maximum root mean square deviation, in diagonals of the movable surface (default: 0.05)",
     )  # fmt: skip
     parser.add_argument(
         "--time-limit", type=float, default=0.0, metavar="S",
-        help="seconds until the best repair so far is used, if any (default: no limit)",
+        help="accept the best repair found within S seconds, if any (default: no limit)",
     )  # fmt: skip
     add_guard_option(parser)
     parser.add_argument("--json", "--report", type=Path, metavar="F", help="write a report to F, as JSON")

@@ -43,7 +43,7 @@ class GoalRule(Protocol):
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the controls, (m, 3), for an absolute motion since the start.
 
-        `controls` are those at the start, `last` is the previous goal, so that rotations can exceed half a turn.
+        `controls` are those at the start. `last` is the previous goal, which allows rotations beyond half a turn.
         """
 
     def affected(self, influence: Influence | None) -> NDArray[np.bool_]:

@@ -32,9 +32,9 @@ def lattice_deformation(
     rest = transform_points(as_matrix(ob.matrix_world), read_cage(ob))
     for stage in stages[:place]:
         rest = _evaluate_stage(ob, stage, rest, context).surface(_present_controls(stage, rest))
-    bending = stages[place]
-    assert isinstance(bending, LatticeStage)
-    result = _lattice(ob, bending, rest, context)
+    lattice_stage = stages[place]
+    assert isinstance(lattice_stage, LatticeStage)
+    result = _lattice(ob, lattice_stage, rest, context)
     for stage in stages[place + 1 :]:
         if isinstance(stage, SubdivisionStage):
             result = stiv.compose(subdivide(ob.data, stage), result)

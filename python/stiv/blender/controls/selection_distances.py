@@ -33,14 +33,14 @@ def distances_along(edges: Indices, points: Floats, selected: Mask) -> Floats:
 
     (Dijkstra 1959.)
     """
-    neighbours = _neighbours(edges, points)
+    neighbors = _neighbors(edges, points)
     distances = np.where(selected, 0.0, np.inf)
     queue = [(0.0, int(index)) for index in np.flatnonzero(selected)]
     while queue:
         distance, index = heapq.heappop(queue)
         if distance > distances[index]:
             continue
-        for other, length in neighbours[index]:
+        for other, length in neighbors[index]:
             if distance + length < distances[other]:
                 distances[other] = distance + length
                 heapq.heappush(queue, (distance + length, other))
@@ -61,13 +61,13 @@ def island_centres(points: Floats, selected: Mask, edges: Indices | None) -> Flo
     return centres
 
 
-def _neighbours(edges: Indices, points: Floats) -> list[list[tuple[int, float]]]:
+def _neighbors(edges: Indices, points: Floats) -> list[list[tuple[int, float]]]:
     lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-    neighbours: list[list[tuple[int, float]]] = [[] for _ in points]
+    neighbors: list[list[tuple[int, float]]] = [[] for _ in points]
     for (a, b), length in zip(edges.tolist(), lengths.tolist(), strict=True):
-        neighbours[a].append((b, length))
-        neighbours[b].append((a, length))
-    return neighbours
+        neighbors[a].append((b, length))
+        neighbors[b].append((a, length))
+    return neighbors
 
 
 def _islands(count: int, edges: Indices, selected: Mask) -> NDArray[np.int64]:

@@ -40,7 +40,7 @@ class CulledEdit:
     """A BlenderEdit with the obstacles of a culling box; undocumented members are those of the inner edit.
 
     Accepted states stay inside the box, so they cannot intersect the other obstacles. Once a goal or a solution leaves
-    the box, an edit with a larger box resumes from the state written last.
+    the box, an edit with a larger box resumes from the last written state.
     """
 
     def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, culling: CullingBox) -> None:
@@ -118,7 +118,7 @@ class CulledEdit:
         )
 
     def _restart_within(self, culling: CullingBox | None) -> None:
-        """Restart with the obstacles of a box (None: all of them) and resume from the state written last."""
+        """Restart with the obstacles of a box (None: all of them) and resume from the last written state."""
         if self._culling is None:
             return
         shown = self._written

@@ -120,7 +120,7 @@ def storage_frames(stored: Sequence[tuple[int, Floats | None]]) -> list[stiv.Sto
 
 
 def write_controls(control_sets: Sequence[ControlSet], controls: Floats, start: Floats) -> None:
-    """Write stacked controls, (m, 3), and update Blender's evaluation. Control sets at their start are restored.
+    """Write stacked controls, (m, 3), and update Blender's evaluation. Unchanged control sets are restored.
 
     Raises SceneChangedError if an object was removed or changed.
     """

@@ -56,7 +56,7 @@ def take_snapshot(
 ) -> EditSnapshot:
     """Read the scene for an edit of this kind; changes nothing. Raises InputError.
 
-    adapt: may change each control set. culling: obstacles outside the box are left out; None reads all.
+    adapt: may replace each control set. culling: obstacles outside the box are not read; None: all are read.
     """
     left_out = frozenset() if culling is None else culling.left_out
     scene, guard = read_guarded_scene(

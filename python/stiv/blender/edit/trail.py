@@ -20,7 +20,7 @@ class SolverCall:
 
 @dataclass(frozen=True)
 class AcceptedState:
-    """Accepted controls, by number of the call (-1 for the state written last) and step within the call."""
+    """Accepted controls, by number of the call (-1 for the last written state) and step within the call."""
 
     controls: Floats
     call: int
@@ -29,7 +29,7 @@ class AcceptedState:
 
 @dataclass
 class Trail:
-    """All calls since the state written last, and the goal before them."""
+    """All calls since the last written state, and the goal before them."""
 
     written: Floats
     goal: Floats
@@ -40,7 +40,7 @@ class Trail:
         self.calls.append(SolverCall(goal, result, tuple(result.path)))
 
     def states(self) -> list[AcceptedState]:
-        """All accepted states, oldest first; the linear step between two neighbours is free of intersections."""
+        """All accepted states, oldest first; the linear step between consecutive states is free of intersections."""
         return [AcceptedState(self.written, -1, 0)] + [
             AcceptedState(controls, number, step)
             for number, call in enumerate(self.calls)
@@ -68,8 +68,8 @@ class Trail:
 def find_latest(states: Sequence[AcceptedState], holds: Callable[[AcceptedState], bool]) -> AcceptedState | None:
     """Find the last state with a property that held at the start, with few evaluations of it.
 
-    Searches backwards with doubling strides, then bisects. The property holds for the result; it may hold for a later
-    state too. None: it holds for no state that was examined.
+    Searches backwards with doubling strides, then bisects. The property holds for the result, and may hold for
+    later states. Returns None if it holds for no examined state.
     """
     failed, stride = len(states), 1
     while failed > 0:

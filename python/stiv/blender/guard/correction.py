@@ -109,7 +109,7 @@ def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Ch
 def _is_tool_result_free(
     context: bpy.types.Context, wanted: SceneState, changes: Sequence[Change], outcomes: Sequence[_Outcome]
 ) -> bool:
-    """Restore the tool's own result exactly and test it; if the test fails, the solved state is written again."""
+    """Restore the tool's own result exactly and test it; if the test fails, write the solved state again."""
     solved = read_state(context)
     _restore(context, wanted, changes)
     if not outcomes or outcomes[-1].edit.is_shown():
@@ -121,15 +121,15 @@ def _is_tool_result_free(
 def _passes(
     context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], deadline: float
 ) -> Iterator[_Outcome]:
-    """Edit in passes what one edit cannot do: rotation before scale, parents before children."""
+    """Split changes that one edit cannot make into passes: rotation before scale, parents before children."""
     done: set[tuple[int, str]] = set()
     while True:
         present = read_state(context)
-        left = [
+        remaining = [
             change for change in compare(present, wanted).changes
             if change.reference.name in names and (change.reference.session_uid, _kind(change, done)) not in done
         ]  # fmt: skip
-        now = _outermost(left, wanted)
+        now = _outermost(remaining, wanted)
         if not now:
             return
         kind = "scale" if all(_kind(change, done) == "scale" for change in now if change.placed) else "rotate"

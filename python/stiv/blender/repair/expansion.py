@@ -38,7 +38,7 @@ class ExpansionSettings:
             uses the rest shapes that contraction and repair store. Meshes without one keep their shape as goal, and
             yield to the others.
         amount: fraction of the way to the goal, in [0, 1].
-        rounds: maximum number of solves; each starts from the result before, as long as the energy decreases.
+        rounds: maximum number of solves; each starts from the previous result, as long as the energy decreases.
     """
 
     edit: EditSettings = field(default_factory=EditSettings)
@@ -48,7 +48,7 @@ class ExpansionSettings:
 
 
 class BlenderExpansion:
-    """An expansion from the snapshot of the scene to the written state: `solve`, then `write`, as BlenderRepair."""
+    """An expansion of meshes of a scene. Call `solve`, then `write`, as for BlenderRepair."""
 
     def __init__(self, snapshot: ReshapeSnapshot, goal: Floats, settings: ExpansionSettings) -> None:
         """Use `begin`; `goal` of the controls, (m, 3)."""
@@ -128,7 +128,7 @@ class BlenderExpansion:
         return 0.5 * float(((surface(controls) - surface(self._goal)) ** 2).sum())
 
     def _add_flips(self, verification: Verification) -> bool:
-        """Keep flipped triangles free from now on; False if they intersect at the start."""
+        """Also keep flipped triangles free of intersections; returns False if they intersect at the start."""
         snapshot = self._snapshot.add_triangles(verification.flips)
         start = snapshot.deformation.surface(snapshot.start)
         if len(stiv.find_intersections(start, snapshot.assembly.surface, threads=self._settings.edit.threads)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Merges coincident vertices: first in copies of the meshes, and in the meshes themselves on success."""
+"""Merges coincident vertices: first in copies of the meshes and, on success, in the originals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from stiv.blender.scene.references import ObjectReference
 
 @dataclass(frozen=True)
 class WeldedMeshes:
-    """Objects that show welded copies of their meshes. Call either `keep` or `undo`.
+    """Objects that show welded copies of their meshes. Call either `apply` or `undo`.
 
     `meshes` and `copies` are names of meshes, one for each object.
     """
@@ -27,7 +27,7 @@ class WeldedMeshes:
     copies: tuple[str, ...]
 
     def apply(self) -> None:
-        """Weld the meshes themselves, take over the positions of the copies, and remove these."""
+        """Weld the original meshes, give them the positions of the copies, and remove the copies."""
         for name, copy in zip(self.meshes, self.copies, strict=True):
             mesh = bpy.data.meshes[name]
             _weld(mesh)

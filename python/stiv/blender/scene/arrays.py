@@ -33,10 +33,10 @@ def read_collection(collection: Any, attribute: str, width: int, dtype: type) ->
 
 def digest(*values: Any) -> bytes:
     """Digest of arrays and plain values."""
-    found = hashlib.blake2b(digest_size=20)
+    hasher = hashlib.blake2b(digest_size=20)
     for value in values:
         array = isinstance(value, np.ndarray)
-        found.update(repr((value.dtype.str, value.shape) if array else value).encode() + b"\0")
+        hasher.update(repr((value.dtype.str, value.shape) if array else value).encode() + b"\0")
         if array:
-            found.update(np.ascontiguousarray(value).tobytes())
-    return found.digest()
+            hasher.update(np.ascontiguousarray(value).tobytes())
+    return hasher.digest()

@@ -25,7 +25,7 @@ MARGIN = 0.01  # in sizes of the box, between the moving objects and its sides
 class CullingBox:
     """A box from `low` to `high`, (3,), which the moving surface must not leave.
 
-    Objects in `left_out` do not touch the box. Of the objects in `cropped` only the faces that touch it are read.
+    Objects in `left_out` do not touch the box. For objects in `cropped`, only the faces that touch it are read.
     """
 
     low: Floats
@@ -50,8 +50,9 @@ def find_culling_box(
     settings: EditSettings,
     beyond: Floats = np.empty((0, 3)),  # noqa: B008 (never written)
 ) -> CullingBox | None:
-    """Find the box beyond which obstacles can wait: the moving objects, grown by their own size; None if nothing is
-    saved.
+    """Find the box beyond which obstacles are not read: that of the moving objects, grown by its own size.
+
+    Returns None if culling saves nothing.
 
     moving_names: of the objects that move. beyond: further points, (n, 3), that the box includes. Only independent
     meshes are left out or cropped. Objects with parents, children, modifiers or constraints that refer to others,

@@ -56,12 +56,10 @@ def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:
 
 def _inputs(modifier: bpy.types.NodesModifier) -> list[Any]:
     """Inputs of a node tree: properties of its interface since Blender 5.2, of the modifier before that."""
-    max_weights = getattr(getattr(modifier, "properties", None), "inputs", None)
-    if max_weights is None:
+    inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if inputs is None:
         return list(modifier.values())
-    sockets = [
-        getattr(max_weights, item.identifier) for item in max_weights.bl_rna.properties if item.type == "POINTER"
-    ]
+    sockets = [getattr(inputs, item.identifier) for item in inputs.bl_rna.properties if item.type == "POINTER"]
     return [getattr(socket, "value", None) for socket in sockets]
 
 
@@ -109,5 +107,5 @@ def add_dependents(start: set[T], used_by: Mapping[T, set[T]]) -> set[T]:
 
 
 def ancestors(ob: bpy.types.Object) -> list[str]:
-    """Names of the object's parents, the nearest first."""
+    """Names of the object's ancestors, nearest first."""
     return [] if ob.parent is None else [str(ob.parent.name), *ancestors(ob.parent)]

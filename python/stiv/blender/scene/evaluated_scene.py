@@ -131,7 +131,7 @@ def read_scene(
 ) -> EvaluatedScene:
     """Read every mesh whose owner's name is accepted; `box_of` gives the world box to which an object is cropped.
 
-    evaluations: those to read. A mesh that several of them show alike is read once. Curves, text, surfaces, metaballs
+    evaluations: those to read. A mesh that several of them share is read once. Curves, text, surfaces, metaballs
     and instances are read as meshes. Local view applies if the context has a 3D view, except to the render. strands:
     also read curves without surface, hair curves and particle hair, after all meshes. Raises InputError naming object
     and vertex if a coordinate is not finite.

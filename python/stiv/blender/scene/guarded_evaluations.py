@@ -133,7 +133,7 @@ def _extra_levels(ob: bpy.types.Object, scene: bpy.types.Scene) -> int:
 
 
 def checked_evaluations(context: bpy.types.Context, render: bool = False) -> tuple[str, ...]:
-    """The viewport and the render; only the viewport if the render is too large and not requested by `render`."""
+    """The viewport and the render; only the viewport if the render is too large, unless `render` is true."""
     if render or not is_too_large(rendered_triangles(context)):
         return VIEWPORT, RENDER
     return (VIEWPORT,)

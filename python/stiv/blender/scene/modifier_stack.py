@@ -9,8 +9,8 @@ from stiv import InputError
 from stiv.blender.scene.evaluations import SHOWN, VIEWPORT, is_active, subdivision_levels
 from stiv.blender.scene.references import ObjectReference
 
-# Change neither positions nor the number and order of vertices.
-POSITION_KEEPING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
+# Modifiers that change neither the positions nor the number and order of vertices.
+POSITION_PRESERVING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
 
 WAYS_OUT = "apply or disable it, or make the object rigid or an obstacle"
 
@@ -43,9 +43,9 @@ Stage = SubdivisionStage | LatticeStage
 
 
 def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
-    """Read the stages of an evaluation in order; modifiers without effect are left out.
+    """Read the stages of an evaluation in order; modifiers without effect are skipped.
 
-    Raises InputError naming object, modifier and ways out for any other modifier.
+    Raises InputError for any other modifier, naming the object, the modifier and the ways out.
     """
     stages: list[Stage] = []
     triangulated = ""
@@ -71,8 +71,8 @@ def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.
     if isinstance(modifier, bpy.types.SubsurfModifier):
         return _subdivision(modifier, scene, evaluation)
     if isinstance(modifier, bpy.types.LatticeModifier):
-        return _bending(ob, modifier)
-    if modifier.type in POSITION_KEEPING:
+        return _lattice_stage(ob, modifier)
+    if modifier.type in POSITION_PRESERVING:
         return None
     if not is_active(modifier, ob):
         raise _refuse_unseen(ob, modifier, evaluation)
@@ -111,7 +111,7 @@ def _check_subdivision(ob: bpy.types.Object, stage: SubdivisionStage, before: li
         raise modifier_error(ob, triangulated, "precedes a subdivision")
 
 
-def _bending(ob: bpy.types.Object, modifier: bpy.types.LatticeModifier) -> LatticeStage | None:
+def _lattice_stage(ob: bpy.types.Object, modifier: bpy.types.LatticeModifier) -> LatticeStage | None:
     if modifier.object is None or modifier.strength == 0:
         return None
     group = ob.vertex_groups.get(modifier.vertex_group)

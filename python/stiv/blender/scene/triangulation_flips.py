@@ -174,7 +174,7 @@ def _is_deformable(assembly: Assembly, mesh: int) -> bool:
 
 
 def _new_rows(present: Indices, held: Indices) -> NDArray[np.bool_]:
-    """Flags of the present triangles that are new; known ones start with those of the first triangulation, in order."""
+    """Flags of the present triangles that are not in `held`, which begins with the first triangulation, in order."""
     start, added = held[: len(present)], held[len(present) :]
     new = np.array((present != start).any(axis=1), np.bool_)
     known = {tuple(row) for row in np.sort(np.concatenate([start[new], added])).tolist()}

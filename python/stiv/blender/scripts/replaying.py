@@ -15,7 +15,7 @@ from stiv.blender.scripts.selection import select
 from stiv.blender.verify.scene_check import find_pairs, read_surface
 from stiv.edit_scripts import RESHAPES, EditScript, EditStep
 
-OF_OBJECTS = ("roles", "objects")
+OBJECT_SETTINGS = ("roles", "objects")
 Report = dict[str, Any]
 
 
@@ -24,7 +24,7 @@ def replay(
 ) -> list[Report]:
     """Run every edit of the script; `on_edit` is called with the report of each.
 
-    A report has `number`, `operator`, `milliseconds` of the operator call, the operator's own account (`status`,
+    A report has `number`, `operator`, `milliseconds` of the operator call, the operator's own results (`status`,
     `rounds`, `events`, `patches`, ...), and with `check` the number of `intersections` that a new exact test finds.
     Raises InputError naming the edit if its selection or the operator fails; earlier edits remain. Ends in Object Mode.
     """
@@ -59,10 +59,10 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
     scene = bpy.context.scene
     scene.tool_settings.transform_pivot_point = "MEDIAN_POINT"
     for name, value in settings.items():
-        if name not in OF_OBJECTS and name not in scene.stiv.bl_rna.properties:
+        if name not in OBJECT_SETTINGS and name not in scene.stiv.bl_rna.properties:
             raise InputError(f'setting "{name}": the add-on has no such setting')
         try:
-            if name in OF_OBJECTS:
+            if name in OBJECT_SETTINGS:
                 _apply_to_objects(name, value)
             else:
                 setattr(scene.stiv, name, value)
@@ -71,18 +71,18 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _apply_to_objects(setting: str, values: Mapping[str, Any]) -> None:
-    """Set the roles of objects by name, or any settings of objects by name."""
+    """Set the roles ("roles") or any settings ("objects") of objects, by object name."""
     for name, value in values.items():
         if name not in bpy.context.scene.objects:
             raise InputError(f'setting "{setting}": there is no object "{name}" in the scene')
         chosen = bpy.context.scene.objects[name].stiv
-        for field, max_weights in {"role": value}.items() if setting == "roles" else value.items():
+        for field, setting_value in {"role": value}.items() if setting == "roles" else value.items():
             if field not in chosen.bl_rna.properties:
                 raise InputError(f'setting "{setting}", object "{name}": the add-on has no "{field}" of objects')
             if field == "handles":
-                _apply_handles(chosen.handles, max_weights)
+                _apply_handles(chosen.handles, setting_value)
             else:
-                setattr(chosen, field, max_weights)
+                setattr(chosen, field, setting_value)
 
 
 def _apply_handles(rows: Any, groups: Sequence[str]) -> None:

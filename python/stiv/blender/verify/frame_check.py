@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact test of a scene at frames and between them.
+"""Tests a scene exactly, at frames and between them.
 
 Between two frames each vertex moves on a straight line, as motion blur and most simulations assume.
 """
@@ -207,7 +207,7 @@ def _by_name(assembly: Assembly) -> dict[tuple[int, str, bool, int], VisibleMesh
 
 
 def _mobility(one: VisibleMesh, other: VisibleMesh) -> str:
-    """Undeformed meshes are rigid: straight motion of a rotating one only seems to intersect itself."""
+    """Undeformed meshes are rigid: with linear motion, a rotating mesh would appear to intersect itself."""
     if one.strands is not None:
         return "fixed"
     return "rigid" if np.array_equal(one.local, other.local) else "deformable"
