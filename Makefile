@@ -55,7 +55,7 @@ test-blender: $(BLENDER_VENVS) build/venv/stiv ## Run the tests that need Blende
 test-window: $(WHEEL) ## Drive the installed zip in a real window (needs root and debootstrap); WINDOW_RELEASE=sid: in Blender 5.2
 	build/venv/bin/python tests/window/run.py --release $(WINDOW_RELEASE) --sequences $(WINDOW_SEQUENCES)
 
-lint: build/venv/lint ## Check format, style, types, spelling, and the wording of documents and code
+lint: build/venv/lint $(WHEEL) ## Check format, style, types, spelling, and the wording of documents and code
 	build/venv/bin/python tools/run_tests.py lint
 
 extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate and test it; BLENDER=blender: install it there

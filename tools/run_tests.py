@@ -24,7 +24,7 @@ BUILD = ROOT / "build"
 REPORTS = BUILD / "test-reports"
 TIME_LIMIT = 3600  # seconds for one command: a last resort, several times the longest duration
 WINDOW_SEQUENCES = 12  # random events per sequence run; `make test-window` plays more
-LINT_CHECKS = ("cpp-format", "python-format", "python-style", "types", "spelling", "documents")
+LINT_CHECKS = ("cpp-format", "cpp-checks", "python-format", "python-style", "types", "spelling", "documents")
 PRINTING = threading.Lock()
 
 
