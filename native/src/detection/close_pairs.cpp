@@ -27,7 +27,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
                   const VertexSteps& vertices, const Vector3& motion, double separation,
                   std::vector<Candidate>& close) {
   // A broad phase may skip pairs whose boxes are apart, depending on its frame. The result must not depend on it.
-  const double farthest_boxes = 1.1 * separation;
+  const double box_separation = 1.1 * separation;
   // A tighter bound of rounding than any source uses, so that no source can have skipped a close pair.
   const NearbySteps same_step{motion, separation, 0, 0x1p-44};
   CandidateBlock all, near;
@@ -44,7 +44,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
          candidates.subspan(begin, std::min(PairBlock::capacity, candidates.size() - begin)))
       all.add(candidate, vertices_of(surface, kind, candidate));
     PairFlags boxes_apart;
-    find_apart_by_boxes(kind, all.pairs, vertices, farthest_boxes, boxes_apart);
+    find_apart_by_boxes(kind, all.pairs, vertices, box_separation, boxes_apart);
     for (std::size_t k = 0; k < all.pairs.count; ++k) {
       if (boxes_apart[k] != 0) continue;
       near.add(all.candidates[k], all.pairs.vertices_of(k));

@@ -54,7 +54,8 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
       if (call.context.stored(increment) != call.accepted.controls)
         run_sub_edits_by_rotation_steps(call, {increment, aim.surface, false});
     } catch (const Interrupted&) {
-      if (call.report.path.size() > accepted_before) drag.followed = next;  // else the next call begins with its rest
+      if (call.report.path.size() > accepted_before)
+        drag.followed = std::move(next);  // else the next call begins with its rest
       drag.stride_took_several_calls = true;
       throw;
     }

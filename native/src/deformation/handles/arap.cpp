@@ -164,7 +164,7 @@ class Arap final : public HandleDeformation {
   /// Rounds ask for J where they have just asked for rows of the surface, and then for all of it: the last minimum is
   /// stored.
   std::shared_ptr<const Minimum> minimum(const ControlsView& p, bool exact) const {
-    const std::shared_ptr<const Minimum> last = last_minimum();
+    std::shared_ptr<const Minimum> last = last_minimum();
     const bool is_known = last && last->p == p;
     if (is_known && (last->is_exact || !exact)) return last;
     const Controls d = p - rest_controls_;

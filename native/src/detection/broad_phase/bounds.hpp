@@ -59,7 +59,7 @@ struct alignas(32) PackedBox {
 };
 
 /// Do the boxes overlap, and is one of them active? The sum of a low and a negated high is a difference with the right
-/// sign; of an empty box it is infinite, and the answer is no.
+/// sign; of an empty box it is infinite, and the result false.
 inline bool may_meet(const PackedBox& a, const PackedBox& b) {
   bool near = a.active() || b.active();
   for (std::size_t k = 0; k < 3; ++k)

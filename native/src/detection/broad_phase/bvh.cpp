@@ -38,7 +38,7 @@ class TaskList {
     if (may_meet(a.boxes[task.node], b.boxes[task.other_node])) tasks.push_back(task);
   }
 
-  /// Both subtrees give way to their children, or the higher one does. False if they are blocks.
+  /// Replaces both subtrees, or the higher one, with their children. False if they are blocks.
   bool divide(const Bvh::Task& task, std::vector<Bvh::Task>& tasks) const {
     if (task.level == 0 && task.other_level == 0) {
       tasks.push_back(task);

@@ -9,7 +9,7 @@
 
 namespace stiv {
 
-/// What a traversal reads of a tree, without the containers that own it.
+/// The arrays of a tree, without the containers that own them.
 struct TreeView {
   static constexpr std::size_t most_levels = 12;  // 8^11 > 2^31
 

@@ -41,8 +41,8 @@ std::size_t longest_axis(std::span<const NumberedPoint> points) {
   return static_cast<std::size_t>(longest);
 }
 
-/// A key with about `rank` of the points before it: by a sample, aside from `rank` toward the middle, so that what is
-/// left to look at will likely be the smaller part.
+/// A key with about `rank` of the points before it: from a sample, shifted from `rank` toward the middle, so that the
+/// smaller side likely remains.
 template <std::size_t axis>
 Key pivot(std::span<const NumberedPoint> points, std::size_t rank) {
   constexpr std::size_t most = 31;
@@ -69,8 +69,8 @@ std::size_t partition(std::span<NumberedPoint> points, Key pivot) {
   return before;
 }
 
-/// Quickselect [Hoare 1961], with pivots of a sample [Floyd and Rivest 1975]; at most so many, then the library's,
-/// which is linear whatever the order is.
+/// Quickselect [Hoare 1961], with pivots of a sample [Floyd and Rivest 1975]; at most 24 passes, then the library's,
+/// which is linear for any order.
 template <std::size_t axis>
 void select(std::span<NumberedPoint> points, std::size_t rank) {
   constexpr std::size_t few = 16;

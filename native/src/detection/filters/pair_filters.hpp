@@ -10,7 +10,7 @@
 
 namespace stiv {
 
-/// Up to so many pairs, each of four vertices in the order of Event::vertices, as arrays over the pairs.
+/// Up to `capacity` pairs, each of four vertices in the order of Event::vertices, as arrays over the pairs.
 struct PairBlock {
   static constexpr std::size_t capacity = 64;
 

@@ -111,8 +111,8 @@ Scalar reach_of_other_planes(const RelativeMotion<Scalar>& motion, const Scalar&
                   reach_of_plane<Scalar>(motion, -normal, time, clearance));
 }
 
-/// Do the boxes of both sides, in a frame of the pair, keep apart for the whole step? What a broad phase leaves out
-/// must not be reported by the narrow phase where it gives up.
+/// Do the boxes of both sides, in a frame of the pair, stay apart for the whole step? Where the narrow phase gives up,
+/// it must not report a pair that a broad phase may skip.
 template <class Scalar>
 bool boxes_apart(const RelativeMotion<Scalar>& motion, const Scalar& clearance) {
   for (Index axis = 0; axis < 3; ++axis)
@@ -168,7 +168,7 @@ std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, co
 }
 
 double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold) {
-  // What starts at the threshold may not come nearer; what starts touching may not go through.
+  // A pair that starts at the threshold may come no nearer; one that starts touching may not cross.
   const bool at_threshold = start_distance > 8 * motion.rounding;
   const double least = (at_threshold ? std::min(start_distance, threshold) : 0) - motion.rounding;
   const double apart = threshold + motion.rounding;

@@ -78,7 +78,7 @@ struct DoubleDouble {
   }
 };
 
-/// What the narrow phase asks of its numbers.
+/// Error bounds of the narrow phase for a type of numbers.
 template <class Scalar>
 struct Precision;
 
@@ -86,8 +86,8 @@ template <>
 struct Precision<double> {
   /// Bound of the rounding error of a projected gap, over the pair's largest coordinate: 128 u.
   static constexpr double gap = 0x1p-46;
-  /// Nearest points nearer than so many of these have a difference whose direction is doubtful by more than their
-  /// distance over the pair's size: about the root of u.
+  /// Below this multiple of `gap`, the direction between closest points is uncertain by more than their distance over
+  /// the pair's size: about the root of u.
   static constexpr double noise = 0x1p24;
   /// Steps of one advancement. Contacts take 2 to 6; those that touch without crossing take a fixed fraction of the
   /// wait at each.

@@ -31,8 +31,8 @@ double rounded_down(const DoubleDouble& value) {
   return value.low < 0 ? std::nextafter(value.high, -never) : value.high;
 }
 
-/// What is left of a contact that doubles could not tell from a near miss, by twice the digits. Only asked where all of
-/// the threshold is within rounding, and not of the many pairs that clearly cross.
+/// Repeats in double-doubles a contact that doubles cannot distinguish from a near miss. Called only if the threshold
+/// is within rounding, and not for the many pairs that clearly cross.
 std::optional<Approach<double>> refined(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
                                         const Approach<double>& approach) {
   constexpr double noticeable = 1024;

@@ -11,8 +11,8 @@ namespace stiv {
 
 namespace {
 
-/// In parts of the separation: an advance of the narrow phase ends up to a thousandth before it.
-constexpr double farthest_reported = 1 + 0x1p-9;
+/// Relative to the separation: an advancement may end a thousandth before it.
+constexpr double furthest_reported = 1 + 0x1p-9;
 
 PairMotion motion_of(const VertexStep* vertices, const Positions* reference, const std::array<Index, 4>& v) {
   PairMotion motion;
@@ -56,7 +56,7 @@ std::span<Candidate> PairTest::without(EventKind kind, std::span<Candidate> cand
 std::span<Candidate> PairTest::reduce(EventKind kind, std::span<Candidate> candidates) const {
   const double separation = proximity_.separation;
   const std::span<Candidate> left = without(kind, candidates, separation, find_apart_by_planes);
-  return without(kind, left, farthest_reported * separation, find_apart_by_closest_points);
+  return without(kind, left, furthest_reported * separation, find_apart_by_closest_points);
 }
 
 std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& motion, Proximity proximity,

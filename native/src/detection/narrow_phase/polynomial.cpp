@@ -12,8 +12,8 @@ namespace {
 
 /// Times are reported so much too early, "to account for error in the root finding and response computation". [P4.1]
 constexpr double retreat = 0.01;
-/// Roots count where the primitives are within this fraction above the threshold, besides rounding: no more than what
-/// the conservative phase reports, so that the broad phases leave out no such pair.
+/// Roots count where the primitives are within this fraction above the threshold, besides rounding: within the distance
+/// at which the conservative phase reports, so that no broad phase skips such a pair.
 constexpr double tolerance = 1e-3;
 
 using Moving = Bernstein<1, Vector3>;
