@@ -44,7 +44,7 @@ class NeedsNativeModule(Mixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module, where the operator is available."""
+        """Whether the native module and the operator are available."""
         if problem():
             cls.poll_message_set(problem())
             return False

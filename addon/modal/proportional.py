@@ -44,5 +44,5 @@ class Proportional:
         return replace(self, falloff=FALLOFFS[(FALLOFFS.index(self.falloff) + 1) % len(FALLOFFS)])
 
     def resized(self, key: str) -> Proportional:
-        """With the size after a notch of the wheel or a page key."""
+        """With the size changed by one notch of the wheel or one press of a page key."""
         return replace(self, size=self.size * (GROWTH if key in LARGER_KEYS else 1.0 / GROWTH))

@@ -25,7 +25,7 @@ class SubPanel(SidebarPanel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """With the native module only."""
+        """Whether the native module is available."""
         return not native_module.problem()
 
 

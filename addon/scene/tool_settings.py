@@ -56,7 +56,7 @@ def _increments(context: bpy.types.Context, tools: bpy.types.ToolSettings) -> In
 
 
 def _grid_scale(context: bpy.types.Context) -> float:
-    """The grid unit of the view; in a parallel view, the smallest power of ten of it that spans enough pixels."""
+    """The grid unit of the view; in a parallel view, times the smallest power of ten that spans enough pixels."""
     space, data = context.space_data, context.region_data
     unit = float(getattr(getattr(space, "overlay", None), "grid_scale", 1.0)) or 1.0
     if data is None or data.is_perspective or context.region is None:

@@ -104,9 +104,9 @@ class EditOptions(SharedOptions):
         default_factory=dict, metadata={"convert": _pair_separations}
     )
     #: in (0, 1): a pair of primitives nearer than the separation at the start of the session keeps this fraction of its
-    #: distance, within a body (this bounds the compression of a mesh finer than the separation) ...
+    #: distance, within a body. This bounds the compression of a mesh finer than the separation
     min_clearance_ratio: float = 0.5
-    min_clearance_ratio_between: float = 0.9  #: ... and between two bodies
+    min_clearance_ratio_between: float = 0.9  #: the same between two bodies
     #: response of each control, (m,), or of each of its coordinates, (m, 3); 0 pins exactly; None: all 1
     weights: ArrayLike | None = field(default=None, metadata={"convert": _weights})
     #: (m, 3, 3): the three weights of a control act along the columns of a rotation; None: x, y and z

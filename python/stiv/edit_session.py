@@ -156,7 +156,7 @@ class EditSession:
         """Restore ``controls``, (m, 3), that were accepted earlier (undo, cancel).
 
         ``goal``, (m, 3), becomes the goal of the last drag, where the increment of the next drag starts; None: the
-        controls. Later edits do not depend on those before.
+        controls. Later edits do not depend on earlier ones.
 
         Raises:
             StartIntersectsError: the surface intersects itself; the session is unchanged.

@@ -27,7 +27,7 @@ class STIV_OT_move(TransformOperator, bpy.types.Operator):
         return Translation(np.array(self.value))
 
     def own_values(self) -> tuple[object, ...]:
-        """The properties, for comparison."""
+        """The values of the properties, for comparison."""
         return tuple(self.value)
 
     @staticmethod

@@ -62,7 +62,7 @@ class TransformOptions:
         return Request(self.kind, responders, on)
 
     def option_values(self) -> tuple[object, ...]:
-        """All options, for comparison."""
+        """The values of all options, for comparison."""
         settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
         return (self.responders, self.interference, *((self.proportional, *settings) if self.proportional else ()))
 

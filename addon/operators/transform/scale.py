@@ -38,7 +38,7 @@ class STIV_OT_scale(TransformOperator, bpy.types.Operator):
         return Scaling(np.array(self.value), axes)
 
     def own_values(self) -> tuple[object, ...]:
-        """The properties, for comparison."""
+        """The values of the properties, for comparison."""
         return (*self.value, self.orientation, *self.axes)
 
     @staticmethod

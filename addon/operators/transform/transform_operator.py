@@ -73,7 +73,7 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         raise NotImplementedError
 
     def own_values(self) -> tuple[object, ...]:
-        """The properties of the transform, for comparison."""
+        """The values of the transform's properties, for comparison."""
         raise NotImplementedError
 
     @staticmethod

@@ -146,7 +146,7 @@ class FileCheck:
 
     @property
     def free(self) -> bool:
-        """Whether the file was checked and nothing was found that the baseline does not accept."""
+        """Whether the file was checked and the baseline accepts all findings."""
         return not self.error and not self.findings
 
 

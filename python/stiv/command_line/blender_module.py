@@ -30,7 +30,7 @@ def require_blender(name: str, path: Path) -> ModuleType:
 
 @contextmanager
 def addon_registered(path: Path) -> Iterator[None]:
-    """Within, the add-on is registered in Blender. Unregisters it afterwards unless it was registered before.
+    """Context in which the add-on is registered. Unregisters it afterwards unless it was registered before.
 
     Raises InputError if Blender's module or the add-on is not installed.
     """
@@ -60,7 +60,7 @@ def stored_settings(context: Any, path: Path) -> Any:
 
 @contextmanager
 def quiet_blender(*, errors: bool = False) -> Iterator[None]:
-    """Within, Blender's own messages do not reach standard output. Progress bars do.
+    """Context in which Blender's own messages do not reach standard output. Progress bars do.
 
     errors: also suppress its messages on standard error, such as warnings of renders without a display.
     """

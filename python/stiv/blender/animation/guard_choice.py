@@ -31,7 +31,7 @@ def written_tracks(tracks: Sequence[Track]) -> list[Track]:
     """The tracks that the file will show.
 
     Rigid objects keep their modifiers, and with them the meshes of all evaluations. Deforming objects are written
-    without modifiers, so their first mesh is that of all evaluations. Raises InputError for objects that move
+    without modifiers, so their first mesh is shown in all evaluations. Raises InputError for objects that move
     differently in two evaluations, and for deforming objects that only the render shows.
     """
     groups: dict[int, list[Track]] = defaultdict(list)
@@ -48,7 +48,7 @@ def written_tracks(tracks: Sequence[Track]) -> list[Track]:
 
 
 def _in_all_evaluations(group: Sequence[Track]) -> dict[int, Track | None]:
-    """The first mesh as that of all evaluations, and None for those that it replaces, by identity of the tracks."""
+    """Tracks by `id`: the first mesh is shown in all evaluations; None for the meshes that it replaces."""
     first = group[0].mesh.shown_in
     everywhere = first.union(*(track.mesh.shown_in for track in group))
     return {

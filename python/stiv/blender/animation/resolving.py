@@ -30,7 +30,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Resolved:
-    """A resolved animation: straight motion between two keys is free of intersections in both directions.
+    """A resolved animation: linear motion between two keys is free of intersections in both directions.
 
     `frames` describes each frame for JSON.
     """
@@ -119,7 +119,7 @@ class _Solver:
         return drags
 
     def _states(self, start: Floats, path: list[Floats]) -> list[Floats]:
-        """States to write: the last one if the straight motion is free in both directions, otherwise the whole path."""
+        """States to write: the last one if the linear motion is free in both directions, otherwise the whole path."""
         end = self.session.controls
         if np.array_equal(start, end) or not path:
             return [end]

@@ -18,7 +18,7 @@ from stiv.blender.scene.mesh_reading import read_creases, read_edges, read_faces
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings, LoopSurface
 
-STALE = 1e-5  # of its size; greatest difference between the refined mesh and its cage, beyond single precision
+STALE = 1e-5  # of its size: maximum difference between the shown and the computed mesh, above single precision
 
 
 @dataclass(frozen=True)

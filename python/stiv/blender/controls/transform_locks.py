@@ -19,10 +19,10 @@ AXES = "XYZ"
 
 
 def drop_locked(participants: Sequence[Participant], kind: str) -> list[Participant]:
-    """Drop rigid participants that their locks hold in place; they become obstacles.
+    """Drop rigid participants that are fixed by their locks; they become obstacles.
 
-    kind: of the edit; unselected objects yield by moving. Raises InputError for locks that cannot be respected, and if
-    nothing selected can move.
+    kind: kind of the edit; unselected objects yield by moving. Raises InputError for locks that cannot be respected,
+    and if nothing selected can move.
     """
     left = []
     for participant in participants:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splits a typed value into increments of the size of a drag's."""
+"""Splits a typed value into increments as small as those of a drag."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace

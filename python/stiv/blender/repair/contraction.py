@@ -43,7 +43,7 @@ class ContractionSettings:
 
 
 class BlenderContraction:
-    """A contraction from the snapshot of the scene to the written state: `solve`, then `write`, as BlenderRepair."""
+    """A contraction of meshes of a scene. Call `solve`, then `write`, as for BlenderRepair."""
 
     def __init__(self, snapshot: ReshapeSnapshot, settings: ContractionSettings) -> None:
         self._snapshot = snapshot

@@ -51,7 +51,7 @@ class BlenderExpansion:
     """An expansion of meshes of a scene. Call `solve`, then `write`, as for BlenderRepair."""
 
     def __init__(self, snapshot: ReshapeSnapshot, goal: Floats, settings: ExpansionSettings) -> None:
-        """Use `begin`; `goal` of the controls, (m, 3)."""
+        """Call `begin` instead. goal: of the controls, (m, 3)."""
         self._snapshot = snapshot
         self._goal = np.where(snapshot.moves[:, None], goal, snapshot.start)
         self._settings = settings

@@ -17,7 +17,7 @@ NAME = "stiv_original"
 
 
 def read_rest_shape(ob: bpy.types.Object) -> Singles | None:
-    """Local positions, (m, 3), of the stored rest shape; None if there is none, or none that fits."""
+    """Local positions, (m, 3), of the stored rest shape; None if there is none or it does not fit."""
     if ob.mode == "EDIT":
         edited = bmesh.from_edit_mesh(ob.data).verts
         layer = edited.layers.float_vector.get(NAME)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests a scene exactly, at frames and between them.
 
-Between two frames each vertex moves on a straight line, as motion blur and most simulations assume.
+Between two frames, each vertex moves along a straight line, as motion blur and most simulations assume.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def _test_motion(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
 
 
 def crossings(assembly: Assembly, goal: Floats, threads: int = 0) -> list[Finding]:
-    """Find collisions while all vertices move in straight lines to `goal`, (N, 3): each pair at its earliest time."""
+    """Find collisions while all vertices move linearly to `goal`, (N, 3): each pair at its earliest time."""
     if np.array_equal(assembly.positions, goal):
         return []
     events = stiv.Detector(assembly.surface, threads=threads).find(assembly.positions, goal)

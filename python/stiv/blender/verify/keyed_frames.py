@@ -14,7 +14,7 @@ from stiv.blender.scene.animation_curves import channel_curves
 def add_subframe_keys(frames: Sequence[float]) -> list[float]:
     """Ascending frames, with all fractional keys of the file's animations between the first and the last.
 
-    Between keys with linear interpolation nothing rotates. Straight motion between these frames therefore follows an
+    Between keys with linear interpolation nothing rotates. Linear motion between these frames therefore follows an
     animation with fractional keys exactly.
     """
     if not frames:
