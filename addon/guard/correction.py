@@ -88,5 +88,5 @@ def _tested_only(context: bpy.types.Context, reason: str) -> Outcome:
 
 
 def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:
-    """The settings of the scene, with collisions on whatever drags use."""
+    """The settings of the scene, with collisions on, even if they are off for drags."""
     return replace(edit_settings(context.scene), interference=True)

@@ -191,7 +191,7 @@ def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
 def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of positions, (b, 3), within a distance along each axis; in a close group, only pairs with its first."""
     codes, numbers = _crowded(*_cells(places, distance))
-    while len(codes):  # the first of each cell with the others; then without it and those near it
+    while len(codes):  # pair the first of each cell with the others; then repeat without it and those near it
         begins = np.append(True, codes[1:] != codes[:-1])
         heads = numbers[begins][np.cumsum(begins) - 1]
         near = (np.abs(places[numbers] - places[heads]) <= distance).all(axis=1)

@@ -26,7 +26,7 @@ from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.dependencies import ancestors
 from stiv.seams import Seams, common_seams
 
-SHEAR = 1e-4  # greatest deviation of a placement from location, rotation and scale, relative to its size
+SHEAR = 1e-4  # maximum deviation of a placement from location, rotation and scale, relative to its size
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.mesh_reading import read_cage, read_triangles
 from stiv.seams import Seams
 
-DRIFT = 1e-6  # of the controls' motion; greatest distance between copies that follow the same controls
+DRIFT = 1e-6  # of the controls' motion: maximum distance between copies that follow the same controls
 
 
 @dataclass(frozen=True)

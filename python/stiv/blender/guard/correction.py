@@ -22,7 +22,7 @@ from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
-STEP = 0.02  # greatest step toward a goal, in diagonals of the moving surface
+STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
 WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
 TIME_LIMIT = 5.0  # seconds for one correction; then the last accepted state is written

@@ -29,7 +29,7 @@ class RepairSettings:
 
     Attributes:
         edit: separation, roles, ignored pairs, threads, time budget.
-        max_deviation: greatest root mean square distance from the start, in diagonals of the moving surface.
+        max_deviation: maximum root mean square distance from the start, in diagonals of the moving surface.
         weld: merge coincident vertices first; Object Mode only.
     """
 

@@ -139,7 +139,7 @@ class ReshapeSnapshot:
         )
 
     def deviation(self, controls: Floats) -> float:
-        """Root mean square distance of the moving surface from the start, in its diagonals."""
+        """Root mean square distance of the moving surface from the start, relative to its diagonal."""
         moving = self.assembly.vertices_of([index for each in self.control_sets for index in each.surfaces])
         before = self.deformation.surface(self.start)[moving]
         after = self.deformation.surface(controls)[moving]

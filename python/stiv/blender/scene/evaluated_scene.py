@@ -272,7 +272,7 @@ TOLERANCE = 1e-5  # of an object's size: rounding to single precision, and in Bl
 
 
 def evaluation_tolerance(points: Floats) -> float:
-    """Greatest difference between two evaluations of the same points, (n, 3), in world units."""
+    """Maximum difference between two evaluations of the same points, (n, 3), in world units."""
     if len(points) == 0:
         return 0.0
     return TOLERANCE * float(np.ptp(points, axis=0).max()) + 1e-6 * float(np.abs(points).max())

@@ -100,7 +100,7 @@ class Pose:
 def _read(
     context: bpy.types.Context, objects: Collection[str], evaluations: Sequence[str], frame: float | None, threads: int
 ) -> dict[str, Pose]:
-    """Poses by evaluation; those like the first evaluation are left out."""
+    """Poses by evaluation; evaluations equal to the first are left out."""
     is_counted = tested_names(context, EditSettings(), objects or None)
     scene = read_scene(context, is_counted, evaluations=evaluations, strands=True)
     poses = {}
