@@ -88,10 +88,10 @@ def test_an_override_yields_to_an_object_pushed_into_it(linked_set: Any) -> None
 def test_an_object_that_blender_does_not_let_move_is_rejected_by_name(linked_set: Any) -> None:
     (prop,) = linked_set.objects
     only(prop)
-    with pytest.raises(RuntimeError, match='object "Prop": it is linked; make a library override of it'):
+    with pytest.raises(RuntimeError, match="Prop: it is linked; make a library override of it"):
         bpy.ops.stiv.move(value=(4, 0, 0))
     prop = overridden(linked_set, editable=False)
-    with pytest.raises(RuntimeError, match='object "Prop": its override is not editable; make it editable in the Out'):
+    with pytest.raises(RuntimeError, match="Prop: its override is not editable; make it editable in the Out"):
         bpy.ops.stiv.move(value=(4, 0, 0))
     assert tuple(prop.location) == (0.0, 0.0, 0.0)
     prop.override_library.is_system_override = False

@@ -62,7 +62,7 @@ def test_rows_without_a_group_are_ignored(bar: Any) -> None:
     with pytest.raises(RuntimeError, match="Handle 5 does not exist"):
         bpy.ops.stiv.handle_remove(index=5)
     bpy.ops.stiv.handle_remove(index=0)
-    with pytest.raises(RuntimeError, match='object "Bar": it has no handle'):
+    with pytest.raises(RuntimeError, match="Bar: it has no handle"):
         bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
 
 

@@ -79,7 +79,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored(change: A
     move(1.8)
     look()
     problem = watcher.problem()
-    assert problem.names == ["Box", "Wall"] and f'modifier "{modifier}"' in problem.reason
+    assert problem.names == ["Box", "Wall"] and f'Box: {modifier} "{modifier}" is not' in problem.reason
     assert watcher.uncorrected() == 1
     labels, buttons, is_red = shown_in_status_bar()
     assert is_red and buttons == ["stiv.guard_revert"]
@@ -166,7 +166,7 @@ def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_nam
     mesh = box().data
     mesh.vertices.add(1)
     mesh.update()
-    with pytest.raises(RuntimeError, match='object "Box": its structure has changed; use Undo instead'):
+    with pytest.raises(RuntimeError, match="Box: its structure has changed; use Undo instead"):
         bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True)
 
 

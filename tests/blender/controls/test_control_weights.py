@@ -131,7 +131,7 @@ def test_a_missing_group_is_named() -> None:
         if ob.type == "LATTICE":
             add_modifier(bpy.data.objects["Cube"], "LATTICE", object=ob)
         select(ob)
-        with pytest.raises(stiv.InputError, match=f'object "{ob.name}": there is no vertex group "No"'):
+        with pytest.raises(stiv.InputError, match=f'{ob.name}: there is no vertex group "No"'):
             begin(weights={ob.name: WeightGroup("No")})
     with pytest.raises(stiv.InputError, match='object "Nobody", which the scene does not have'):
         begin(weights={"Nobody": WeightGroup("No")})

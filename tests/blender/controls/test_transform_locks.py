@@ -70,7 +70,7 @@ def test_a_locked_rotation_is_moved_about_the_pivot_without_turning() -> None:
 )
 def test_locks_that_cannot_be_respected_are_refused(kind: str, locks: dict, message: str) -> None:
     select(add_cube("Cube", **locks))
-    with pytest.raises(stiv.InputError, match=f'object "Cube": {message}'):
+    with pytest.raises(stiv.InputError, match=f"Cube: {message}"):
         begin(kind)
 
 

@@ -112,7 +112,7 @@ def test_coordinates_that_are_not_finite_are_named(value: float) -> None:
     points.foreach_set("co", values.ravel())
     bpy.data.meshes["Böx 1"].update()
     bpy.context.view_layer.update()
-    with pytest.raises(stiv.InputError, match='object "Böx 1", vertex 5: coordinate is not finite'):
+    with pytest.raises(stiv.InputError, match="Böx 1: vertex 5 has a coordinate that is not finite; delete it"):
         read_scene(bpy.context)
 
 

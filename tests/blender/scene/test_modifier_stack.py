@@ -23,8 +23,11 @@ from building import (
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings
+from stiv.blender.controls.editable import REASONS
+from stiv.blender.scene.modifier_stack import MODIFIER_REASONS
 
 DEFORM = EditSettings(object_response="deform", guard="viewport")
+NAME = "x" * 12  # of an object or a modifier
 
 TENT = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 1), (0, -2, 0.3), (3, 0, 0)]
 TENT_FACES = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (0, 5, 1)]
@@ -174,8 +177,9 @@ def test_lattice_points(stack: Callable[[Any, Any], None], kind: str) -> None:
 
 def refused(pattern: str, settings: EditSettings = DEFORM) -> None:
     before = snapshot()
-    with pytest.raises(stiv.InputError, match=pattern):
+    with pytest.raises(stiv.InputError, match=pattern) as raised:
         begin(settings)
+    assert len(str(raised.value)) <= 80
     assert snapshot() == before
 
 
@@ -190,7 +194,8 @@ def test_other_modifiers_are_refused_by_name(kind: str) -> None:
     if kind == "NODES":
         ob.modifiers[0].node_group = bpy.data.node_groups.new("Tree", "GeometryNodeTree")
     select(ob)
-    refused('object "Böx", modifier "My mödifier": .*is not supported; apply or disable it.*obstacle')
+    name = ob.modifiers[0].bl_rna.properties["type"].enum_items[kind].name
+    refused(f'Böx: {name} "My mödifier" is not supported; apply it')
     BlenderEdit.begin(bpy.context, EditSettings(), "move")
 
 
@@ -199,7 +204,7 @@ def test_deformed_lattice_above_a_cage_is_refused() -> None:
     lattice.data.points[0].co_deform.x -= 0.5
     add_modifier(ob, "LATTICE", "Bend", object=lattice)
     select(ob)
-    refused('object "Cube", modifier "Bend": lattice "Bent" is deformed.*select the lattice instead')
+    refused('Cube: Lattice "Bend" deforms it; select "Bent" instead')
 
 
 def test_second_subdivision_is_refused() -> None:
@@ -207,7 +212,7 @@ def test_second_subdivision_is_refused() -> None:
     add_modifier(ob, "SUBSURF", "One")
     add_modifier(ob, "SUBSURF", "Two")
     select(ob)
-    refused('modifier "Two": is a second subdivision')
+    refused('Cube: Subdivision.* "Two" is the second; apply the first')
 
 
 def test_triangulation_before_subdivision_is_refused() -> None:
@@ -215,7 +220,7 @@ def test_triangulation_before_subdivision_is_refused() -> None:
     add_modifier(ob, "TRIANGULATE", "Tri")
     add_modifier(ob, "SUBSURF")
     select(ob)
-    refused('modifier "Tri": precedes a subdivision')
+    refused('Cube: Triangulate "Tri" precedes a subdivision')
 
 
 def test_a_deformed_lattice_after_the_moving_one_is_refused() -> None:
@@ -224,7 +229,7 @@ def test_a_deformed_lattice_after_the_moving_one_is_refused() -> None:
     add_modifier(ob, "LATTICE", object=first)
     add_modifier(ob, "LATTICE", "Later", object=second)
     select(first)
-    refused('object "Cube", modifier "Later": deforms the mesh after the moving lattice')
+    refused('Cube: Lattice "Later" follows the moving lattice; apply it')
 
 
 def test_lattice_twice_in_a_stack_is_refused() -> None:
@@ -232,7 +237,7 @@ def test_lattice_twice_in_a_stack_is_refused() -> None:
     add_modifier(ob, "LATTICE", "One", object=lattice)
     add_modifier(ob, "LATTICE", "Two", object=lattice)
     select(lattice)
-    refused('object "Cube", modifier "Two": uses lattice "Lattice" again')
+    refused('Cube: Lattice "Two" uses "Lattice" again; apply it')
 
 
 def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,10 +249,29 @@ def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) ->
     wrong = lambda data, stage: stiv.linear(stiv.linear_weights(subdivision.subdivide(data, stage))[0], shift_by(26))  # noqa: E731
     monkeypatch.setattr(cage, "subdivide", wrong)
     select(ob)
-    refused('object "Cube", modifiers "Subdivision ü": STIV and Blender disagree')
+    refused("Cube: STIV and Blender disagree .*; apply its modifiers")
 
 
 def shift_by(count: int) -> np.ndarray:
     offset = np.zeros((count, 3))
     offset[-1] = shift(z=1e-3)[:3, 3]
     return offset
+
+
+FOR_LATTICES = ["ARMATURE", "CAST", "CURVE", "HOOK", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SURFACE_DEFORM"]
+
+
+def test_messages_fit_the_status_bar() -> None:
+    """With object and modifier names of 12 characters."""
+    kinds = {item.identifier: item.name for item in bpy.types.Modifier.bl_rna.properties["type"].enum_items}
+    lattice_reasons = ("after moving lattice", "deformed lattice", "same lattice")
+    of_reason = {reason: [kinds["LATTICE"]] for reason in lattice_reasons}
+    of_reason |= {"before subdivision": [kinds["TRIANGULATE"]], "second subdivision": [kinds["SUBSURF"]]}
+    of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
+    messages = [
+        f'{NAME}: {kind} "{NAME}" {text.format(other=NAME)}'
+        for reason, text in MODIFIER_REASONS.items()
+        for kind in of_reason.get(reason, kinds.values())
+    ]
+    messages += [f"{NAME}: {text.format(kind='lattice', other=NAME)}" for text in REASONS.values()]
+    assert [message for message in messages if len(message) > 80] == []

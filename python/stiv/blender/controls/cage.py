@@ -86,11 +86,7 @@ def _subdivision_of(
     result = None
     for stage in read_stack(ob, scene, evaluation):
         if isinstance(stage, LatticeStage) and not is_undeformed(stage.lattice.find().data):
-            raise modifier_error(
-                ob, stage.modifier,
-                f'lattice "{stage.lattice.name}" is deformed; '
-                "select the lattice instead",
-            )  # fmt: skip
+            raise modifier_error(ob, stage.modifier, "deformed lattice", stage.lattice.name)
         if isinstance(stage, SubdivisionStage):
             result = subdivide(ob.data, stage)
     return result

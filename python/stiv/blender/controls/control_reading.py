@@ -26,6 +26,7 @@ from stiv.blender.controls.transform_locks import drop_locked
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.evaluated_scene import VisibleMesh, evaluation_tolerance
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
+from stiv.blender.scene.modifier_stack import modifier_error
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
@@ -79,7 +80,7 @@ def _lattice(
 ) -> ControlSet:
     check_lattice(participant.reference.find())
     if not surfaces:
-        raise InputError(f'object "{participant.reference.name}": the lattice deforms no visible mesh; show one')
+        raise InputError(f"{participant.reference.name}: the lattice deforms no visible mesh; show one")
     deformations = [
         lattice_deformation(meshes[index].owner.find(), participant.reference, context, meshes[index].read_from)
         for index in surfaces
@@ -100,7 +101,7 @@ def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) 
     shown = settings.shown_by(name)
     indices = _shown_by({shown}, meshes)
     if not indices and shown != name:
-        raise InputError(f'object "{shown}": shows the cage "{name}" and is hidden; show it')
+        raise InputError(f'{shown}: shows the cage "{name}" and is hidden; show it')
     return indices
 
 
@@ -118,14 +119,9 @@ def _deformed_by(lattice: ObjectReference, meshes: Sequence[VisibleMesh]) -> tup
         if not uses:
             continue
         if mesh.is_instance or ob.type != "MESH":
-            raise InputError(
-                f'object "{ob.name}", modifier "{uses[0].name}": only meshes can follow the lattice "{lattice.name}"; '
-                "convert the object to a mesh, or hide it"
-            )
+            raise InputError(f'{ob.name}: only meshes follow lattice "{lattice.name}"; convert it to a mesh')
         if len(uses) > 1:
-            raise InputError(
-                f'object "{ob.name}", modifier "{uses[1].name}": uses lattice "{lattice.name}" again; apply one of them'
-            )
+            raise modifier_error(ob, uses[1].name, "same lattice", lattice.name)
         found.append(index)
     return tuple(found)
 
@@ -142,15 +138,13 @@ def _check_independent(
     for lattice, indices in by_lattice.items():
         for name in sorted({meshes[index].owner.name for index in indices}):
             if name in in_lattices:
-                raise InputError(f'object "{name}": two moving lattices deform it; deselect one of them')
+                raise InputError(f"{name}: two moving lattices deform it; deselect one")
             if name in in_groups or any(m.reference.name == name and m.role in ("cage", "soft") for m in participants):
-                raise InputError(
-                    f'object "{name}": moves, and so does its lattice "{lattice.name}"; deselect one of them'
-                )
+                raise InputError(f'{name}: moves, and so does its lattice "{lattice.name}"; deselect one')
             in_lattices.add(name)
     deforming = {each.reference.name for each in participants if each.role != "rigid"}
     for name in sorted(deforming & in_groups):
-        raise InputError(f'object "{name}": is deformed, and its parent moves; deselect one of them')
+        raise InputError(f"{name}: is deformed, and its parent moves; deselect one")
     check_dependents(
         deforming | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices), evaluations_of(meshes)
     )
@@ -163,11 +157,9 @@ def _check_children(deformed: set[str], in_groups: set[str], meshes: Sequence[Vi
     for mesh in meshes:
         ob = mesh.owner.find()
         if ob.name in deformed and mesh.is_instance:
-            raise InputError(f'object "{ob.name}": shows instances that would move with its vertices; make them real')
+            raise InputError(f"{ob.name}: its vertices carry instances; make them real")
         if ob.parent is not None and ob.parent.name in deformed and ob.parent_type.startswith(("VERTEX", "LATTICE")):
-            raise InputError(
-                f'object "{ob.name}": is parented to vertices of object "{ob.parent.name}"; clear the parent'
-            )
+            raise InputError(f'{ob.name}: is parented to vertices of "{ob.parent.name}"; clear the parent')
 
 
 def _check_surface(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> None:
@@ -179,14 +171,14 @@ def _check_surface(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> No
         _refuse_difference(
             control_set,
             meshes[control_set.surfaces[0]] if control_set.surfaces else None,
-            f"{len(computed)} vertices are expected",
+            "vertex count",
         )
     for index, mine, theirs in zip(
         control_set.surfaces, np.split(computed, np.cumsum(counts)[:-1]), shown, strict=True
     ):
         difference = float(np.abs(mine - theirs).max(initial=0.0))
         if difference > evaluation_tolerance(theirs):
-            _refuse_difference(control_set, meshes[index], f"differs by {difference:.3g}")
+            _refuse_difference(control_set, meshes[index], f"by {difference:.3g}")
 
 
 def evaluations_of(meshes: Sequence[VisibleMesh]) -> frozenset[str]:
@@ -196,8 +188,4 @@ def evaluations_of(meshes: Sequence[VisibleMesh]) -> frozenset[str]:
 
 def _refuse_difference(control_set: ControlSet, mesh: VisibleMesh | None, how: str) -> None:
     name = control_set.names[0] if mesh is None else mesh.owner.name
-    stack = ", ".join(f'"{modifier.name}"' for modifier in bpy.data.objects[name].modifiers) or "none"
-    raise InputError(
-        f'object "{name}", modifiers {stack}: STIV and Blender disagree ({how}); apply them, or make the '
-        "object rigid or an obstacle"
-    )
+    raise InputError(f"{name}: STIV and Blender disagree ({how}); apply its modifiers")

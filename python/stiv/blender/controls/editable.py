@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuses objects that cannot be edited, or whose changes would not be visible, with the ways out."""
+"""Refuses objects that cannot be edited, or whose changes would not be visible, with a way out."""
 
 from typing import Any
 
@@ -13,16 +13,16 @@ from stiv.blender.scene.references import type_name
 
 TRANSFORM_PATHS = ("location", "rotation", "scale", "delta_")
 REASONS = {
-    "animated": "its transform is animated; clear the animation, or make it an obstacle",
-    "constraint": "determines the transform; disable it, or make the object an obstacle",
-    "linked": "it is linked; make a library override of it, or an obstacle",
-    "linked data": "its {kind} is linked from another file; make it local or an obstacle",
-    "metaball": "metaballs cannot move; convert it to a mesh, or make it an obstacle",
-    "overridden data": "its {kind} is a library override; make it local or an obstacle",
-    "shape key": "hides edits of the {kind}; apply or remove the shape keys",
-    "shared data": 'its {kind} is shared with object "{other}"; make it single user, or an obstacle',
+    "animated": "its transform is animated; clear the animation",
+    "constraint": 'constraint "{other}" determines its transform; disable it',
+    "linked": "it is linked; make a library override of it",
+    "linked data": "its {kind} is linked from another file; make it local",
+    "metaball": "metaballs cannot move; convert it to a mesh",
+    "overridden data": "its {kind} is a library override; make it local",
+    "shape key": 'shape key "{other}" hides edits; apply all shape keys',
+    "shared data": 'its {kind} is shared with "{other}"; make it single user',
     "system override": "its override is not editable; make it editable in the Outliner",
-    "zero scale": "its scale is zero; change it, or make the object an obstacle",
+    "zero scale": "its scale is zero; change it",
 }
 
 
@@ -44,7 +44,7 @@ def check_unconstrained(ob: bpy.types.Object) -> None:
     """Refuse an object with active constraints. Raises InputError."""
     for constraint in ob.constraints:
         if not constraint.mute and constraint.influence > 0:
-            raise _refusal(ob, "constraint", f', constraint "{constraint.name}"')
+            raise _refusal(ob, "constraint", other=constraint.name)
 
 
 def check_data(ob: bpy.types.Object) -> None:
@@ -60,11 +60,11 @@ def check_data(ob: bpy.types.Object) -> None:
         raise _refusal(ob, "shared data", kind=kind, other=others[0])
     keys = ob.data.shape_keys
     if keys is not None and len(keys.key_blocks) > 1:
-        raise _refusal(ob, "shape key", f', shape key "{keys.key_blocks[1].name}"', kind=kind)
+        raise _refusal(ob, "shape key", other=keys.key_blocks[1].name)
 
 
-def _refusal(ob: bpy.types.Object, reason: str, element: str = "", **names: Any) -> InputError:
-    return InputError(f'object "{ob.name}"{element}: {REASONS[reason].format(**names)}')
+def _refusal(ob: bpy.types.Object, reason: str, **names: Any) -> InputError:
+    return InputError(f"{ob.name}: {REASONS[reason].format(**names)}")
 
 
 def _check_scale(ob: bpy.types.Object) -> None:

@@ -143,7 +143,7 @@ def _check_none(ob: bpy.types.Object, chosen: Handles) -> None:
     if ob.mode == "EDIT":
         return
     if not chosen.groups:
-        reason = "it has no handle; choose a vertex group, or select vertices in Edit Mode"
+        reason = "it has no handle; choose a vertex group for it"
     else:
-        reason = f'no vertex of "{chosen.groups[0]}" can be a handle; change its weights, the anchor or the pins'
-    raise InputError(f'object "{ob.name}": {reason}')
+        reason = f'no vertex of "{chosen.groups[0]}" can be a handle; change its weights'
+    raise InputError(f"{ob.name}: {reason}")

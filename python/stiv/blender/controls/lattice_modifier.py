@@ -45,7 +45,7 @@ def lattice_deformation(
 
 def _check_undeformed(ob: bpy.types.Object, stage: LatticeStage) -> None:
     if not is_undeformed(stage.lattice.find().data):
-        raise modifier_error(ob, stage.modifier, "deforms the mesh after the moving lattice")
+        raise modifier_error(ob, stage.modifier, "after moving lattice")
 
 
 def _evaluate_stage(ob: bpy.types.Object, stage: Stage, rest: Floats, context: bpy.types.Context) -> stiv.Deformation:

@@ -14,6 +14,7 @@ from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.points import PointGoal, to_stored
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, transform_points
 from stiv.blender.scene.lattice_reading import read_lattice_points
+from stiv.blender.scene.modifier_stack import modifier_error
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
 
@@ -43,12 +44,10 @@ def check_lattice(ob: bpy.types.Object) -> None:
     """Refuse a lattice whose points cannot be edited. Raises InputError."""
     check_data(ob)
     if ob.data.shape_keys is not None:
-        raise InputError(f'object "{ob.name}": its shape keys hide edits of the lattice; apply or remove them')
+        raise InputError(f"{ob.name}: its shape keys hide edits; apply all shape keys")
     for modifier in ob.modifiers:
         if modifier.show_viewport:
-            raise InputError(
-                f'object "{ob.name}", modifier "{modifier.name}": deforms the lattice; apply or disable it'
-            )
+            raise modifier_error(ob, modifier.name, "of lattice")
 
 
 def _selected(ob: bpy.types.Object, participant: Participant) -> Flags:

@@ -40,8 +40,7 @@ def refine(cage: bpy.types.Object, chosen: LoopSurface) -> Refinement:
     others = np.flatnonzero(np.diff(starts) != 3)
     if len(others):
         raise InputError(
-            f'object "{cage.name}", face {others[0]}: has {np.diff(starts)[others[0]]} corners; Loop subdivision '
-            "needs triangles, so triangulate the cage"
+            f"{cage.name}: face {others[0]} has {np.diff(starts)[others[0]]} corners; triangulate the cage"
         )
     edge_crease, vertex_crease = read_creases(mesh)
     creases = [None if values is None else values.tobytes() for values in (edge_crease, vertex_crease)]
@@ -108,7 +107,7 @@ def refined_writer(cage: bpy.types.Object, local: Singles, settings: EditSetting
     refined, refinement = bpy.data.objects[chosen.object], refine(cage, chosen)
     frame, shown = as_matrix(refined.matrix_world), read_collection(refined.data.vertices, "co", 3, np.float32)
     if _is_stale(shown, refined_points(refinement, transform_points(as_matrix(cage.matrix_world), local), frame)):
-        raise InputError(f'object "{refined.name}": is older than its cage "{cage.name}"; use Refresh')
+        raise InputError(f'{refined.name}: is older than its cage "{cage.name}"; use Refresh')
     return RefinedWriter(ObjectReference.of(refined), refinement, frame, shown)
 
 

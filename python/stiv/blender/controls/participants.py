@@ -33,7 +33,7 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     if settings.responders != "selected" and context.mode == "OBJECT":
         participants += find_automatic_responders(objects, participants, settings)
     if not any(each.selected for each in participants):
-        raise InputError("nothing movable is selected; select a mesh, a lattice or an object with a surface")
+        raise InputError("nothing movable is selected; select an object with a surface")
     return participants
 
 
@@ -47,7 +47,7 @@ def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:
 def _in_edit_mode(context: bpy.types.Context, objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
     if context.mode not in ("EDIT_MESH", "EDIT_LATTICE"):
         mode = context.mode.replace("_", " ").title()
-        raise InputError(f"mode {mode} is not supported; use Object Mode, or Edit Mode of a mesh or lattice")
+        raise InputError(f"mode {mode} is not supported; use Object Mode")
     return [ob for ob in objects if ob.mode == "EDIT"]
 
 
@@ -66,7 +66,7 @@ def make_participant(ob: bpy.types.Object, selected: bool, settings: EditSetting
     if deformation == "lattice":
         return Participant(_lattice_of(ob), "lattice", selected)
     if ob.type not in EDITABLE_TYPES:
-        raise InputError(f'object "{ob.name}": a {type_name(ob)} has no controls; set its deformation to Rigid')
+        raise InputError(f"{ob.name}: a {type_name(ob)} has no controls; set its deformation to Rigid")
     return Participant(ObjectReference.of(ob), "cage" if ob.type == "MESH" else "lattice", selected)
 
 
@@ -91,7 +91,7 @@ def _deformation_of(ob: bpy.types.Object, role: str, settings: EditSettings) -> 
 
 def _mesh_reference(ob: bpy.types.Object) -> ObjectReference:
     if ob.type != "MESH":
-        raise InputError(f'object "{ob.name}": only meshes have handles; choose another deformation')
+        raise InputError(f"{ob.name}: only meshes have handles; choose another deformation")
     return ObjectReference.of(ob)
 
 
@@ -102,9 +102,7 @@ def _lattice_of(ob: bpy.types.Object) -> ObjectReference:
     for modifier in ob.modifiers:
         if isinstance(modifier, bpy.types.LatticeModifier) and modifier.object is not None and is_active(modifier, ob):
             return ObjectReference.of(modifier.object)
-    raise InputError(
-        f'object "{ob.name}": no lattice deforms it; add a Lattice modifier, or choose another deformation'
-    )
+    raise InputError(f"{ob.name}: no lattice deforms it; add a Lattice modifier")
 
 
 def merge_participants(participants: list[Participant]) -> list[Participant]:

@@ -36,10 +36,7 @@ def find_rigid_groups(participants: list[Participant], evaluations: Collection[s
             groups = _merge_groups(groups, dependency)
     for group in groups:
         for dependency in _outside_dependencies(group, evaluations):
-            raise InputError(
-                f'object "{dependency.user}", {dependency.through}: depends on object "{dependency.used}", which does '
-                "not move; select it too, or apply that"
-            )
+            raise InputError(f'{dependency.user}: {dependency.through} depends on "{dependency.used}"; select both')
     return groups
 
 
@@ -71,20 +68,14 @@ def check_dependents(moved: Iterable[str], names: Iterable[str], evaluations: Co
             continue
         for dependency in dependencies(bpy.data.objects[name], evaluations):
             if dependency.used in changing:
-                raise InputError(
-                    f'object "{name}", {dependency.through}: depends on object "{dependency.used}"; select it '
-                    "too, or disable that"
-                )
+                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; select both')
 
 
 def check_instances(moved: set[str], meshes: Iterable[VisibleMesh]) -> None:
     """Refuse to change objects that others show as instances. Raises InputError."""
     for mesh in meshes:
         if mesh.is_instance and mesh.source in moved:
-            raise InputError(
-                f'object "{mesh.source}": object "{mesh.owner.name}" instances it; make the '
-                "instances real, or hide them"
-            )
+            raise InputError(f'{mesh.source}: "{mesh.owner.name}" instances it; make the instances real')
 
 
 def _topmost(participants: list[Participant]) -> list[Participant]:
@@ -95,8 +86,7 @@ def _topmost(participants: list[Participant]) -> list[Participant]:
         above = [names[name] for name in ancestors(participant.reference.find()) if name in names]
         if any(other.selected != participant.selected for other in above):
             raise InputError(
-                f'object "{participant.reference.name}": its parent "{above[0].reference.name}" moves too; select both '
-                "or make one an obstacle"
+                f'{participant.reference.name}: its parent "{above[0].reference.name}" moves too; select both'
             )
         if not above:
             top.append(participant)

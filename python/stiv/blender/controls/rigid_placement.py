@@ -139,10 +139,7 @@ def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str) -
     for root, start in zip(group.roots, starts, strict=True):
         if not start.can_hold_rotations():
             if kind == "rotate":
-                raise InputError(
-                    f'object "{root.reference.name}": its parent is scaled unevenly, so it cannot '
-                    "rotate; apply the parent's scale, or clear the parent"
-                )
+                raise InputError(f"{root.reference.name}: its parent is scaled unevenly; apply the parent's scale")
             return False
     return True
 
@@ -153,14 +150,12 @@ def _axes(group: RigidGroup, starts: Sequence[ObjectTransform]) -> Floats:
     for root, start in zip(group.roots, starts, strict=True):
         columns = start.world[:3, :3] / np.linalg.norm(start.world[:3, :3], axis=0)
         if np.abs(columns.T @ columns - np.eye(3)).max() > 1e-5:
-            raise InputError(
-                f'object "{root.reference.name}": its parent shears it, so it cannot be scaled; apply its transform'
-            )
+            raise InputError(f"{root.reference.name}: its parent shears it; apply its transform")
         frames.append(nearest_rotation(columns * [1, 1, np.sign(np.linalg.det(columns))]))
     for root, frame in zip(group.roots[1:], frames[1:], strict=True):
         if np.abs(np.abs(frames[0].T @ frame) - np.eye(3)).max() > 1e-5:
             raise InputError(
-                f'object "{root.reference.name}": moves with object "{group.roots[0].reference.name}", which has '
-                "another rotation; scale them separately, or give them a common parent"
+                f'{root.reference.name}: moves with "{group.roots[0].reference.name}" '
+                "but has another rotation; scale it alone"
             )
     return frames[0]

@@ -34,7 +34,7 @@ def drop_locked(participants: Sequence[Participant], kind: str) -> list[Particip
             _check(participant.reference.find(), kind if participant.selected else "move")
     if any(each.selected for each in participants) and not any(participant.selected for participant in left):
         name = next(each.reference.name for each in participants if each.selected)
-        raise InputError(f'object "{name}": its transform is locked; unlock it, or deform the object')
+        raise InputError(f"{name}: its transform is locked; unlock it")
     return left
 
 
@@ -63,10 +63,7 @@ def _check(ob: bpy.types.Object, kind: str) -> None:
     for what, axes in locked:
         if any(axes):
             names = ", ".join(axis for axis, lock in zip(AXES, axes, strict=True) if lock)
-            raise InputError(
-                f'object "{ob.name}": its {what} is locked along {names}, which collisions may '
-                "change; unlock it, or lock all axes"
-            )
+            raise InputError(f"{ob.name}: its {what} is locked along {names}; unlock it")
 
 
 def find_free_directions(

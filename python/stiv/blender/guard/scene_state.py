@@ -182,6 +182,6 @@ def _differs(former: ObjectState) -> bool:
     except SceneChangedError:  # removed meanwhile
         return False
     if now.kind != former.kind:
-        raise InputError(f'object "{former.reference.name}": its structure has changed; use Undo instead')
+        raise InputError(f"{former.reference.name}: its structure has changed; use Undo instead")
     same = former.placement == now.placement and former.pose == now.pose
     return not (same and former.has_same_points(now))

@@ -172,18 +172,14 @@ def _target_of(ob: bpy.types.Object, target: str) -> Singles:
         if other.mode == "EDIT":
             other.update_from_editmode()
         local = read_cage(other)
-        whose = f'object "{target}"'
+        whose = f'"{target}"'
     else:
         stored = read_rest_shape(ob)
         if stored is None:
-            raise InputError(
-                f'object "{ob.name}": it has no rest shape; use Contract or Repair first, or choose a target'
-            )
+            raise InputError(f"{ob.name}: it has no rest shape; use Contract or Repair first")
         local, whose = stored, "its rest shape"
     if len(local) != len(ob.data.vertices):
-        raise InputError(
-            f'object "{ob.name}" has {len(ob.data.vertices)} vertices, but {whose} has {len(local)}; use another target'
-        )
+        raise InputError(f"{ob.name}: {len(ob.data.vertices)} vertices, {whose} has {len(local)}; use another target")
     if not np.isfinite(local).all():
-        raise InputError(f'object "{ob.name}": {whose} has a coordinate that is not finite')
+        raise InputError(f"{ob.name}: {whose} has a coordinate that is not finite; change it")
     return local

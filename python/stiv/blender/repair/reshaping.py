@@ -199,7 +199,7 @@ def _selected(control_set: ControlSet) -> NDArray[np.bool_]:
 def _participants(context: bpy.types.Context, settings: EditSettings) -> list[Participant]:
     if context.mode not in ("OBJECT", "EDIT_MESH"):
         mode = context.mode.replace("_", " ").title()
-        raise InputError(f"mode {mode} is not supported; use Object Mode, or Edit Mode of a mesh")
+        raise InputError(f"mode {mode} is not supported; use Object Mode")
     visible = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
     chosen = [ob for ob in visible if (ob.mode == "EDIT" if context.mode == "EDIT_MESH" else ob.select_get())]
     participants = []
@@ -207,7 +207,7 @@ def _participants(context: bpy.types.Context, settings: EditSettings) -> list[Pa
         if settings.role(ob.name) in ("obstacle", "ignored") or settings.cage_of(ob.name) != ob.name:
             continue
         if ob.type != "MESH":
-            raise InputError(f'object "{ob.name}": only meshes can be reshaped; deselect it, or convert it to a mesh')
+            raise InputError(f"{ob.name}: only meshes can be reshaped; convert it to a mesh")
         participants.append(Participant(ObjectReference.of(ob), "cage", True))
     if not participants:
         raise InputError("no movable mesh is selected; select one that is not an obstacle")

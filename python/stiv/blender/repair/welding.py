@@ -51,7 +51,7 @@ def weld_copies(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
     """Replace the meshes of objects by welded copies. Raises InputError in Edit Mode, with nothing changed."""
     for ob in objects:
         if ob.mode == "EDIT":
-            raise InputError(f'object "{ob.name}": cannot be welded in Edit Mode; leave it, or use Merge by Distance')
+            raise InputError(f"{ob.name}: cannot be welded in Edit Mode; use Merge by Distance")
     owners, meshes, copies = [], [], []
     for ob in objects:
         owners.append(ObjectReference.of(ob))

@@ -251,11 +251,11 @@ def _find_roots(owner: bpy.types.Object) -> frozenset[str]:
 
 def _check_finite(mesh: VisibleMesh) -> None:
     if not np.isfinite(mesh.matrix).all():
-        raise InputError(f'object "{mesh.owner.name}": its transform is not finite; clear its location and scale')
+        raise InputError(f"{mesh.owner.name}: its transform is not finite; clear its location and scale")
     finite = np.isfinite(mesh.local).all(axis=1)
     if not finite.all():
         vertex = mesh.vertex_number(int(np.argmin(finite)))
-        raise InputError(f'object "{mesh.owner.name}", vertex {vertex}: coordinate is not finite')
+        raise InputError(f"{mesh.owner.name}: vertex {vertex} has a coordinate that is not finite; delete it")
 
 
 def _count_hidden(context: bpy.types.Context, evaluations: Collection[str]) -> int:

@@ -12,7 +12,16 @@ from stiv.blender.scene.references import ObjectReference
 # Modifiers that change neither the positions nor the number and order of vertices.
 POSITION_PRESERVING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
 
-WAYS_OUT = "apply or disable it, or make the object rigid or an obstacle"
+# Why a modifier is refused, and a way out; the message begins with the object, and the modifier's type and name.
+MODIFIER_REASONS = {
+    "after moving lattice": "follows the moving lattice; apply it",
+    "before subdivision": "precedes a subdivision; apply it",
+    "deformed lattice": 'deforms it; select "{other}" instead',
+    "of lattice": "deforms the lattice; apply it",
+    "same lattice": 'uses "{other}" again; apply it',
+    "second subdivision": "is the second; apply the first",
+    "unsupported": "is not supported; apply it",
+}
 
 
 @dataclass(frozen=True)
@@ -45,7 +54,7 @@ Stage = SubdivisionStage | LatticeStage
 def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
     """Read the stages of an evaluation in order; modifiers without effect are skipped.
 
-    Raises InputError for any other modifier, naming the object, the modifier and the ways out.
+    Raises InputError for any other modifier, naming the object, the modifier and a way out.
     """
     stages: list[Stage] = []
     triangulated = ""
@@ -62,9 +71,11 @@ def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = S
     return stages
 
 
-def modifier_error(ob: bpy.types.Object, modifier: str, reason: str) -> InputError:
-    """The error for an unsupported modifier."""
-    return InputError(f'object "{ob.name}", modifier "{modifier}": {reason}; {WAYS_OUT}')
+def modifier_error(ob: bpy.types.Object, modifier: str, reason: str, other: str = "") -> InputError:
+    """The error for a modifier by its name; reason: a key of MODIFIER_REASONS, other: the object that it mentions."""
+    found = ob.modifiers[modifier]
+    kind = found.bl_rna.properties["type"].enum_items[found.type].name
+    return InputError(f'{ob.name}: {kind} "{modifier}" {MODIFIER_REASONS[reason].format(other=other)}')
 
 
 def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:
@@ -76,8 +87,7 @@ def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.
         return None
     if not is_active(modifier, ob):
         raise _refuse_unseen(ob, modifier, evaluation)
-    kind = modifier.bl_rna.properties["type"].enum_items[modifier.type].name
-    raise modifier_error(ob, modifier.name, f"{kind} is not supported")
+    raise modifier_error(ob, modifier.name, "unsupported")
 
 
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
@@ -106,9 +116,9 @@ def _subdivision(
 
 def _check_subdivision(ob: bpy.types.Object, stage: SubdivisionStage, before: list[Stage], triangulated: str) -> None:
     if any(isinstance(other, SubdivisionStage) for other in before):
-        raise modifier_error(ob, stage.modifier, "is a second subdivision")
+        raise modifier_error(ob, stage.modifier, "second subdivision")
     if triangulated:
-        raise modifier_error(ob, triangulated, "precedes a subdivision")
+        raise modifier_error(ob, triangulated, "before subdivision")
 
 
 def _lattice_stage(ob: bpy.types.Object, modifier: bpy.types.LatticeModifier) -> LatticeStage | None:

@@ -94,7 +94,7 @@ def check_finite(strands: Strands, name: str) -> None:
     finite = np.isfinite(strands.ends).all(axis=(1, 2)) & np.isfinite(strands.radii)
     if not finite.all():
         number = int(strands.numbers[int(np.argmin(finite))])
-        raise InputError(f'object "{name}", strand {number}: coordinate or radius is not finite')
+        raise InputError(f"{name}: strand {number} has a value that is not finite; delete it")
 
 
 def _too_many(what: str, segments: int) -> str:

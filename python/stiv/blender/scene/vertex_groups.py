@@ -19,9 +19,7 @@ def group_weights(ob: bpy.types.Object, name: str, purpose: str) -> Floats:
     """
     group = ob.vertex_groups.get(name)
     if group is None:
-        raise InputError(
-            f'object "{ob.name}": there is no vertex group "{name}" for {purpose}; choose another one, or add it'
-        )
+        raise InputError(f'{ob.name}: there is no vertex group "{name}" for {purpose}; choose another')
     if ob.type == "MESH":
         return read_group_weights(ob.data.vertices, group.index).astype(np.float64)
     return _of_lattice(ob.data, group.index)
