@@ -85,13 +85,13 @@ test-arm64: build/debian $(OPENSUBDIV) ## Compile the core and its own tests for
 	cmake --build --preset arm64 --target stiv_tests
 	ctest --preset arm64 --output-on-failure --parallel 2
 
-coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection and acceptance need 95 %
+coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection, acceptance and penetration need 95 %
 	tools/install_debian_packages.sh tools/debian_packages_coverage.txt
 	cmake --preset coverage -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
 	cmake --build --preset coverage --target stiv_tests
 	find build/coverage -name '*.gcda' -delete
 	build/coverage/native/tests/stiv_tests
-	$(PYTHON) tools/coverage.py build/coverage --at-least 95 detection acceptance
+	$(PYTHON) tools/coverage.py build/coverage --at-least 95 detection acceptance penetration
 
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix

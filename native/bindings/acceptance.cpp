@@ -2,10 +2,10 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include "least_distance.hpp"
+#include "conversions.hpp"
 #include "module.hpp"
 #include "stiv/acceptance/step_check.hpp"
-#include "stiv/acceptance/stored_mesh.hpp"
+#include "stiv/acceptance/storage.hpp"
 #include "stiv/error.hpp"
 
 namespace py = pybind11;
@@ -15,12 +15,6 @@ namespace stiv::bindings {
 namespace {
 
 using SurfacePointer = std::shared_ptr<Surface>;
-
-Edges as_rows(const IndexPairs& pairs) {
-  Edges rows(static_cast<Index>(pairs.size()), 2);
-  for (std::size_t k = 0; k < pairs.size(); ++k) rows.row(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
-  return rows;
-}
 
 Edges find_intersections(const SurfacePointer& surface, const PositionsView& q, int threads) {
   Execution execution(threads);
@@ -41,9 +35,9 @@ bool step_is_free(const SurfacePointer& surface, const PositionsView& start, con
   return test.is_free(start, {}, execution) && is_step_free(detector, test, start, end, {separation}, execution);
 }
 
-/// The static test of one surface, its trees kept between calls.
-struct KeptIntersectionTest {
-  KeptIntersectionTest(const SurfacePointer& surface, int thread_count) : test(surface), threads(thread_count) {}
+/// A static test that keeps its trees between calls.
+struct CachedIntersectionTest {
+  CachedIntersectionTest(const SurfacePointer& surface, int thread_count) : test(surface), threads(thread_count) {}
 
   Edges find(const PositionsView& q) {
     Execution execution(threads);
@@ -54,7 +48,7 @@ struct KeptIntersectionTest {
   int threads;
 };
 
-/// What a step is tested with, kept between steps of one surface.
+/// A test of steps that keeps its trees between calls.
 struct StepCheck {
   StepCheck(const SurfacePointer& surface, int thread_count)
       : detector(surface), intersections(surface), threads(thread_count) {}
@@ -77,6 +71,12 @@ std::shared_ptr<Deformation> stored_mesh(const std::shared_ptr<Deformation>& mes
 
 }  // namespace
 
+Edges as_rows(const IndexPairs& pairs) {
+  Edges rows(static_cast<Index>(pairs.size()), 2);
+  for (std::size_t k = 0; k < pairs.size(); ++k) rows.row(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
+  return rows;
+}
+
 py::object tuple_of(const std::optional<NearestTriangles>& nearest) {
   if (!nearest) return py::none();
   Positions points(2, 3);
@@ -97,13 +97,13 @@ void bind_acceptance(py::module_& module) {
       [](const SurfacePointer& of, const PositionsView& q, bool within) {
         return tuple_of([&] {
           const py::gil_scoped_release unlocked;
-          return LeastDistance(of).find(q, within);
+          return LeastDistance(of).find(q, within ? DistancePairs::all : DistancePairs::between_bodies);
         }());
       },
       surface, positions, py::arg("within"));
-  py::class_<KeptIntersectionTest>(module, "IntersectionTest")
+  py::class_<CachedIntersectionTest>(module, "IntersectionTest")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
-      .def("find", &KeptIntersectionTest::find, positions, Release());
+      .def("find", &CachedIntersectionTest::find, positions, Release());
   py::class_<StepCheck>(module, "StepCheck")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
       .def("is_free", &StepCheck::is_free, start, end, separation, Release());

@@ -53,11 +53,11 @@ inline py::dict dict_of(const Timings& timings) {
   return result;
 }
 
-/// What an edit came to, by the names of EditResult. In editing.cpp.
+/// The result of an edit by the names of EditResult. Defined in editing.cpp.
 py::dict dict_of(const EditResult& result);
 
-/// Calls Python's progress function from within the core. What it raises (an interrupt from the keyboard too) cancels
-/// the work and is kept, to be raised when the core has returned.
+/// Calls Python's progress function from the core. An exception in it, keyboard interrupts included, cancels the work
+/// and is raised again after the core has returned.
 class ProgressCall {
  public:
   ProgressCall(const py::object& function, Execution& execution) : function_(function), execution_(execution) {

@@ -163,7 +163,7 @@ std::shared_ptr<Deformation> compose(const std::shared_ptr<Deformation>& outer,
 
 std::shared_ptr<Deformation> concatenate(
     const std::vector<std::pair<std::shared_ptr<Deformation>, Array<Index>>>& parts, Positions start) {
-  std::vector<DeformationPart> native;
+  std::vector<DeformationComponent> native;
   native.reserve(parts.size());
   for (const auto& [deformation, vertices] : parts) native.push_back({deformation, vector_of(vertices)});
   return shared(make_concatenation(std::move(native), std::move(start)));

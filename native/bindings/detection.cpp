@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "events.hpp"
+#include "conversions.hpp"
 #include "module.hpp"
 #include "stiv/coordinate_range.hpp"
 #include "stiv/detection/detector.hpp"

@@ -9,8 +9,7 @@
 #include <string>
 
 #include "calls.hpp"
-#include "events.hpp"
-#include "least_distance.hpp"
+#include "conversions.hpp"
 #include "module.hpp"
 
 namespace stiv::bindings {
@@ -126,7 +125,7 @@ class Session {
     const InUse in_use(in_use_);
     return tuple_of([&] {
       const py::gil_scoped_release unlocked;
-      return session_.least_distance(within);
+      return session_.least_distance(within ? DistancePairs::all : DistancePairs::between_bodies);
     }());
   }
 

@@ -2,8 +2,9 @@
 #include "stiv/repair/repair.hpp"
 
 #include "calls.hpp"
+#include "conversions.hpp"
 #include "module.hpp"
-#include "stiv/repair/expansion.hpp"
+#include "stiv/repair/contraction.hpp"
 
 namespace stiv::bindings {
 
@@ -49,12 +50,6 @@ const char* name_of(RepairRefusal refusal) {
       return "too_far";
   }
   return "";
-}
-
-Edges as_rows(const IndexPairs& pairs) {
-  Edges rows(static_cast<Index>(pairs.size()), 2);
-  for (std::size_t k = 0; k < pairs.size(); ++k) rows.row(static_cast<Index>(k)) << pairs[k].first, pairs[k].second;
-  return rows;
 }
 
 py::dict dict_of(const ContractionResult& result) {

@@ -24,9 +24,9 @@ std::shared_ptr<Surface> make_surface(Index vertex_count, Triangles triangles, E
                                       std::vector<Index> vertex_body,
                                       const std::vector<std::pair<std::string, std::string>>& bodies,
                                       std::vector<std::pair<Index, Index>> ignored,
-                                      std::vector<std::vector<Index>> recut_faces) {
+                                      std::vector<std::vector<Index>> flip_faces) {
   SurfaceDefinition definition{vertex_count, std::move(triangles), std::move(loose_edges), std::move(vertex_body),
-                               {},           std::move(ignored),   std::move(recut_faces)};
+                               {},           std::move(ignored),   std::move(flip_faces)};
   for (const auto& [name, mobility] : bodies) definition.bodies.push_back({name, mobility_named(mobility)});
   return std::make_shared<Surface>(std::move(definition));
 }
@@ -36,7 +36,7 @@ std::shared_ptr<Surface> make_surface(Index vertex_count, Triangles triangles, E
 void bind_surface(py::module_& module) {
   py::class_<Surface, std::shared_ptr<Surface>>(module, "Surface")
       .def(py::init(&make_surface), py::arg("vertex_count"), py::arg("triangles"), py::arg("loose_edges"),
-           py::arg("vertex_body"), py::arg("bodies"), py::arg("ignored"), py::arg("recut_faces"))
+           py::arg("vertex_body"), py::arg("bodies"), py::arg("ignored"), py::arg("flip_faces"))
       .def_property_readonly("edges", &Surface::edges)
       .def("describe_vertex", &Surface::describe_vertex, py::arg("vertex"))
       .def("describe_triangle", &Surface::describe_triangle, py::arg("triangle"))

@@ -124,15 +124,15 @@ void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, 
   for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
 }
 
-/// Numbers of the recut faces of every vertex.
-std::vector<std::vector<Index>> recut_faces_of_vertices(const SurfaceDefinition& definition) {
+/// Numbers of the flip faces of every vertex.
+std::vector<std::vector<Index>> flip_faces_of_vertices(const SurfaceDefinition& definition) {
   std::vector<std::vector<Index>> faces;
-  if (definition.recut_faces.empty()) return faces;
+  if (definition.flip_faces.empty()) return faces;
   faces.resize(static_cast<std::size_t>(definition.vertex_count));
-  for (std::size_t face = 0; face < definition.recut_faces.size(); ++face)
-    for (const Index vertex : definition.recut_faces[face]) {
+  for (std::size_t face = 0; face < definition.flip_faces.size(); ++face)
+    for (const Index vertex : definition.flip_faces[face]) {
       if (vertex < 0 || vertex >= definition.vertex_count)
-        throw InputError("recut face " + std::to_string(face) + ": vertex index " + std::to_string(vertex) +
+        throw InputError("flip face " + std::to_string(face) + ": vertex index " + std::to_string(vertex) +
                          " is out of range 0.." + std::to_string(definition.vertex_count - 1));
       std::vector<Index>& own = faces[vertex];
       if (own.empty() || own.back() != static_cast<Index>(face)) own.push_back(static_cast<Index>(face));
@@ -157,12 +157,12 @@ Surface::Surface(SurfaceDefinition definition) : definition_(std::move(definitio
   check_corners(definition_, definition_.loose_edges, "edge");
   edges_ = unique_edges(definition_);
   meets_ = meeting_bodies(definition_);
-  recut_ = recut_faces_of_vertices(definition_);
+  flip_faces_ = flip_faces_of_vertices(definition_);
   connect(edges_, vertex_count(), neighbour_start_, neighbours_);
 }
 
-bool Surface::in_one_recut_face(const Index* vertices, std::size_t count) const {
-  const auto faces_of = [&](Index vertex) -> const std::vector<Index>& { return recut_[vertex]; };
+bool Surface::in_one_flip_face(const Index* vertices, std::size_t count) const {
+  const auto faces_of = [&](Index vertex) -> const std::vector<Index>& { return flip_faces_[vertex]; };
   for (const Index face : faces_of(vertices[0])) {
     const bool in_all = std::all_of(vertices + 1, vertices + count, [&](Index vertex) {
       return std::binary_search(faces_of(vertex).begin(), faces_of(vertex).end(), face);

@@ -48,16 +48,16 @@ TEST_CASE("surface: which bodies meet") {
   CHECK_FALSE(surface.bodies_meet(0, 3));
 }
 
-TEST_CASE("surface: vertices of one recut face are told, whichever faces each of them has besides") {
+TEST_CASE("surface: vertices of one flip face are told, whichever faces each of them has besides") {
   SurfaceDefinition definition = two_triangles();
-  definition.recut_faces = {{0, 1, 2}, {2, 1, 5, 3}};
+  definition.flip_faces = {{0, 1, 2}, {2, 1, 5, 3}};
   const Surface surface(definition);
-  CHECK(surface.in_one_recut_face(std::array<Index, 3>{1, 2, 0}));
-  CHECK(surface.in_one_recut_face(std::array<Index, 4>{5, 3, 1, 2}));
-  CHECK_FALSE(surface.in_one_recut_face(std::array<Index, 3>{0, 1, 5}));
-  CHECK_FALSE(surface.in_one_recut_face(std::array<Index, 2>{4, 4}));
-  definition.recut_faces = {{0, 6}};
-  CHECK_THROWS_WITH_AS(Surface{definition}, doctest::Contains("recut face 0"), InputError);
+  CHECK(surface.in_one_flip_face(std::array<Index, 3>{1, 2, 0}));
+  CHECK(surface.in_one_flip_face(std::array<Index, 4>{5, 3, 1, 2}));
+  CHECK_FALSE(surface.in_one_flip_face(std::array<Index, 3>{0, 1, 5}));
+  CHECK_FALSE(surface.in_one_flip_face(std::array<Index, 2>{4, 4}));
+  definition.flip_faces = {{0, 6}};
+  CHECK_THROWS_WITH_AS(Surface{definition}, doctest::Contains("flip face 0"), InputError);
 }
 
 TEST_CASE("surface: areas add up to the total area") {

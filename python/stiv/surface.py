@@ -33,7 +33,7 @@ class Surface:
     vertex_body   (N,) body of each vertex; None: all of body 0
     bodies        sequence of Body; None: one deformable body named "surface"
     ignored       pairs of bodies that are never tested; a body may be paired with itself
-    recut_faces   vertices of each polygon with several triangulations, which intersect each other: primitives with all
+    flip_faces    vertices of each polygon with several triangulations, which intersect each other: primitives with all
                   vertices in one such polygon are never tested
 
     Raises InputError naming the element: an index out of range, a face or edge with two bodies.
@@ -47,7 +47,7 @@ class Surface:
         vertex_body: ArrayLike | None = None,
         bodies: Sequence[Body] | None = None,
         ignored: Sequence[tuple[int, int]] = (),
-        recut_faces: Sequence[Sequence[int]] = (),
+        flip_faces: Sequence[Sequence[int]] = (),
     ) -> None:
         """Check and store the description."""
         self.triangles: Indices = as_indices(triangles, "triangles", (None, 3))
@@ -63,7 +63,7 @@ class Surface:
             else as_indices(vertex_body, "vertex_body", (self.vertex_count,), len(self.bodies))
         )
         self.ignored: Indices = as_indices(list(ignored), "ignored", (None, 2), len(self.bodies))
-        self.recut_faces: tuple[tuple[int, ...], ...] = tuple(tuple(map(int, face)) for face in recut_faces)
+        self.flip_faces: tuple[tuple[int, ...], ...] = tuple(tuple(map(int, face)) for face in flip_faces)
         self.native = _native.Surface(
             self.vertex_count,
             self.triangles,
@@ -71,7 +71,7 @@ class Surface:
             self.vertex_body.tolist(),
             [(body.name, body.mobility) for body in self.bodies],
             [(int(a), int(b)) for a, b in self.ignored],
-            [list(face) for face in self.recut_faces],
+            [list(face) for face in self.flip_faces],
         )
         for array in (self.triangles, self.loose_edges, self.vertex_body, self.ignored):
             array.setflags(write=False)

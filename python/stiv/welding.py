@@ -29,13 +29,13 @@ def weld(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
     surface    Surface, or its triangles (F, 3)
     positions  (N, 3)
 
-    Removes triangles and loose edges that degenerate, and duplicates. Raises InputError for a surface with recut faces,
+    Removes triangles and loose edges that degenerate, and duplicates. Raises InputError for a surface with flip faces,
     whose polygons would be lost.
     """
     q = as_floats(positions, "positions", (None, 3))
     before = as_surface(surface, len(q))
-    if before.recut_faces:
-        raise InputError("a surface with recut faces cannot be welded; weld its mesh first")
+    if before.flip_faces:
+        raise InputError("a surface with flip faces cannot be welded; weld its mesh first")
     keyed = np.column_stack([before.vertex_body, q + 0.0])  # + 0.0 turns -0.0 into 0.0
     _, first, index = np.unique(keyed, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)  # in order of first occurrence
@@ -77,7 +77,7 @@ def join_seams(surface: Surface | ArrayLike, positions: ArrayLike) -> Welded:
         before.vertex_body[kept],
         before.bodies,
         [(int(a), int(b)) for a, b in before.ignored],
-        [sorted({int(index[vertex]) for vertex in face}) for face in before.recut_faces],
+        [sorted({int(index[vertex]) for vertex in face}) for face in before.flip_faces],
     )
     return Welded(after, q[kept], index)
 

@@ -181,7 +181,7 @@ def test_compose_applies_one_deformation_after_the_other() -> None:
         (lambda: stiv.compose(stiv.linear(MATRIX), stiv.linear(MATRIX)), "5 controls, the inner one moves 9"),
         (lambda: stiv.rigid([[0, 0, np.nan]]), "vertices, row 0"),
         (lambda: stiv.scaling(POINTS, 2 * np.eye(3)), "not a rotation"),
-        (lambda: stiv.concatenate([(stiv.identity(2), [0, 0])], POINTS), "vertex 0: already moved by part 0"),
+        (lambda: stiv.concatenate([(stiv.identity(2), [0, 0])], POINTS), "vertex 0: already in component 0"),
         (lambda: stiv.concatenate([(stiv.identity(2), [0, 11])], POINTS), "index 11"),
         (lambda: stiv.concatenate([(stiv.identity(2), [0])], POINTS), "1 vertices given"),
         (lambda: stiv.identity(2).apply_inverse_metric(POINTS[:2], POINTS[:2], -1.0), "smoothness"),

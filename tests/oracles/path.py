@@ -46,7 +46,7 @@ def find_contacts(
     loose_edges: ArrayLike = (),
     vertex_body: ArrayLike | None = None,
     meets: ArrayLike | None = None,
-    recut_faces: Iterable[Iterable[int]] = (),
+    flip_faces: Iterable[Iterable[int]] = (),
 ) -> Contacts:
     """Return all vertex-face and edge-edge pairs that come too close along a linear step.
 
@@ -56,7 +56,7 @@ def find_contacts(
                      `keep` of their distance there; for pairs that start closer, their distance at the start
         reference    (N, 3), the start if not given
         vertex_body  (N,) with meets (B, B) bool: which bodies are tested against each other
-    recut_faces  vertices of faces with several triangulations; pairs within one of them are omitted
+    flip_faces  vertices of faces with several triangulations; pairs within one of them are omitted
     """
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
     centre = (first.min(axis=0) + first.max(axis=0)) / 2 if len(first) else 0
@@ -70,7 +70,7 @@ def find_contacts(
     vertices, times = [np.empty((0, 4), int)], [np.empty(0)]
     for kind, pairs in _pairs_in_reach(np.asarray(triangles), loose_edges, first, last, separation + guard):
         kept = pairs[allowed[body[pairs[:, 0]], body[pairs[:, 3]]]]
-        for face in recut_faces:
+        for face in flip_faces:
             kept = kept[~np.isin(kept, list(face)).all(axis=1)]
         time = first_contacts(kind, first[kept], last[kept], before[kept], separation, keep, guard)
         met = np.isfinite(time)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Two sheets, one above the other. The upper one is pushed through the lower one; it stops on it, and gives way there.
+// Two sheets, one above the other. The upper one is pushed into the lower one; it stops there, and both deform.
 //
 //     cmake -S native/examples/two_sheets -B build/two_sheets -DCMAKE_PREFIX_PATH=/where/stiv/is/installed
 //     cmake --build build/two_sheets && build/two_sheets/two_sheets
@@ -8,7 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <stiv/acceptance/intersections.hpp>
-#include <stiv/deformation/identity.hpp>
+#include <stiv/deformation/linear.hpp>
 #include <stiv/editing/session.hpp>
 #include <stiv/error.hpp>
 #include <stiv/surface.hpp>
@@ -55,15 +55,15 @@ int main() try {
   stiv::Controls goal = start;  // every vertex is a control
   goal.bottomRows(count).col(2).array() -= 0.5;
 
-  stiv::Execution execution;  // all processors; progress and cancellation are set here too
+  stiv::Execution execution;  // all processors; progress and cancellation are set here
   stiv::EditSession session(surface, stiv::make_identity(2 * count), start);
   const stiv::EditResult result = session.edit(goal, execution);
 
-  const auto meeting = stiv::IntersectionTest(surface).find(result.surface, execution);
+  const auto intersections = stiv::IntersectionTest(surface).find(result.surface, execution);
   std::cout << (result.status == stiv::EditStatus::corrected ? "corrected" : "not corrected") << " in "
-            << result.counters.rounds << " rounds, " << meeting.size() << " intersections\n";
-  return meeting.empty() ? 0 : 1;
-} catch (const stiv::InputError& error) {  // names the object, the element and the way out
+            << result.counters.rounds << " rounds, " << intersections.size() << " intersections\n";
+  return intersections.empty() ? 0 : 1;
+} catch (const stiv::InputError& error) {  // names the object and the element, and says what to do
   std::cerr << error.what() << '\n';
   return 2;
 }

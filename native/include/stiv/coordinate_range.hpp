@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// Magnitudes of coordinates other than 0 for which every sign and every error bound holds: no product of the exact
+/// The range of nonzero coordinates, in magnitude, in which all signs and error bounds hold: no product of the exact
 /// predicates underflows, and Veltkamp's splitting (which overflows above 2^996) stays below 2^800.
 constexpr double least_coordinate = 1e-70;
 constexpr double greatest_coordinate = 1e70;
@@ -17,7 +17,7 @@ inline bool is_valid_coordinate(double x) {
   return (magnitude >= least_coordinate && magnitude <= greatest_coordinate) || x == 0;
 }
 
-/// What is wrong with a coordinate and the way out, or null.
+/// What is wrong with a coordinate and how to correct it, or null.
 inline const char* coordinate_fault(double x) {
   if (is_valid_coordinate(x)) return nullptr;
   if (!std::isfinite(x)) return "coordinate is not finite";
@@ -25,7 +25,7 @@ inline const char* coordinate_fault(double x) {
                          : "coordinate is above 1e70; scale the object down";
 }
 
-/// Sets computed coordinates below the range to 0: weights of far controls make them, and no predicate needs them.
+/// Sets computed coordinates below the range to 0. Weights of distant controls cause them.
 inline void flush_below_range(Positions& q) { q = (q.array().abs() < least_coordinate).select(0.0, q); }
 
 }  // namespace stiv

@@ -10,24 +10,23 @@
 
 namespace stiv {
 
-/// Input that cannot be worked with. The message names the object, the element and the way out; nothing was changed.
+/// Invalid input. The message names the object and the element, and says what to do. Nothing was changed.
 class InputError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// The start of an edit already contains intersections. Ways out: repair, or exclude the pairs of bodies.
+/// The start of an edit has intersections. Repair them, or exclude the pairs.
 class StartIntersectsError : public InputError {
  public:
   StartIntersectsError(const std::string& message, std::vector<std::pair<Index, Index>> triangle_pairs)
       : InputError(message), pairs(std::move(triangle_pairs)) {}
 
-  /// Pairs of triangle indices that meet; all of them.
+  /// All pairs of triangles that intersect.
   std::vector<std::pair<Index, Index>> pairs;
 };
 
-/// Thrown through the core when the user cancelled or the time budget ended; caught by the session, which returns the
-/// last accepted state.
+/// The work was cancelled, or its time budget ended. Sessions catch it and return the last accepted state.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

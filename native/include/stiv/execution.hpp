@@ -15,18 +15,18 @@ namespace stiv {
 
 class ThreadPool;
 
-/// What was done, in numbers that do not depend on the machine.
+/// Counts of operations, independent of the machine.
 struct Counters {
   std::int64_t sub_edits = 0;         ///< passes of the outer loop
   std::int64_t rounds = 0;            ///< detections that were followed by a response
   std::int64_t detections = 0;        ///< traversals of the whole scene
-  std::int64_t candidate_pairs = 0;   ///< pairs that may matter and whose bounds overlap
+  std::int64_t candidate_pairs = 0;   ///< relevant pairs with overlapping bounds
   std::int64_t pairs_tested = 0;      ///< pairs that reached the iterative narrow phase
   std::int64_t events = 0;            ///< interference events found
   std::int64_t acceptance_tries = 0;  ///< states proposed to the acceptance test
 };
 
-/// Where the time went, in seconds of wall time.
+/// Wall times in seconds.
 struct Timings {
   double deformation = 0;  ///< f(p), J'
   double detection = 0;
@@ -42,8 +42,8 @@ enum class BudgetEnd {
   after_checkpoint  ///< not before the first checkpoint: calls that resume each other progress however short their time
 };
 
-/// How a piece of work is carried out and observed: threads, progress, cancellation, counters, timings.
-/// One object a call; only `request_cancel` may be called from another thread.
+/// Context of a call: threads, progress, cancellation, counters, timings. One object for each call; only
+/// `request_cancel` may be called from another thread.
 class Execution {
  public:
   /// @param threads number of threads; 0: one for each processor that the process may use, no more than
@@ -61,7 +61,7 @@ class Execution {
     return cancelled_.load(std::memory_order_relaxed) || (is_cancelled_ && is_cancelled_());
   }
 
-  /// Stops the work after so many seconds from now, as if cancelled.
+  /// Stops the work the given number of seconds from now, as if cancelled.
   void set_time_budget(double seconds, BudgetEnd end = BudgetEnd::anywhere);
   bool has_time_budget() const { return deadline_.has_value(); }
   /// The work so far survives the end of the budget. Called outside of for_chunks.

@@ -18,18 +18,18 @@ constexpr std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>
 
 using Vector3 = Eigen::Vector3d;
 
-/// Points in space, one a row: (N, 3), row major, so that they share memory with NumPy arrays.
+/// Points in space, (N, 3), row major, so that they share memory with NumPy arrays.
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// Positions looked at where they are, in memory of Eigen or of NumPy: rows follow each other without a gap. What lies
-/// otherwise, or is still to be computed, is copied when the view is made.
+/// A view of positions in memory of Eigen or NumPy with contiguous rows. Other layouts and expressions are copied when
+/// the view is made.
 using PositionsView = Eigen::Ref<const Positions, 0, Eigen::OuterStride<3>>;
 
-/// The controls `p` of a deformation, (m, 3). What a row means is the deformation's affair: a cage vertex, a
-/// lattice point, or for a rigid placement two rows, centre and rotation vector.
+/// The controls p of a deformation, (m, 3). The deformation defines the meaning of a row: a cage vertex, a lattice
+/// point, or for a rigid motion two rows, centre and rotation vector.
 using Controls = Positions;
 
-/// Controls, or some rows that follow each other out of more of them, looked at where they are.
+/// A view of controls, or of consecutive rows of them.
 using ControlsView = Eigen::Ref<const Controls>;
 
 /// Corner indices of triangles, (F, 3).
@@ -38,8 +38,8 @@ using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// End point indices of edges, (E, 2).
 using Edges = Eigen::Matrix<Index, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// A field of 3-vectors that is zero nearly everywhere: `value[k]` stands at row `index[k]`, each row once, ascending.
-/// Gradients of volumes, over surface vertices or over controls.
+/// A sparse field of 3-vectors: value[k] at row index[k], each row once, ascending. For gradients of volumes, over
+/// vertices or controls.
 struct SparseField {
   std::vector<Index> index;
   std::vector<Vector3> value;

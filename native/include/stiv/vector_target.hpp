@@ -3,21 +3,21 @@
 
 namespace stiv {
 
-/// Vector instructions that parts of the core are compiled for; which are used is decided when they run. All of them
-/// give the same bits: no operation but those of IEEE 754, lane by lane, none fused, none approximate.
+/// Vector instructions that parts of the core are compiled for; chosen at run time. All give the same bits, since they
+/// use IEEE 754 operations lane by lane, none fused or approximate.
 enum class VectorTarget {
-  baseline,  ///< what every processor of the architecture has (x86-64: SSE2 or scalar code; arm64: NEON)
+  baseline,  ///< on every processor of the architecture (x86-64: SSE2 or scalar code; arm64: NEON)
   avx2,      ///< x86-64 with AVX2
   avx512     ///< x86-64 with AVX-512 F, VL, DQ, BW and CD
 };
 
-/// The most that this processor and this build have.
+/// The best target of this processor and this build.
 VectorTarget best_vector_target();
 
-/// What is in use: the best, or the limit if that is less.
+/// The target in use: the best one up to the limit.
 VectorTarget vector_target();
 
-/// Use nothing above `most` from now on, in the whole process. For tests and benchmarks.
+/// Limits the target for the whole process. For tests and benchmarks.
 void limit_vector_target(VectorTarget most);
 
 }  // namespace stiv

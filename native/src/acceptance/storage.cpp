@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <sstream>
+#include <utility>
 
 #include "stiv/error.hpp"
 
@@ -18,8 +19,8 @@ namespace {
 
 constexpr double unit = 0x1p-53;  // half a unit in the last place of 1
 
-/// Coordinates rounded to single precision. Volatile: GCC 12 vectorises the conversion there and back at -O2 such that
-/// one coordinate of three keeps its double.
+/// Coordinates rounded to single precision. Volatile because GCC 12 at -O2 vectorises the conversions and leaves one
+/// coordinate of three unrounded.
 Vector3 in_single_precision(const Vector3& point) {
   Vector3 rounded;
   for (Index axis = 0; axis < 3; ++axis) {
@@ -29,7 +30,7 @@ Vector3 in_single_precision(const Vector3& point) {
   return rounded;
 }
 
-/// Into single precision in a frame and back, without a change to what has been there before.
+/// Rounds points to single precision in a frame; idempotent.
 class Storing {
  public:
   explicit Storing(const StorageFrame& frame)
@@ -42,9 +43,9 @@ class Storing {
     spread_ = linear_.cwiseAbs() * inverse_.cwiseAbs();
   }
 
-  /// A stored point that is stored again comes back with an error of doubles: a local coordinate far smaller than its
-  /// neighbours loses digits in the world. Up to that error a point counts as stored, and stays as it is: this, not the
-  /// trip, is idempotent. [docs/mathematics.md, "Values as stored"]
+  /// Storing a stored point again changes it by an error of doubles, since a local coordinate far smaller than the
+  /// others loses digits in the world. A point within that error counts as stored and is returned unchanged.
+  /// (mathematics.md, "Values as stored")
   void store(Vector3& point) const {
     const Vector3 local = in_single_precision(inverse_ * (point - offset_));
     const Vector3 back = linear_ * local + offset_;
@@ -82,6 +83,44 @@ Controls as_stored(const Controls& p, const std::vector<StorageFrame>& frames) {
     }
   }
   return stored;
+}
+
+namespace {
+
+class StoredMesh final : public HandleDeformation {
+ public:
+  StoredMesh(std::shared_ptr<const HandleDeformation> mesh, const Eigen::Matrix4d& frame)
+      : mesh_(std::move(mesh)), storage_{{0, mesh_->vertex_count(), frame}} {
+    as_stored(Positions::Zero(mesh_->vertex_count(), 3), storage_);  // checks the frame
+  }
+
+  Index control_count() const override { return mesh_->control_count(); }
+  Index vertex_count() const override { return mesh_->vertex_count(); }
+  Positions surface(const Controls& p, const Execution& execution) const override {
+    return as_stored(mesh_->surface(p, execution), storage_);
+  }
+  SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return mesh_->pull_back(p, g); }
+  std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
+                                         const Execution& execution) const override {
+    return mesh_->pull_back_all(p, g, execution);
+  }
+  Positions push_forward(const Controls& p, const Controls& d) const override { return mesh_->push_forward(p, d); }
+  std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return mesh_->metric(options); }
+  std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const override {
+    return mesh_->metric(options, surface_gram);
+  }
+  std::vector<Index> support(Index control) const override { return mesh_->support(control); }
+
+ private:
+  std::shared_ptr<const HandleDeformation> mesh_;
+  std::vector<StorageFrame> storage_;
+};
+
+}  // namespace
+
+std::shared_ptr<const HandleDeformation> make_stored_mesh(std::shared_ptr<const HandleDeformation> mesh,
+                                                          const Eigen::Matrix4d& frame) {
+  return std::make_shared<StoredMesh>(std::move(mesh), frame);
 }
 
 }  // namespace stiv

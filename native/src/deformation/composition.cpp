@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/composition.hpp"
+#include "stiv/deformation/combination.hpp"
 
 #include <string>
 #include <utility>
@@ -27,10 +27,10 @@ void check_fit(const LinearDeformation& outer, const Deformation& inner) {
   if (outer.control_count() != inner.vertex_count())
     throw InputError("composition: the outer deformation has " + std::to_string(outer.control_count()) +
                      " controls, the inner one moves " + std::to_string(inner.vertex_count()) +
-                     " vertices; they must be the same");
+                     " vertices; both numbers must be equal");
 }
 
-/// A linear deformation of a mesh that is moved by handles.
+/// A linear deformation of a mesh moved by handles.
 class Chain final : public HandleDeformation {
  public:
   Chain(std::shared_ptr<const LinearDeformation> outer, std::shared_ptr<const HandleDeformation> inner)
@@ -43,7 +43,7 @@ class Chain final : public HandleDeformation {
   }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
-    return inner_->pull_back(p, outer_->pull_back(Controls(), g));  // the outer Jacobian is the same everywhere
+    return inner_->pull_back(p, outer_->pull_back(Controls(), g));  // the outer Jacobian is constant
   }
 
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,

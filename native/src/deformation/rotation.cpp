@@ -10,13 +10,13 @@ namespace {
 /// sin(x) / x
 double sine_ratio(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
-/// (1 - cos x) / x^2, by the half angle: no cancellation.
+/// (1 - cos x) / x^2, by the half angle, without cancellation.
 double cosine_ratio(double x) {
   const double half = sine_ratio(x / 2);
   return half * half / 2;
 }
 
-/// (x - sin x) / x^3. The difference cancels near 0, where the series, cut after x^8 / 11!, is exact to rounding.
+/// (x - sin x) / x^3. Near 0, where the difference cancels, the series up to x^8 / 11! is exact to rounding.
 double sine_remainder(double x) {
   const double s = x * x;
   if (std::abs(x) > 0.25) return (x - std::sin(x)) / (s * x);

@@ -42,7 +42,7 @@ CollisionQueries::CollisionQueries(const EditContext& context)
 
 void CollisionQueries::check_start(const Positions& q, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  StaticPairs found = find_static_pairs(intersections_, q, execution);
+  StaticPairs found = intersections_.find_all(q, execution);
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (found.empty()) return;
@@ -115,7 +115,7 @@ std::optional<double> CollisionQueries::earliest_time(const Positions& from, con
 bool CollisionQueries::is_intersection_free(const Positions& from, const Positions& to, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
   if (excluded_.empty()) return intersections_.is_free(to, moved_vertices(from, to), execution);
-  StaticPairs found = find_static_pairs(intersections_, to, execution);
+  StaticPairs found = intersections_.find_all(to, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
   if (!found.empty() || all.size() > intersections_.find(from, execution).size()) return false;

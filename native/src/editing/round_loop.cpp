@@ -9,7 +9,7 @@
 #include "editing/control_interpolation.hpp"
 #include "editing/round_volumes.hpp"
 #include "stiv/response/resolver.hpp"
-#include "stiv/volumes/stiv.hpp"
+#include "stiv/volumes/relative.hpp"
 
 namespace stiv {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "editing/edit_context.hpp"
-#include "stiv/volumes/stiv.hpp"
+#include "stiv/volumes/relative.hpp"
 
 namespace stiv {
 

@@ -82,9 +82,9 @@ class EditSession::Implementation {
     return queries_.is_step_free(start, end, execution);
   }
 
-  std::optional<NearestTriangles> least_distance(bool within) {
+  std::optional<NearestTriangles> least_distance(DistancePairs pairs) {
     if (!least_distance_) least_distance_.emplace(context_.shared_surface());
-    return least_distance_->find(accepted_.surface, within);
+    return least_distance_->find(accepted_.surface, pairs);
   }
 
   const EditContext& context() const { return context_; }
@@ -199,8 +199,8 @@ bool EditSession::is_step_free(const PositionsView& start, const PositionsView& 
 
 const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
 const Positions& EditSession::surface() const { return implementation_->accepted().surface; }
-std::optional<NearestTriangles> EditSession::least_distance(bool within) {
-  return implementation_->least_distance(within);
+std::optional<NearestTriangles> EditSession::least_distance(DistancePairs pairs) {
+  return implementation_->least_distance(pairs);
 }
 double EditSession::separation() const { return implementation_->context().options().separation; }
 const Surface& EditSession::topology() const { return implementation_->context().surface(); }

@@ -38,8 +38,8 @@ std::vector<std::vector<Index>> neighbours_in(const BodyMesh& mesh) {
   return neighbours;
 }
 
-/// A walk over all vertices, component by component.
-void walk_over(BodyMesh& mesh, const std::vector<std::vector<Index>>& neighbours) {
+/// Builds the spanning forest, component by component.
+void build_forest(BodyMesh& mesh, const std::vector<std::vector<Index>>& neighbours) {
   std::vector<unsigned char> reached(neighbours.size(), 0);
   std::vector<Index> waiting;
   for (Index seed = 0; seed < static_cast<Index>(neighbours.size()); ++seed) {
@@ -66,8 +66,31 @@ BodyMesh body_mesh(const Surface& surface, std::vector<Index> triangles) {
   BodyMesh mesh;
   mesh.triangles = std::move(triangles);
   count_vertices(mesh, surface);
-  walk_over(mesh, neighbours_in(mesh));
+  build_forest(mesh, neighbours_in(mesh));
   return mesh;
+}
+
+PlacedBody::PlacedBody(const BodyMesh& mesh, const Positions& q) : mesh_(mesh) {
+  for (const Index vertex : mesh.vertices) {
+    points_.push_back(q.row(vertex));
+    box_.extend(points_.back());
+  }
+}
+
+Triangle PlacedBody::triangle(Index triangle) const {
+  const auto& [a, b, c] = corners(triangle);
+  return {point(a), point(b), point(c)};
+}
+
+Vector3 PlacedBody::area_vector(Index triangle) const {
+  const auto& [a, b, c] = corners(triangle);
+  return (point(b) - point(a)).cross(point(c) - point(a));
+}
+
+double PlacedBody::signed_volume() const {
+  double sum = 0;
+  for (Index k = 0; k < triangle_count(); ++k) sum += area_vector(k).dot(point(corners(k)[0]) - point(0));
+  return sum / 6;
 }
 
 }  // namespace stiv

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "penetration/body_parts.hpp"
+#include "penetration/body_components.hpp"
 
 namespace stiv {
 
@@ -32,74 +32,77 @@ BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const
     : surface_(std::move(surface)),
       rounding_(rounding),
       places_(static_cast<std::size_t>(surface_->triangles().rows())) {
-  for (const Index body : bodies_among(*surface_, excluded)) add_parts(body, start);
-  for (const auto& [a, b] : excluded) pairs_.push_back(ordered(place(a).part, place(b).part));
+  for (const Index body : bodies_among(*surface_, excluded)) add_components(body, start);
+  for (const auto& [a, b] : excluded) pairs_.push_back(ordered(place(a).component, place(b).component));
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-  std::erase_if(pairs_, [&](const auto& parts) { return !is_measurable(parts); });
+  std::erase_if(pairs_, [&](const auto& components) { return !is_measurable(components); });
 }
 
-void BodyPenetrations::add_parts(Index body, const Positions& start) {
-  BodyParts parts = body_parts(*surface_, body);
-  add_part(body, false, std::move(parts.open), start);
-  add_part(body, true, std::move(parts.closed), start);
+void BodyPenetrations::add_components(Index body, const Positions& start) {
+  BodyComponents components = body_components(*surface_, body);
+  add_component(body, false, std::move(components.open), start);
+  add_component(body, true, std::move(components.closed), start);
 }
 
-void BodyPenetrations::add_part(Index body, bool closed, std::vector<Index> triangles, const Positions& start) {
-  const auto number = static_cast<Index>(parts_.size());
+void BodyPenetrations::add_component(Index body, bool closed, std::vector<Index> triangles, const Positions& start) {
+  const auto number = static_cast<Index>(components_.size());
   for (std::size_t k = 0; k < triangles.size(); ++k) places_[at(triangles[k])] = {number, static_cast<Index>(k)};
-  Part& added = parts_.emplace_back(Part{body, closed, body_mesh(*surface_, std::move(triangles)), {}, 1});
+  Component& added =
+      components_.emplace_back(Component{body, closed, body_mesh(*surface_, std::move(triangles)), {}, 1});
   const PlacedBody placed(added.mesh, start);
   added.start_areas = areas_of(placed);
   if (closed && placed.signed_volume() < 0) added.facing = -1;
 }
 
-/// Where one is open, it comes first.
+/// An open component comes first.
 std::array<Index, 2> BodyPenetrations::ordered(Index a, Index b) const {
-  const bool forward = part(a).closed == part(b).closed ? a < b : part(b).closed;
+  const bool forward = component(a).closed == component(b).closed ? a < b : component(b).closed;
   return forward ? std::array{a, b} : std::array{b, a};
 }
 
-bool BodyPenetrations::is_measurable(const std::array<Index, 2>& parts) const {
-  const Part &first = part(parts[0]), &second = part(parts[1]);
+bool BodyPenetrations::is_measurable(const std::array<Index, 2>& components) const {
+  const Component &first = component(components[0]), &second = component(components[1]);
   return second.closed && first.body != second.body && surface_->bodies_meet(first.body, second.body);
 }
 
 std::vector<BodyPenetrations::Pair> BodyPenetrations::pairs() const {
   std::vector<Pair> pairs;
-  for (const auto& [a, b] : pairs_) pairs.push_back({{part(a).body, part(b).body}, {part(a).closed, part(b).closed}});
+  for (const auto& [a, b] : pairs_)
+    pairs.push_back({{component(a).body, component(b).body}, {component(a).closed, component(b).closed}});
   return pairs;
 }
 
 void BodyPenetrations::update(std::vector<Penetration>& penetrations, const std::vector<unsigned char>& displaced,
                               const Positions& q, const IndexPairs& intersecting) const {
-  const std::vector<IndexPairs> meeting = meeting_by_pair(intersecting);
-  const auto is_displaced = [&](Index number) { return displaced[at(part(number).body)] != 0; };
+  const std::vector<IndexPairs> candidates = pairs_of_components(intersecting);
+  const auto is_displaced = [&](Index number) { return displaced[at(component(number).body)] != 0; };
   for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (is_displaced(pairs_[k][0]) || is_displaced(pairs_[k][1])) penetrations[k] = measured(pairs_[k], meeting[k], q);
+    if (is_displaced(pairs_[k][0]) || is_displaced(pairs_[k][1]))
+      penetrations[k] = measured(pairs_[k], candidates[k], q);
 }
 
-/// Of each pair, places of triangles in its first and its second part.
-std::vector<IndexPairs> BodyPenetrations::meeting_by_pair(const IndexPairs& intersecting) const {
-  std::vector<IndexPairs> meeting(pairs_.size());
+/// For each pair of components, the intersecting pairs of their triangles.
+std::vector<IndexPairs> BodyPenetrations::pairs_of_components(const IndexPairs& intersecting) const {
+  std::vector<IndexPairs> candidates(pairs_.size());
   for (const auto& [a, b] : intersecting) {
     Place first = place(a), second = place(b);
-    if (first.part < 0 || second.part < 0) continue;
-    const std::array<Index, 2> parts = ordered(first.part, second.part);
-    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), parts);
-    if (found == pairs_.end() || *found != parts) continue;
-    if (first.part != parts[0]) std::swap(first, second);
-    meeting[at(found - pairs_.begin())].emplace_back(first.triangle, second.triangle);
+    if (first.component < 0 || second.component < 0) continue;
+    const std::array<Index, 2> components = ordered(first.component, second.component);
+    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), components);
+    if (found == pairs_.end() || *found != components) continue;
+    if (first.component != components[0]) std::swap(first, second);
+    candidates[at(found - pairs_.begin())].emplace_back(first.triangle, second.triangle);
   }
-  return meeting;
+  return candidates;
 }
 
-Penetration BodyPenetrations::measured(const std::array<Index, 2>& parts, const IndexPairs& meeting,
+Penetration BodyPenetrations::measured(const std::array<Index, 2>& components, const IndexPairs& candidates,
                                        const Positions& q) const {
-  const Part &a = part(parts[0]), &b = part(parts[1]);
+  const Component &a = component(components[0]), &b = component(components[1]);
   const PlacedBody first(a.mesh, q), second(b.mesh, q);
-  Penetration found = a.closed ? common_volume(first, second, meeting, rounding_)
-                               : area_inside(first, a.start_areas, second, meeting, rounding_);
+  Penetration found = a.closed ? common_volume(first, second, candidates, rounding_)
+                               : area_inside(first, a.start_areas, second, candidates, rounding_);
   found.amount *= a.facing * b.facing;
   return found;
 }

@@ -19,8 +19,8 @@ void sort_and_unify(std::vector<EdgeCrossing>& crossings) {
   crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
 }
 
-/// Weights of the second and third corner at a fraction of the side that begins at corner k.
-Eigen::Vector2d place_on_side(std::size_t k, double fraction) {
+/// Weights of the second and third corner at a fraction of the side from corner k.
+Eigen::Vector2d weights_on_side(std::size_t k, double fraction) {
   std::array<double, 3> weights{};
   weights[k] = 1 - fraction;
   weights[(k + 1) % 3] = fraction;
@@ -29,9 +29,9 @@ Eigen::Vector2d place_on_side(std::size_t k, double fraction) {
 
 }  // namespace
 
-Crossings::Crossings(const PlacedBody& first, const PlacedBody& second, const IndexPairs& meeting, int nudge)
-    : bodies_{&first, &second}, nudge_(nudge) {
-  for (const auto& [a, b] : meeting) add({a, b});
+Crossings::Crossings(const PlacedBody& first, const PlacedBody& second, const IndexPairs& candidates, int perturbation)
+    : bodies_{&first, &second}, perturbation_(perturbation) {
+  for (const auto& [a, b] : candidates) add({a, b});
   for (auto& crossings : crossings_) sort_and_unify(crossings);
 }
 
@@ -42,25 +42,25 @@ void Crossings::add(const std::array<Index, 2>& triangles) {
     const PlacedBody &own = body(side), &other = body(1 - side);
     const auto& corners = own.corners(triangles[side]);
     for (std::size_t k = 0; k < 3; ++k) {
-      // In one order, so that both triangles of an edge find the same.
+      // In a canonical order, so that both triangles of an edge compute the same crossing.
       const std::array<Index, 2> edge = edge_between(corners[k], corners[(k + 1) % 3]);
       const auto pierced = piercing({own.point(edge[0]), own.point(edge[1])}, other.triangle(triangles[1 - side]),
-                                    nudge(side), touching_);
+                                    perturbation(side), touching_);
       if (!pierced) continue;
       crossings_[side].push_back({edge, triangles[1 - side], pierced->step, pierced->at});
-      // The cut runs from where a side of the first triangle leaves the back of the second, or where one of the second
-      // goes to the back of the first, as seen when one goes around the triangle.
+      // Around each triangle, the cut begins where a side of the first triangle comes from the back of the second, or
+      // where a side of the second goes to the back of the first.
       const bool forward = corners[k] == edge[0], upward = forward ? pierced->step < 0 : pierced->step > 0;
       const std::size_t end = upward == (side == 0) ? 0 : 1;
       found[end] = true;
-      cut.ends[side][end] = place_on_side(k, forward ? pierced->at : 1 - pierced->at);
-      cut.ends[1 - side][end] = pierced->place;
+      cut.ends[side][end] = weights_on_side(k, forward ? pierced->at : 1 - pierced->at);
+      cut.ends[1 - side][end] = pierced->weights;
     }
   }
   if (found[0] && found[1]) cuts_.push_back(cut);
 }
 
-/// Calls visit(crossing) for those of an edge, smaller vertex first.
+/// Calls visit(crossing) for the crossings of an edge.
 template <class Visit>
 void Crossings::along(std::size_t side, Index a, Index b, const Visit& visit) const {
   const std::array<Index, 2> edge = edge_between(a, b);
@@ -70,7 +70,7 @@ void Crossings::along(std::size_t side, Index a, Index b, const Visit& visit) co
     visit(*k);
 }
 
-int Crossings::gained(std::size_t side, Index from, Index to) const {
+int Crossings::winding_increase(std::size_t side, Index from, Index to) const {
   int sum = 0;
   along(side, from, to, [&](const EdgeCrossing& c) { sum += from < to ? c.step : -c.step; });
   return sum;

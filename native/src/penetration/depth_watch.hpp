@@ -9,14 +9,16 @@
 
 namespace stiv {
 
-/// Keeps bodies of which pairs are excluded from going deeper into each other than they were at the start of the
-/// session: two closed ones by the volume that they have in common, an open and a closed one by the area of the first
-/// inside of the second. Compared with the start and not with the state before, so that what went out may come back as
-/// far, and rounding does not add up. (mathematics.md, "Excluded pairs")
+/// Marks the bodies with a vertex that differs in any bit between two positions, (N, 3) each.
+std::vector<unsigned char> displaced_bodies(const Surface& surface, const Positions& from, const Positions& to);
+
+/// Detects whether bodies with excluded pairs penetrate deeper than at the start of the session (BodyPenetrations).
+/// Comparing with the start, not with the last state, allows bodies to return, and rounding does not accumulate.
+/// (mathematics.md, "Excluded pairs")
 class DepthWatch {
  public:
   /// @param excluded pairs of triangles that may intersect
-  /// @param rounding how far storing may move a vertex
+  /// @param rounding largest displacement of a vertex by storage
   DepthWatch(std::shared_ptr<const Surface> surface, IndexPairs excluded, double rounding)
       : surface_(std::move(surface)), excluded_(std::move(excluded)), rounding_(rounding) {}
 
@@ -26,8 +28,8 @@ class DepthWatch {
   /// @param intersecting all pairs of triangles that intersect at q, sorted
   void begin(const Positions& q, const IndexPairs& intersecting);
 
-  /// Is any pair of bodies deeper in each other than at the start, beyond rounding? Only those that were displaced
-  /// since the last time it was asked are measured again.
+  /// True if any pair of bodies penetrates deeper than at the start, beyond rounding. Only pairs with a body displaced
+  /// since the last call are measured again.
   bool is_deeper(const Positions& q, const IndexPairs& intersecting);
 
  private:

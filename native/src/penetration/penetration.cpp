@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "penetration/mean_windings.hpp"
+#include "penetration/winding_numbers.hpp"
 
 namespace stiv {
 
 namespace {
 
-/// A side's part of the volume, and of the area that moves.
+/// Adds the contribution of a side to the volume and to its uncertainty.
 void add_side(const Crossings& crossings, std::size_t side, double rounding, Penetration& sum) {
   const PlacedBody& body = crossings.body(side);
   const Vector3 origin = crossings.body(0).point(0);
@@ -28,9 +28,9 @@ Vector3 point_at(const Triangle& t, const Eigen::Vector2d& weights) {
   return t[0] + weights[0] * (t[1] - t[0]) + weights[1] * (t[2] - t[0]);
 }
 
-/// The part of the first triangle over which its cut goes when the second moves by `rounding`: the flatter they meet,
-/// the more.
-double part_passed(const Crossings& crossings, const Cut& cut, double rounding) {
+/// The fraction of the first triangle that its cut sweeps if the second moves by `rounding`; it grows as the angle
+/// between the triangles decreases.
+double swept_fraction(const Crossings& crossings, const Cut& cut, double rounding) {
   const Triangle triangle = crossings.body(0).triangle(cut.triangles[0]);
   const double length = (point_at(triangle, cut.ends[0][1]) - point_at(triangle, cut.ends[0][0])).norm();
   const Vector3 area = crossings.body(0).area_vector(cut.triangles[0]),
@@ -39,20 +39,20 @@ double part_passed(const Crossings& crossings, const Cut& cut, double rounding) 
   return passed < whole ? passed / whole : 1;
 }
 
-Penetration nudged_area_inside(const Crossings& crossings, const std::vector<double>& areas, double rounding) {
+Penetration perturbed_area_inside(const Crossings& crossings, const std::vector<double>& areas, double rounding) {
   Penetration sum;
   const std::vector<double> means = mean_windings(crossings, 0);
   for (std::size_t k = 0; k < areas.size(); ++k) sum.amount += areas[k] * means[k];
   std::vector<double> passed(areas.size(), 0);
-  for (const Cut& cut : crossings.cuts()) passed[at(cut.triangles[0])] += part_passed(crossings, cut, rounding);
+  for (const Cut& cut : crossings.cuts()) passed[at(cut.triangles[0])] += swept_fraction(crossings, cut, rounding);
   for (std::size_t k = 0; k < areas.size(); ++k) sum.uncertainty += areas[k] * std::min(passed[k], 1.0);
   return sum;
 }
 
 }  // namespace
 
-Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& meeting, double rounding) {
-  const Crossings crossings(a, b, meeting, 1);  // a volume does not depend on the nudge
+Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& candidates, double rounding) {
+  const Crossings crossings(a, b, candidates, 1);  // a volume does not depend on the perturbation
   Penetration sum;
   add_side(crossings, 0, rounding, sum);
   add_side(crossings, 1, rounding, sum);
@@ -60,11 +60,11 @@ Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexP
 }
 
 Penetration area_inside(const PlacedBody& open, const std::vector<double>& start_areas, const PlacedBody& closed,
-                        const IndexPairs& meeting, double rounding) {
-  const Crossings one_way(open, closed, meeting, 1);
-  const Penetration first = nudged_area_inside(one_way, start_areas, rounding);
+                        const IndexPairs& candidates, double rounding) {
+  const Crossings one_way(open, closed, candidates, 1);
+  const Penetration first = perturbed_area_inside(one_way, start_areas, rounding);
   if (!one_way.touching()) return first;
-  const Penetration second = nudged_area_inside(Crossings(open, closed, meeting, -1), start_areas, rounding);
+  const Penetration second = perturbed_area_inside(Crossings(open, closed, candidates, -1), start_areas, rounding);
   return {(first.amount + second.amount) / 2, (first.uncertainty + second.uncertainty) / 2};
 }
 

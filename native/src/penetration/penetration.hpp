@@ -3,26 +3,26 @@
 
 #include <vector>
 
-#include "penetration/placed_body.hpp"
+#include "penetration/body_mesh.hpp"
 #include "stiv/acceptance/intersections.hpp"
 
 namespace stiv {
 
-/// How deep a body is in a closed one.
+/// The penetration of a body into a closed one.
 struct Penetration {
   double amount = 0;       ///< a volume, or an area
-  double uncertainty = 0;  ///< what it changes by where the bodies move by a given distance, `rounding`
+  double uncertainty = 0;  ///< its largest change if vertices move by `rounding`
 };
 
-/// The volume that two closed bodies have in common, found from their surfaces: with winding numbers w, by the
-/// divergence theorem, 3 V = integral of w_b x.n over the surface of a + integral of w_a x.n over that of b. Negative
-/// if one of them faces inward.
-/// @param meeting pairs of their triangles, among which are all that intersect
-Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& meeting, double rounding);
+/// The common volume V of two closed bodies. By the divergence theorem, with winding numbers w, 3 V is the integral of
+/// w_b x.n over the surface of a plus that of w_a x.n over the surface of b. Negative if one of them faces inward.
+/// @param candidates pairs of their triangles, all intersecting ones included
+Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexPairs& candidates, double rounding);
 
-/// The area of an open body that is inside of a closed one, each triangle counted with its area at the start, so that
-/// what stretches goes no deeper; half of what lies in the closed one's surface. Negative if that faces inward.
+/// The area of an open body inside a closed one, plus half of the area on its surface. Negative if the closed body
+/// faces inward.
+/// @param start_areas of the open body's triangles at the start, so that stretching does not change the result
 Penetration area_inside(const PlacedBody& open, const std::vector<double>& start_areas, const PlacedBody& closed,
-                        const IndexPairs& meeting, double rounding);
+                        const IndexPairs& candidates, double rounding);
 
 }  // namespace stiv

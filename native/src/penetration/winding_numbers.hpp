@@ -7,12 +7,16 @@
 
 namespace stiv {
 
-/// How often a closed body winds around a point, 1 inside of one that faces outward: counted exactly along a ray.
-/// @param nudge of the point: see nudged_orientation.hpp
-int winding_number(const PlacedBody& closed, const Vector3& point, int nudge);
+/// The winding number of a closed body around a point: 1 inside a body that faces outward. Exact, along a ray.
+/// @param perturbation of the point, see PerturbedSign
+int winding_number(const PlacedBody& closed, const Vector3& point, int perturbation);
 
-/// How often the other body, which is closed, winds around each vertex of the body of a side: along a ray from one
-/// vertex of each component, and from there along edges by what they cross.
+/// The winding number of the other body, which is closed, around each vertex of a side's body: along a ray from one
+/// vertex of each component, and from there along edges by their crossings.
 std::vector<int> winding_numbers(const Crossings& crossings, std::size_t side);
+
+/// For each triangle of a side's body, the mean winding number of the other body, which is closed, over its points: the
+/// fraction of its area inside a body that faces outward. (mathematics.md, "Excluded pairs")
+std::vector<double> mean_windings(const Crossings& crossings, std::size_t side);
 
 }  // namespace stiv

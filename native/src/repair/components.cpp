@@ -13,7 +13,7 @@ void append_triangle(const Surface& surface, Index triangle, std::vector<Index>&
   for (const Index vertex : surface.triangles().row(triangle)) vertices.push_back(vertex);
 }
 
-/// Is every edge of a triangle of each body an edge of exactly two? By body.
+/// For each body, 1 if every edge of its triangles is an edge of exactly two.
 std::vector<unsigned char> closed_bodies(const Surface& surface) {
   std::vector<std::pair<Index, Index>> sides;
   for (const auto& corners : surface.triangles().rowwise())
@@ -35,7 +35,7 @@ std::vector<Index> bodies_of(const Surface& surface, const std::vector<Index>& v
   return bodies;
 }
 
-/// How many pairs each body has a vertex of.
+/// For each body, the number of pairs with a vertex of it.
 std::vector<std::size_t> pairs_of_bodies(const Surface& surface, const std::vector<std::vector<Index>>& pairs) {
   std::vector<std::size_t> count(surface.bodies().size(), 0);
   for (const std::vector<Index>& pair : pairs)
@@ -43,7 +43,7 @@ std::vector<std::size_t> pairs_of_bodies(const Surface& surface, const std::vect
   return count;
 }
 
-/// Vertices reached from `seed` along edges, in order of their distance; `reached` is marked.
+/// The connected component of `seed`, breadth first; marks it in `reached`.
 std::vector<Index> connected_to(const Surface& surface, Index seed, Marks& reached) {
   std::vector<Index> component{seed};
   reached[at(seed)] = 1;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "repair/caged_surface.hpp"
 #include "stiv/acceptance/intersections.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -16,9 +18,9 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 using Entries = std::vector<Eigen::Triplet<double, Index>>;
 
 constexpr double least_weight = 1e-3, greatest_weight = 20;
-constexpr double greatest_ratio = 1e6;  // of areas: a vertex shrunk further holds as if by that
+constexpr double greatest_ratio = 1e6;  // of the areas at the start and now
 
-/// Cotangent of the angle at a, kept within bounds; a corner whose edges have no length weighs as one of 45 degrees.
+/// Cotangent of the angle at a, clamped; 1 if both edges have no length.
 double safe_cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a, v = c - a;
   const double sine = u.cross(v).norm(), cosine = u.dot(v);
@@ -52,7 +54,7 @@ Matrix cotangent_laplacian(const Surface& surface, const Positions& q) {
   return laplacian;
 }
 
-/// (N, moving) The columns of the vertices that move.
+/// (N, moving) The columns of the moving vertices.
 Matrix moving_columns(const ContractionSystem& system) {
   Entries entries;
   for (std::size_t k = 0; k < system.moving.size(); ++k)
@@ -63,8 +65,8 @@ Matrix moving_columns(const ContractionSystem& system) {
   return columns;
 }
 
-/// Squares of the weights that hold the moving vertices: the more its area shrank, the more a vertex stays.
-Eigen::VectorXd holding_weights(const ContractionSystem& system, const Eigen::VectorXd& areas) {
+/// Squared attraction weights of the moving vertices: they grow as the area shrinks.
+Eigen::VectorXd attraction_weights(const ContractionSystem& system, const Eigen::VectorXd& areas) {
   Eigen::VectorXd weights(static_cast<Index>(system.moving.size()));
   for (std::size_t k = 0; k < system.moving.size(); ++k) {
     const double start = system.areas[system.moving[k]], now = areas[system.moving[k]];
@@ -89,7 +91,7 @@ ContractionSystem contraction_system(const Surface& surface, const Positions& q,
                                      const std::vector<unsigned char>& moves) {
   surface.check_positions(q);
   if (!moves.empty() && moves.size() != static_cast<std::size_t>(surface.vertex_count()))
-    throw InputError("the marks of what moves have " + std::to_string(moves.size()) + " entries, the surface has " +
+    throw InputError("moves has " + std::to_string(moves.size()) + " entries, the surface has " +
                      std::to_string(surface.vertex_count()) + " vertices");
   ContractionSystem system{cotangent_laplacian(surface, q), surface.vertex_areas(q), {}};
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
@@ -104,14 +106,14 @@ Positions contraction_step(const Surface& surface, const ContractionSystem& syst
   const Matrix columns = moving_columns(system), transposed = columns.transpose();
   const double factor = smoothing * smoothing;
   Matrix normal = factor * (transposed * columns);
-  const Eigen::VectorXd holding = holding_weights(system, surface.vertex_areas(q));
-  for (Index k = 0; k < normal.cols(); ++k) normal.coeffRef(k, k) += holding[k];
-  // For the displacement rather than the position: what needs no smoothing then stays to the last bit.
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> bending =
+  const Eigen::VectorXd attraction = attraction_weights(system, surface.vertex_areas(q));
+  for (Index k = 0; k < normal.cols(); ++k) normal.coeffRef(k, k) += attraction[k];
+  // Solves for the displacement, not the position: smooth regions then stay bit for bit.
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> curvature =
       system.laplacian * Eigen::Matrix<double, Eigen::Dynamic, 3>(q);
   const Eigen::SimplicialLDLT<Matrix> solver(normal);
-  if (solver.info() != Eigen::Success) throw InputError("the contraction cannot be solved: smoothing is too large");
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> displacement = solver.solve(-factor * (transposed * bending));
+  if (solver.info() != Eigen::Success) throw InputError("the contraction is singular: choose a smaller smoothing");
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> displacement = solver.solve(-factor * (transposed * curvature));
   Positions contracted = q;
   for (std::size_t k = 0; k < system.moving.size(); ++k)
     contracted.row(system.moving[k]) += displacement.row(static_cast<Index>(k));
@@ -125,8 +127,8 @@ ContractionResult contract(const CagedSurface& caged, const Controls& p, const s
   const FloatingPointScope floating_point;
   const ContractionSystem system = contraction_system(*caged.cage, p, moves);
   IntersectionTest test(caged.surface);
-  const auto pairs_at = [&](const Controls& at) {
-    return find_static_pairs(test, caged.deformation->surface_in_range(at), execution).count();
+  const auto pairs_at = [&](const Controls& controls) {
+    return test.find_all(caged.deformation->surface_in_range(controls), execution).count();
   };
   Controls now = as_stored(p, options.storage);
   ContractionResult result{now, false, {pairs_at(now)}};
@@ -146,6 +148,23 @@ ContractionResult contract(const CagedSurface& caged, const Controls& p, const s
   }
   result.free = fewest == 0;
   return result;
+}
+
+EditResult expand(const std::shared_ptr<const Surface>& surface, const Positions& from, const Positions& target,
+                  const EditOptions& options, Execution& execution) {
+  return expand(surface, make_identity(surface->vertex_count()), from, target, options, execution);
+}
+
+EditResult expand(const std::shared_ptr<const Surface>& surface, const std::shared_ptr<const Deformation>& deformation,
+                  const Controls& from, const Controls& target, const EditOptions& options, Execution& execution) {
+  EditSession session(surface, deformation, from, options);
+  EditResult edited = session.edit(target, execution);
+  if (edited.status != EditStatus::corrected && edited.status != EditStatus::blocked) return edited;
+  EditResult settled = session.settle(execution);
+  settled.path.insert(settled.path.begin(), std::make_move_iterator(edited.path.begin()),
+                      std::make_move_iterator(edited.path.end()));
+  if (settled.status == EditStatus::unchanged) settled.status = edited.status;
+  return settled;
 }
 
 }  // namespace stiv

@@ -6,22 +6,22 @@
 #include <cmath>
 #include <limits>
 
-#include "repair/contraction_tries.hpp"
+#include "repair/contraction_strategies.hpp"
 #include "stiv/error.hpp"
-#include "stiv/repair/expansion.hpp"
+#include "stiv/repair/contraction.hpp"
 
 namespace stiv {
 
 namespace {
 
-constexpr int further_rounds = 4;
+constexpr int refinement_rounds = 4;
 
-/// The marks given, without controls that move anything but deformable bodies.
-Movable movable_of(const CagedSurface& caged, const Marks& asked) {
+/// The requested controls, without those that move vertices of bodies that are not deformable.
+Movable movable_of(const CagedSurface& caged, const Marks& requested) {
   const auto count = static_cast<std::size_t>(caged.deformation->control_count());
-  if (!asked.empty() && asked.size() != count)
-    throw InputError("the marks of what may move have " + std::to_string(asked.size()) + " entries, there are " +
-                     std::to_string(count) + " controls");
+  if (!requested.empty() && requested.size() != count)
+    throw InputError("moves has " + std::to_string(requested.size()) + " entries, there are " + std::to_string(count) +
+                     " controls");
   const Surface& surface = *caged.surface;
   const auto is_deformable = [&](Index vertex) {
     return surface.bodies()[at(surface.body_of(vertex))].mobility == Mobility::deformable;
@@ -30,21 +30,21 @@ Movable movable_of(const CagedSurface& caged, const Marks& asked) {
   for (std::size_t k = 0; k < count; ++k) {
     const std::vector<Index>& support = movable.supports[k];
     movable.controls[k] =
-        (asked.empty() || asked[k] != 0) && std::all_of(support.begin(), support.end(), is_deformable);
+        (requested.empty() || requested[k] != 0) && std::all_of(support.begin(), support.end(), is_deformable);
   }
-  movable.vertices = moved_by(movable.controls, movable.supports, surface.vertex_count());
+  movable.vertices = vertices_moved(movable.controls, movable.supports, surface.vertex_count());
   return movable;
 }
 
 bool any_coincide(const Surface& surface, const Positions& q, const StaticPairs& pairs) {
   const auto corners = [&](Index triangle) {
-    std::array<std::array<double, 3>, 3> places;
+    std::array<std::array<double, 3>, 3> points;
     for (Index k = 0; k < 3; ++k) {
       const auto row = q.row(surface.triangles()(triangle, k));
-      places[at(k)] = {row[0], row[1], row[2]};
+      points[at(k)] = {row[0], row[1], row[2]};
     }
-    std::sort(places.begin(), places.end());
-    return places;
+    std::sort(points.begin(), points.end());
+    return points;
   };
   return std::any_of(pairs.faces.begin(), pairs.faces.end(),
                      [&](const auto& pair) { return corners(pair.first) == corners(pair.second); });
@@ -74,7 +74,7 @@ double relative_deviation(const Positions& from, const Positions& to, const Mark
   return diagonal > 0 ? std::sqrt(sum / count) / diagonal : infinity;
 }
 
-/// One repair: the tries in their order, the best expansion so far, and what is to be said when none is good.
+/// Runs the strategies in order and remembers the best expansion.
 class Repair {
  public:
   Repair(CagedSurface caged, const Controls& p, RepairOptions options, Execution& execution)
@@ -99,9 +99,9 @@ class Repair {
   RepairResult run() {
     result_.positions = start_;
     try {
-      result_.pairs = find_static_pairs(test_, surface_at_start_, execution_);
+      result_.pairs = test_.find_all(surface_at_start_, execution_);
       result_.pairs_before = result_.fewest_pairs = result_.pairs.count();
-      if (!result_.pairs.empty()) untangle();
+      if (!result_.pairs.empty()) try_strategies();
     } catch (const Interrupted&) {
       if (!best_found_ || execution_.cancel_requested())
         result_.status = execution_.cancel_requested() ? RepairStatus::cancelled : RepairStatus::budget;
@@ -114,38 +114,39 @@ class Repair {
   }
 
  private:
-  void untangle() {
+  void try_strategies() {
     if (any_coincide(*caged_.surface, surface_at_start_, result_.pairs)) return refuse(RepairRefusal::coincident);
     if (any_held(*caged_.surface, result_.pairs, movable_.vertices)) return refuse(RepairRefusal::held);
     Controls fewest = start_;
-    for (const ContractionTry& way : contraction_tries(caged_, result_.pairs, movable_, options_.contraction)) {
-      follow(way, start_, fewest);
+    for (const ContractionStrategy& strategy :
+         contraction_strategies(caged_, result_.pairs, movable_, options_.contraction)) {
+      apply(strategy, start_, fewest);
       if (is_good()) return conclude();
     }
-    // What no try freed from the start, parts around what is left may free from the best of them.
+    // Contracting regions from the best state may remove the pairs that every strategy left.
     if (!best_found_ && fewest != start_) {
       const Controls best = fewest;
-      follow(regions_try(), best, fewest);
+      apply(regions_strategy(), best, fewest);
     }
     conclude();
   }
 
-  ContractionTry regions_try() const {
-    return contraction_tries(caged_, result_.pairs, movable_, options_.contraction).back();
+  ContractionStrategy regions_strategy() const {
+    return contraction_strategies(caged_, result_.pairs, movable_, options_.contraction).back();
   }
 
-  void follow(const ContractionTry& way, const Controls& from, Controls& fewest) {
+  void apply(const ContractionStrategy& strategy, const Controls& from, Controls& fewest) {
     execution_.check();
-    const Contracted contracted = way.run(from, execution_);
+    const Contracted contracted = strategy.run(from, execution_);
     result_.steps += contracted.steps;
     if (contracted.pairs < result_.fewest_pairs) {
       result_.fewest_pairs = contracted.pairs;
       fewest = contracted.positions;
     }
-    if (contracted.pairs == 0) expand_back(contracted.positions, way.what);
+    if (contracted.pairs == 0) expand_back(contracted.positions, strategy.name);
   }
 
-  void expand_back(const Controls& contracted, const std::string& what) {
+  void expand_back(const Controls& contracted, const std::string& strategy) {
     EditResult expanded = expand(caged_.surface, caged_.deformation, contracted, start_, options_.edit, execution_);
     if (execution_.cancel_requested()) throw Interrupted("cancelled");
     const double deviation = relative_deviation(surface_at_start_, expanded.surface, movable_.vertices);
@@ -153,12 +154,12 @@ class Repair {
     best_found_ = true;
     best_ = std::move(expanded.controls);
     result_.deviation = deviation;
-    result_.contracted = what;
+    result_.contracted = strategy;
   }
 
-  /// A new edit from the best repair sometimes comes nearer: other contacts are met first.
-  void come_nearer() {
-    for (int round = 0; round < further_rounds && !is_good(); ++round) {
+  /// Repeats the expansion from the best repair: it meets contacts in another order and may come closer.
+  void refine() {
+    for (int round = 0; round < refinement_rounds && !is_good(); ++round) {
       const double before = result_.deviation;
       expand_back(Controls(best_), result_.contracted);
       if (!(result_.deviation < before)) return;
@@ -172,13 +173,13 @@ class Repair {
     result_.refusal = reason;
   }
 
-  /// Takes the best repair if it is near enough, and if the exact test of all says once more that nothing intersects.
+  /// Accepts the best repair if its deviation is small enough and the exact test of everything confirms it.
   void conclude() {
     if (!best_found_) return refuse(RepairRefusal::not_freed);
-    if (!execution_.budget_used_up()) come_nearer();
+    if (!execution_.budget_used_up()) refine();
     if (result_.deviation > options_.max_deviation) return refuse(RepairRefusal::too_far);
     Execution uninterrupted(execution_.threads());
-    if (!find_static_pairs(test_, caged_.deformation->surface_in_range(best_), uninterrupted).empty())
+    if (!test_.find_all(caged_.deformation->surface_in_range(best_), uninterrupted).empty())
       return refuse(RepairRefusal::not_freed);
     result_.status = RepairStatus::repaired;
     result_.positions = best_;

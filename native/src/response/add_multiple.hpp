@@ -5,7 +5,7 @@
 
 namespace stiv {
 
-/// y += factor x, (n), none fused: the same bits whatever the width of vectors.
+/// y += factor x, (n), not fused: same bits for any vector width.
 void add_multiple(Eigen::VectorXd& y, double factor, const double* x);
 
 }  // namespace stiv

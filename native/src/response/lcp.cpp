@@ -12,7 +12,7 @@ namespace stiv {
 
 namespace {
 
-constexpr int sweeps_before_solve = 8;  // of the active rows as equations; then twice as many, and so on
+constexpr int sweeps_before_solve = 8;  // until the first solve of the active rows; doubles each time
 
 Eigen::VectorXd first_guess(const Eigen::VectorXd& start, Eigen::Index size) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
@@ -21,7 +21,7 @@ Eigen::VectorXd first_guess(const Eigen::VectorXd& start, Eigen::Index size) {
   return x;
 }
 
-/// B x + b, from the columns of the few rows that carry a multiplier.
+/// B x + b, from the columns of active rows.
 Eigen::VectorXd slack_at(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
   Eigen::VectorXd slack = b;
   for (Eigen::Index row = 0; row < x.size(); ++row)
@@ -29,8 +29,8 @@ Eigen::VectorXd slack_at(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, con
   return slack;
 }
 
-/// One sweep over all rows; keeps `slack` = B x + b up to date. Returns the largest change of a multiplier.
-/// `diagonal`: of B, side by side, since most rows need no more of it.
+/// One sweep over all rows, which updates `slack` = B x + b. Returns the largest change of a multiplier.
+/// @param diagonal of B, contiguous, since most rows need no other entry
 double sweep(const Eigen::MatrixXd& B, const Eigen::VectorXd& diagonal, Eigen::VectorXd& x, Eigen::VectorXd& slack) {
   double largest_change = 0;
   for (Eigen::Index row = 0; row < x.size(); ++row) {
@@ -44,11 +44,11 @@ double sweep(const Eigen::MatrixXd& B, const Eigen::VectorXd& diagonal, Eigen::V
   return largest_change;
 }
 
-/// Goes toward the solution as equations of the rows that carry a multiplier, until one of these is zero: sweeps alone
-/// take hundreds where rows nearly depend on each other. The energy that sweeps lower falls too, so both together
-/// converge. Does nothing where the rows do depend on each other. [Silcowitz, Niebe, Erleben 2010]
+/// Moves toward the solution of the active rows as equations until a multiplier is zero. Sweeps alone need hundreds of
+/// passes if rows are nearly dependent. Both lower the same energy, so together they converge. Does nothing if the rows
+/// are dependent. [Silcowitz, Niebe, Erleben 2010]
 void solve_active(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  constexpr double least_pivot = 1e-10;  // in parts of the largest
+  constexpr double least_pivot = 1e-10;  // relative to the largest
   std::vector<Eigen::Index> active;
   for (Eigen::Index row = 0; row < x.size(); ++row)
     if (x[row] > 0) active.push_back(row);

@@ -13,8 +13,8 @@ namespace stiv {
 
 namespace {
 
-/// In the metric J'J a row's squared length is at most that of the volume's gradient. A smaller part than this is what
-/// rounding leaves where free controls move all corners of the contacts alike, or move none.
+/// Squared length of a row in the metric J'J relative to that of the volume's gradient, which bounds it. Below this
+/// fraction a row is rounding: free controls move all corners of the contacts equally, or none.
 constexpr double least_squared_length = 1e-24;
 
 constexpr Index steps_per_chunk = 8;
@@ -52,7 +52,7 @@ void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
 
 void ConstraintSet::complete_gram(const Execution& execution) {
   const auto before = static_cast<Index>(gram_.rows()), after = static_cast<Index>(constraints_.size());
-  Eigen::MatrixXd gram = std::exchange(gram_, Eigen::MatrixXd());  // made anew if interrupted
+  Eigen::MatrixXd gram = std::exchange(gram_, Eigen::MatrixXd());  // computed again if interrupted
   gram.conservativeResize(after, after);
   const RowControls controls(constraints_);
   execution.for_chunks(after - before, StepTile::width, [&](Index begin, Index end, Index) {
@@ -60,7 +60,7 @@ void ConstraintSet::complete_gram(const Execution& execution) {
     const StepTile steps({constraints_.data() + first, constraints_.data() + last}, controls);
     StepTile::Products products;
     for (Index row = 0; row < after; ++row) {
-      if (row >= before && row < first) continue;  // the tile of that row's step has the products
+      if (row >= before && row < first) continue;  // computed with the tile of that row's step
       steps.multiply(constraints_[at(row)].row, products);
       for (Index column = first; column < last; ++column)
         if (row < before || row >= column) gram(row, column) = gram(column, row) = products[at(column - first)];
@@ -97,7 +97,7 @@ Controls ConstraintSet::project(const Controls& from, const Execution& execution
 
 Controls ConstraintSet::project_as_equations(const Controls& from, const Execution& execution) {
   complete_gram(execution);
-  // Rows that depend on each other are common: the least-squares solution of least length.
+  // Dependent rows are common: take the least-squares solution of least norm.
   multipliers_ = gram_.completeOrthogonalDecomposition().solve(-excess_at(from));
   return moved_by_multipliers(from);
 }

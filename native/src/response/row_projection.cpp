@@ -17,7 +17,7 @@ void make_as_long(Eigen::VectorXd& multipliers, Eigen::Index size) {
   multipliers.tail(size - given).setZero();
 }
 
-/// One visit of all rows; returns the largest change of a multiplier. Rows are of length one in the metric.
+/// One sweep over all rows, of length 1 in the metric. Returns the largest change of a multiplier.
 double sweep(const std::vector<ControlConstraint>& constraints, Controls& p, Eigen::VectorXd& multipliers) {
   double largest_change = 0;
   Eigen::Index r = 0;

@@ -8,13 +8,12 @@
 
 namespace stiv {
 
-/// What a sweep over the rows costs, in multiplications; with the rows' Gram matrix it would cost their number squared.
+/// The cost of a sweep over the rows in multiplications. With a Gram matrix it is the number of rows squared.
 std::size_t sweep_cost(const std::vector<ControlConstraint>& constraints);
 
-/// The point nearest to `from` in the metric that satisfies all constraints, by visiting one after the other and
-/// keeping the point itself up to date: the sweeps of `solve_lcp` without its matrix, for thousands of constraints that
-/// touch few controls each. [Hildreth 1957]
-/// @param multipliers first guess, shorter or empty: the rest is 0; the multipliers found
+/// The point closest to `from` in the metric that satisfies all constraints, by sweeps that update the point after each
+/// constraint: solve_lcp without its matrix, for thousands of constraints on few controls each. [Hildreth 1957]
+/// @param multipliers in: first guess, of which missing values are 0; out: the multipliers
 Controls project_by_rows(const std::vector<ControlConstraint>& constraints, const Controls& from,
                          Eigen::VectorXd& multipliers, const LcpOptions& options);
 

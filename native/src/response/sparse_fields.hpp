@@ -13,7 +13,7 @@ inline double squared_norm(const SparseField& field) {
   return sum;
 }
 
-/// Product of a sparse field and one without a gap, as a metric that couples all controls makes them.
+/// Dot product of a sparse field and one with consecutive indices, the result of a metric that couples all controls.
 inline double dot_with_run(const SparseField& a, const SparseField& run) {
   double sum = 0;
   const Index first = run.index.front();
@@ -25,7 +25,7 @@ inline double dot_with_run(const SparseField& a, const SparseField& run) {
   return sum;
 }
 
-/// Product of two sparse fields; both are ascending. Products are added in the order of their indices either way.
+/// Dot product of two sparse fields. Terms are added in the order of indices in both branches.
 inline double dot(const SparseField& a, const SparseField& b) {
   const std::size_t size = b.index.size();
   if (size > 0 && static_cast<std::size_t>(b.index.back() - b.index.front()) + 1 == size) return dot_with_run(a, b);

@@ -9,14 +9,13 @@
 
 namespace stiv {
 
-/// Which controls the rows of some constraints have entries at, numbered from 0: what else steps move does not count
-/// in the products of rows and steps.
+/// The controls of the rows of some constraints, numbered from 0. Products of rows and steps need no others.
 class RowControls {
  public:
   explicit RowControls(const std::vector<ControlConstraint>& constraints);
 
   std::size_t count() const { return count_; }
-  /// -1: none of the rows has an entry there
+  /// The number of a control, -1 if no row has an entry there.
   Index number(Index control) const {
     const auto k = static_cast<std::size_t>(control);
     return k < numbers_.size() ? numbers_[k] : -1;
@@ -27,7 +26,7 @@ class RowControls {
   std::size_t count_ = 0;
 };
 
-/// Steps of up to `width` constraints side by side, for products with one row after the other: a lane a step.
+/// Steps of up to `width` constraints side by side, one in each lane, for products with many rows.
 class StepTile {
  public:
   static constexpr std::size_t width = 32;
@@ -35,8 +34,8 @@ class StepTile {
 
   StepTile(std::span<const ControlConstraint> constraints, const RowControls& controls);
 
-  /// row . step of each; products are added up in the order of the row's entries, none fused: the same bits whatever
-  /// the width of vectors.
+  /// row . step for each step. Terms are added in the order of the row's entries, none fused: same bits for any vector
+  /// width.
   void multiply(const SparseField& row, Products& products) const;
 
  private:

@@ -8,7 +8,7 @@ namespace stiv {
 
 namespace {
 
-/// Union-find over regions; the smaller root wins, so that labels do not depend on the order of joining.
+/// Union-find over regions. The smaller root wins, so that labels do not depend on the order of unions.
 class Partition {
  public:
   explicit Partition(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
@@ -48,7 +48,7 @@ void join_same_event(const std::vector<Region>& regions, Partition& partition) {
     if (regions[order[k]].event == regions[order[k - 1]].event) partition.join(order[k - 1], order[k]);
 }
 
-/// The number of each region's part, 0, 1, ... in the order of their first regions.
+/// The label of each region's set, 0, 1, ... in the order of first regions.
 std::vector<Index> numbered(Partition& partition, std::size_t size) {
   std::vector<Index> labels(size, 0);
   Index count = 0;

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <tuple>
 
-#include "volumes/gathering.hpp"
 #include "volumes/published_gradient.hpp"
+#include "volumes/stiv_sums.hpp"
 
 namespace stiv {
 
 namespace {
 
-/// A side of an event, and the region of the vertex in whose barycentric cell the contact lies.
+/// A side of an event with the region that contains the contact.
 struct Side {
   Region region;
   ContactSide contact;
@@ -33,7 +33,7 @@ Side side_of(const Events& events, Index number, int begin, int end, const Posit
   return side;
 }
 
-/// Of the sides within each region the one met first, by vertex.
+/// The earliest side in each region, by vertex.
 std::vector<Side> earliest_sides(const Events& events, const Positions& displacement) {
   std::vector<Side> sides;
   for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
@@ -67,7 +67,7 @@ std::vector<Stiv> published_volumes(const Surface& surface, const Events& events
                                     PublishedGradient gradient) {
   const std::vector<Side> sides = earliest_sides(events, end - start);
   const std::vector<Index> labels = ring_labels(surface, regions_of(sides), kind);
-  StivGathering gathering(labels);
+  StivSums gathering(labels);
   for (std::size_t number = 0; number < sides.size(); ++number) {
     const Side& side = sides[number];
     const Event& event = events[at(side.region.event)];

@@ -8,15 +8,15 @@ namespace stiv {
 
 namespace {
 
-/// Sines below this leave the plane of two directions to rounding: nothing is differentiated there.
+/// Sine below which rounding determines the plane of two directions: derivatives are 0.
 constexpr double least_sine = 1e-6;
 
-/// The four vertices in motion, and what both kinds of contact have in common: the separation vector is
-/// apart - alpha u - beta v, at right angles to u and v. u and v span the face, or are the two edges.
+/// The contact's four vertices and its frame. For both kinds of contact, the separation vector is
+/// apart - alpha u - beta v, orthogonal to u and v, which span the face or are the two edges.
 struct ContactMotion {
   std::array<Vector3, 4> at;            ///< positions at the time of contact
   std::array<Vector3, 4> displacement;  ///< Dq_k
-  double time = 0;                      ///< of the contact itself, not retreated
+  double time = 0;                      ///< of the contact itself, before the retreat
   double approach = 0;                  ///< n . Drho with the event's normal
 };
 
@@ -32,7 +32,7 @@ struct FrameGradient {
 
 bool is_vertex_face(const Event& event) { return event.kind == EventKind::vertex_face; }
 
-/// The time at which n . sum_k w_k x_k is the distance that the two keep, or the less from which they start.
+/// The time at which n . sum_k w_k x_k is the pair's threshold, or its smaller distance at the start.
 double contact_time(const Event& event, const Positions& start, double approach) {
   if (approach == 0) return event.time;
   const double distance = std::min(event.clearance.threshold, event.start_distance);
@@ -80,7 +80,7 @@ FrameGradient of_weights(const Frame& frame, double a, double b) {
   return {y * separation - frame.alpha * m, z * separation - frame.beta * m, m};
 }
 
-/// How n . Dr changes with alpha and beta, which the side's own |w_k| are made of.
+/// Derivatives of n . Dr by alpha and beta, through the side's |w_k|.
 std::array<double, 2> slopes_by_weights(const Event& event, const ContactSide& side, const Vector3& normal,
                                         const ContactMotion& motion) {
   const auto along = [&](std::size_t to, std::size_t from) {
@@ -126,10 +126,10 @@ CornerGradients whole_gradient(const Event& event, const ContactSide& side, cons
                                const Positions& start, const Positions& end) {
   const ContactMotion motion = motion_of(event, start, end);
   const CornerGradients contact = by_contact(event, side, normal, motion);
-  double turning = 0;  // d (n . Dr) / dt, as the contact moves along
+  double turning = 0;  // d (n . Dr) / dt by the motion of the contact
   for (std::size_t k = 0; k < 4; ++k) turning += contact[k].dot(motion.displacement[k]);
   const double remaining = 1 - event.time;
-  const double reported = event.time > 0 ? normal.dot(side.displacement) : 0;  // a time of 0 is held there
+  const double reported = event.time > 0 ? normal.dot(side.displacement) : 0;  // a time of 0 is constant
   CornerGradients gradients = frozen_gradient(event, side, normal);
   for (std::size_t k = 0; k < 4; ++k)
     gradients[k] += remaining * motion.time * contact[k] + (remaining * turning - reported) * by_time(event, motion, k);

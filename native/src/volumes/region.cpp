@@ -11,8 +11,8 @@ namespace stiv {
 
 namespace {
 
-/// A normal tells a way out only if the two sides approach each other along it. Below this cosine the sides slide, and
-/// the sign of n . Drho is rounding. (mathematics.md, "Regions")
+/// A normal is usable if the two sides approach each other along it. Below this cosine they slide, and the sign of
+/// n . Drho is rounding. (mathematics.md, "Regions")
 constexpr double least_cosine = 1e-8;
 
 template <class Field>
@@ -21,15 +21,15 @@ bool normal_is_usable(const Event& event, const Field& displacement) {
   return event.normal.dot(relative) < -least_cosine * relative.norm();
 }
 
-/// A contact nearer than this share to a vertex or edge of its face, or to an end of its edge, is a contact with that
-/// vertex or edge: inside a flat wall its normal points anywhere, though the faces beside it tell the way out. So does
-/// the normal of edges that are parallel but for this sine. A box that lies on a wall would be pushed along it by both.
-constexpr double least_share = 1e-6;
+/// A contact within this weight of a vertex or edge of its face, or of an end of its edge, is a contact with that
+/// vertex or edge, whose normal is arbitrary inside a flat wall. So is the normal of edges below this sine. Both would
+/// push a box along the wall that it lies on.
+constexpr double least_weight = 1e-6;
 constexpr double least_sine = 1e-3;
 
-bool normal_is_steady(const Event& event, const Positions& start, const Positions& end) {
+bool normal_is_stable(const Event& event, const Positions& start, const Positions& end) {
   for (const double weight : event.weights)
-    if (std::abs(weight) < least_share) return false;
+    if (std::abs(weight) < least_weight) return false;
   if (event.kind == EventKind::vertex_face) return true;
   const auto contact_corner = [&](int k) -> Vector3 {
     const Index vertex = event.vertices[k];
@@ -39,19 +39,19 @@ bool normal_is_steady(const Event& event, const Positions& start, const Position
   return first.cross(second).norm() > least_sine * first.norm() * second.norm();
 }
 
-/// The events that a response is built on: usable and steady ones; usable ones if none is steady.
-std::vector<Index> telling_events(const Events& events, const Positions& start, const Positions& end) {
-  const auto displacement = end - start;  // of the few vertices that are asked for
-  std::vector<Index> usable, steady;
+/// Events with usable and stable normals; those with usable ones if none is stable.
+std::vector<Index> response_events(const Events& events, const Positions& start, const Positions& end) {
+  const auto displacement = end - start;  // lazy: evaluated at few vertices
+  std::vector<Index> usable, stable;
   for (Index k = 0; k < static_cast<Index>(events.size()); ++k) {
     if (!normal_is_usable(events[k], displacement)) continue;
     usable.push_back(k);
-    if (normal_is_steady(events[k], start, end)) steady.push_back(k);
+    if (normal_is_stable(events[k], start, end)) stable.push_back(k);
   }
-  return steady.empty() ? usable : steady;
+  return stable.empty() ? usable : stable;
 }
 
-/// The vertex among corners [begin, end) in whose barycentric cell the contact lies; the first of equals.
+/// The vertex of corners [begin, end) whose barycentric cell contains the contact; the first of equals.
 Index heaviest_vertex(const Event& event, int begin, int end) {
   int heaviest = begin;
   for (int k = begin + 1; k < end; ++k)
@@ -70,11 +70,11 @@ bool is_rigid(const Surface& surface, const BodyPair& pair) {
   return rigid(pair.first) || rigid(pair.second);
 }
 
-/// Share of the time left after a rigid body's first contact within which further contacts count as made with it.
+/// Fraction of the remaining time after a rigid body's first contact in which further contacts count as simultaneous.
 constexpr double rigid_window = 0.03;
 constexpr std::size_t most_rigid_regions = 32;
 
-/// Without those events of rigid bodies that come later than their pair's earliest ones.
+/// Removes events of rigid bodies later than their pair's earliest ones.
 std::vector<Index> without_consequences(const Surface& surface, const Events& events,
                                         const std::vector<Index>& chosen) {
   std::map<BodyPair, double> first;
@@ -91,7 +91,7 @@ std::vector<Index> without_consequences(const Surface& surface, const Events& ev
   return kept;
 }
 
-/// Takes every so manieth region of each pair of bodies of which one is rigid, so that their number stays bounded.
+/// Bounds the number of regions for each pair with a rigid body by keeping every n-th.
 std::vector<Region> thinned(const Surface& surface, const Events& events, const std::vector<Region>& regions) {
   std::map<BodyPair, std::size_t> count, seen;
   for (const Region& region : regions)
@@ -105,7 +105,7 @@ std::vector<Region> thinned(const Surface& surface, const Events& events, const 
   return kept;
 }
 
-/// The regions on either side of the chosen events; of those of one vertex the earliest, of equals the first.
+/// The regions on both sides of the chosen events; for each vertex the earliest, the first of equals.
 std::vector<Region> earliest_of(const Surface& surface, const Events& events, const std::vector<Index>& chosen) {
   std::vector<Index> region_of_vertex(at(surface.vertex_count()), -1);
   std::vector<Region> regions;
@@ -134,13 +134,13 @@ std::vector<Region> earliest_of(const Surface& surface, const Events& events, co
 
 std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
                                      const Positions& end) {
-  return earliest_of(surface, events, without_consequences(surface, events, telling_events(events, start, end)));
+  return earliest_of(surface, events, without_consequences(surface, events, response_events(events, start, end)));
 }
 
 std::vector<Region> contact_regions(const Surface& surface, const Events& events, const Positions& start,
                                     const Positions& end) {
   std::vector<Index> of_rigid_bodies, others;
-  for (const Index k : without_consequences(surface, events, telling_events(events, start, end)))
+  for (const Index k : without_consequences(surface, events, response_events(events, start, end)))
     (is_rigid(surface, bodies_of(surface, events[k])) ? of_rigid_bodies : others).push_back(k);
   std::vector<Region> regions = earliest_of(surface, events, of_rigid_bodies);
   for (const Index k : others)

@@ -10,7 +10,7 @@
 
 namespace stiv {
 
-/// Surfaces put together body by body.
+/// A surface assembled body by body.
 struct Assembly {
   SurfaceDefinition definition;
   Positions q = Positions(0, 3);

@@ -18,7 +18,7 @@ bool step_is_free(const Assembly& start, const Positions& end, double separation
 
 }  // namespace
 
-TEST_CASE("is_step_free: a ring pulled through its link and out again is caught on the way") {
+TEST_CASE("is_step_free: a ring pulled through a linked one and out again is not free") {
   const Assembly linked = linked_tori(16, 10, 0), beside = linked_tori(16, 10, 6);
   IntersectionTest test(beside.surface());
   Execution execution(1);
@@ -27,7 +27,7 @@ TEST_CASE("is_step_free: a ring pulled through its link and out again is caught 
   CHECK_FALSE(step_is_free(beside, linked.q));
 }
 
-TEST_CASE("is_step_free: a step that keeps clear, and one that ends in contact") {
+TEST_CASE("is_step_free: a step away from others, and one that ends in contact") {
   const Assembly linked = linked_tori(16, 10, 0);
   CHECK(step_is_free(linked, linked.q));
   CHECK(step_is_free(linked, linked_tori(16, 10, 0.2).q));

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <random>
 
+#include <doctest/doctest.h>
+#include "deformation/handle_scenes.hpp"
 #include "stiv/acceptance/storage.hpp"
+#include "stiv/deformation/combination.hpp"
+#include "stiv/deformation/handles.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
+using namespace stiv::testing;
 
 namespace {
 
@@ -18,7 +21,7 @@ class Sampler {
   double magnitude() { return std::pow(10, 7 * signed_unit()); }
   double any_size() { return signed_unit() * magnitude(); }
 
-  /// Rotation, non-uniform scale of any sign, shear by a parent, offset: each of its own size.
+  /// Rotation, non-uniform scale of any sign, shear and offset, each of a random size.
   Eigen::Matrix4d frame() {
     Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
     const auto turn = [&] {
@@ -41,7 +44,7 @@ bool same_bits(const Controls& a, const Controls& b) {
          });
 }
 
-/// What comes back: frame * float32(frame^-1 * x).
+/// frame * float32(frame^-1 * x).
 Controls read_back(const Controls& p, const Eigen::Matrix4d& frame) {
   const Eigen::Affine3d to_world(frame), to_local = to_world.inverse();
   Controls back(p.rows(), 3);
@@ -66,7 +69,7 @@ Controls points_of_any_size(const Eigen::Matrix4d& frame, Sampler& sample) {
 
 }  // namespace
 
-TEST_CASE("as_stored: idempotent bit by bit in any frame at any magnitude") {
+TEST_CASE("as_stored: idempotent bit for bit in any frame at any magnitude") {
   Sampler sample(3);
   int plain_trips_that_change = 0;
   for (int round = 0; round < 5000; ++round) {
@@ -113,7 +116,7 @@ TEST_CASE("as_stored: float32 in the identity, untouched outside the frames") {
   for (Index k = 3; k < 9; ++k) CHECK(stored.data()[k] == static_cast<double>(static_cast<float>(p.data()[k])));
 }
 
-TEST_CASE("as_stored: bad frames are named") {
+TEST_CASE("as_stored: invalid frames are named") {
   Controls p = Controls::Zero(4, 3);
   StorageFrame frame{1, 2};
   frame.frame(2, 2) = 0;
@@ -126,4 +129,63 @@ TEST_CASE("as_stored: bad frames are named") {
   CHECK_THROWS_WITH_AS(as_stored(p, {{3, 2}}), doctest::Contains("there are 4 controls"), InputError);
   p(0, 0) = 1e39;
   CHECK_THROWS_WITH_AS(as_stored(p, {{0, 1}}), doctest::Contains("control 0 is too large"), InputError);
+}
+
+namespace {
+
+Eigen::Matrix4d turned_frame() {
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+  frame.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix() * Vector3(2, -0.3, 1).asDiagonal();
+  frame.topRightCorner<3, 1>() << 40, -7, 3;
+  return frame;
+}
+
+/// The definition with rest positions as read from a file.
+HandleDefinition read_from_storage(HandleDefinition definition, const Eigen::Matrix4d& frame) {
+  definition.rest = as_stored(definition.rest, {{0, static_cast<Index>(definition.rest.rows()), frame}});
+  return definition;
+}
+
+}  // namespace
+
+TEST_CASE("stored mesh: the surface is the stored vertices, and the rest surface is exact") {
+  const Eigen::Matrix4d frame = turned_frame();
+  for (const bool hard : {true, false}) {
+    const auto definition = read_from_storage(sheet_with_handles(7, hard, EdgeWeights::uniform), frame);
+    for (const auto& mesh : {make_laplacian(definition), make_arap(definition)}) {
+      const auto stored = make_stored_mesh(mesh, frame);
+      CHECK(stored->surface(moved_handles(definition, 0)) == definition.rest);
+      const Controls p = moved_handles(definition, 0.4);
+      const Positions q = stored->surface(p);
+      const Eigen::Affine3d to_world(frame), to_local = to_world.inverse();
+      for (Index vertex = 0; vertex < q.rows(); ++vertex) {
+        const Eigen::Vector3f local = (to_local * Vector3(mesh->surface(p).row(vertex))).cast<float>();
+        CHECK((to_world * local.cast<double>() - Vector3(q.row(vertex))).norm() < 1e-13);
+      }
+      for (const Index vertex : definition.fixed) CHECK(q.row(vertex) == definition.rest.row(vertex));
+    }
+  }
+}
+
+TEST_CASE("stored mesh: responds as the mesh, and a following deformation acts on the stored vertices") {
+  const Eigen::Matrix4d frame = turned_frame();
+  const auto definition = read_from_storage(sheet_with_handles(5, true, EdgeWeights::uniform), frame);
+  const auto mesh = make_laplacian(definition);
+  const auto stored = make_stored_mesh(mesh, frame);
+  const Controls p = moved_handles(definition, 0.3), d = random_positions(stored->control_count(), 5);
+  CHECK(stored->push_forward(p, d) == mesh->push_forward(p, d));
+  CHECK(stored->support(1) == mesh->support(1));
+  const WeightMatrix weights = Eigen::MatrixXd(random_positions(9, stored->vertex_count()).leftCols(1) *
+                                               Eigen::RowVectorXd::Ones(stored->vertex_count()))
+                                   .sparseView();
+  const auto chain = make_composition(make_linear(weights), stored);
+  CHECK((chain->surface(p) - weights * stored->surface(p)).norm() < 1e-12 * chain->surface(p).norm());
+}
+
+TEST_CASE("stored mesh: a singular frame is refused") {
+  const auto mesh = make_laplacian(sheet_with_handles(4, true, EdgeWeights::uniform));
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+  frame(1, 1) = 0;
+  CHECK_THROWS_WITH_AS(make_stored_mesh(mesh, frame), doctest::Contains("singular"), InputError);
 }

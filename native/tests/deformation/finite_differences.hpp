@@ -47,7 +47,7 @@ inline Positions difference(const Deformation& deformation, const Controls& p, I
   return (deformation.surface(forward) - deformation.surface(backward)) / (2 * step);
 }
 
-/// Rows of the surface against the whole of it, bit by bit: some, in an order of their own, none, and all.
+/// surface_rows against surface, bit for bit: some rows in any order, none, and all.
 inline void check_rows(const Deformation& deformation, const Controls& p) {
   const Positions q = deformation.surface(p);
   std::vector<Index> rows(static_cast<std::size_t>(q.rows()));
@@ -59,8 +59,8 @@ inline void check_rows(const Deformation& deformation, const Controls& p) {
   }
 }
 
-/// push_forward and pull_back against central differences of `surface`, control by control, axis by axis; and the
-/// support of each control against what the differences show to move; and check_rows.
+/// push_forward and pull_back against central differences of `surface` for each control and axis; the support of each
+/// control against the vertices that move; and check_rows.
 inline void check_derivatives(const Deformation& deformation, const Controls& p, double tolerance = 1e-7) {
   check_rows(deformation, p);
   const Index m = deformation.control_count(), n = deformation.vertex_count();
@@ -108,11 +108,11 @@ inline Eigen::VectorXd weights_of_freedoms(const MetricOptions& options, Index m
   return weights;
 }
 
-/// Along which axes a metric is damped, where those of the weights are not x, y and z.
+/// The axes of a metric's damping if the weights have other axes than x, y and z.
 enum class DampingAxes { weights, world };
 
 /// `metric` against W^1/2 (J'J + diag(damping))^-1 W^1/2 of the degrees of freedom whose weight is positive.
-/// @param damping (3m) what is added to the diagonal of J'J
+/// @param damping (3m) added to the diagonal of J'J
 inline void check_metric(const Deformation& deformation, const Controls& p, const MetricOptions& options,
                          const Eigen::VectorXd& damping, DampingAxes damping_along = DampingAxes::weights) {
   constexpr double tolerance = 1e-9;
@@ -168,7 +168,7 @@ inline Eigen::VectorXd mean_damping(const Deformation& deformation, const Contro
   return damping;
 }
 
-/// Weights at random for each coordinate of `count` controls, a third of them 0, and where asked for a rotation.
+/// Random weights for each coordinate of `count` controls, a third of them 0, and optional random axes.
 inline MetricOptions random_axis_weights(Index count, unsigned seed, bool turned) {
   MetricOptions options;
   std::mt19937 random(seed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/finite_differences.hpp"
-#include "stiv/deformation/composition.hpp"
+#include "stiv/deformation/combination.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -15,7 +15,7 @@ WeightMatrix sparse(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-TEST_CASE("composition: one after the other") {
+TEST_CASE("composition: equals both deformations in sequence") {
   const Positions values = random_positions(12, 1);
   const Eigen::MatrixXd inner_matrix = values.topRows(4), outer_matrix = values.bottomRows(4).transpose();
   const auto inner = make_linear(sparse(inner_matrix), random_positions(4, 2));
@@ -29,7 +29,7 @@ TEST_CASE("composition: one after the other") {
   CHECK_THROWS_WITH_AS(make_composition(*outer, *outer), doctest::Contains("4 controls"), InputError);
 }
 
-TEST_CASE("weights from rows: added up, sorted, checked") {
+TEST_CASE("weights from rows: summed, sorted, checked") {
   const WeightMatrix weights = weights_from_rows({0, 3, 3, 4}, {2, 0, 2, 1}, {1, 2, 3, 4}, 3);
   Eigen::MatrixXd expected(3, 3);
   expected << 2, 0, 4, 0, 0, 0, 0, 4, 0;

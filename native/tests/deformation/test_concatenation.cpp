@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/finite_differences.hpp"
-#include "stiv/deformation/concatenation.hpp"
-#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/combination.hpp"
 #include "stiv/deformation/linear.hpp"
-#include "stiv/deformation/rigid.hpp"
+#include "stiv/deformation/placement.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -20,7 +19,7 @@ WeightMatrix two_control_weights(Index n) {
   return matrix;
 }
 
-/// Rigid, linear and identity parts whose vertices are interleaved and out of order; 5 and 11 stay.
+/// Rigid, linear and identity components whose vertices are interleaved and out of order; 5 and 11 stay.
 std::shared_ptr<const Deformation> mixed(const Positions& start) {
   const std::vector<Index> rigid{7, 1, 3, 9};
   return make_concatenation({{make_rigid(start(rigid, Eigen::all)), rigid},
@@ -31,7 +30,7 @@ std::shared_ptr<const Deformation> mixed(const Positions& start) {
 
 }  // namespace
 
-TEST_CASE("concatenation: parts are placed and the others stay") {
+TEST_CASE("concatenation: vertices of components move and the others stay") {
   const Positions start = random_positions(12, 1);
   const auto whole = mixed(start);
   CHECK(whole->control_count() == 6);
@@ -49,7 +48,7 @@ TEST_CASE("concatenation: parts are placed and the others stay") {
 
 TEST_CASE("concatenation: derivatives") { check_derivatives(*mixed(random_positions(12, 1)), random_positions(6, 2)); }
 
-TEST_CASE("concatenation: each part keeps its own metric") {
+TEST_CASE("concatenation: each component keeps its own metric") {
   const Positions start = random_positions(12, 1);
   const auto whole = mixed(start);
   const Controls p = random_positions(6, 2);
@@ -69,7 +68,7 @@ TEST_CASE("concatenation: each part keeps its own metric") {
   CHECK(found.row(5) == g.value[5].transpose());
 }
 
-TEST_CASE("concatenation: weights along axes go to their part") {
+TEST_CASE("concatenation: weights along axes apply to their component") {
   const auto whole = mixed(random_positions(12, 1));
   const Controls p = random_positions(6, 2);
   for (const bool turned : {false, true}) {
@@ -84,22 +83,22 @@ TEST_CASE("concatenation: weights along axes go to their part") {
   }
 }
 
-TEST_CASE("concatenation: its metric is local if that of every part is") {
+TEST_CASE("concatenation: its metric is local if that of every component is") {
   const Positions start = random_positions(12, 1);
-  const auto is_local = [&](std::vector<DeformationPart> parts) {
-    return make_concatenation(std::move(parts), start)->metric({0.1, {}})->is_local();
+  const auto is_local = [&](std::vector<DeformationComponent> components) {
+    return make_concatenation(std::move(components), start)->metric({0.1, {}})->is_local();
   };
-  const DeformationPart points{make_identity(2), {0, 1}};
-  const DeformationPart body{make_rigid(start.topRows(4)), {2, 3, 4, 5}};
-  const DeformationPart cage{make_linear(two_control_weights(4)), {6, 7, 8, 9}};
+  const DeformationComponent points{make_identity(2), {0, 1}};
+  const DeformationComponent body{make_rigid(start.topRows(4)), {2, 3, 4, 5}};
+  const DeformationComponent cage{make_linear(two_control_weights(4)), {6, 7, 8, 9}};
   CHECK(is_local({points, body}));
   CHECK_FALSE(is_local({points, cage}));
 }
 
-TEST_CASE("concatenation: bad input is named") {
+TEST_CASE("concatenation: invalid input is named") {
   const Positions start = random_positions(4, 1);
   CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 1}}, {make_identity(2), {2, 1}}}, start),
-                       doctest::Contains("part 1, vertex 1: already moved by part 0"), InputError);
+                       doctest::Contains("component 1, vertex 1: already in component 0"), InputError);
   CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 4}}}, start), doctest::Contains("vertex 4"),
                        InputError);
   CHECK_THROWS_WITH_AS(make_concatenation({{make_identity(2), {0, 1, 2}}}, start), doctest::Contains("3 vertices"),
@@ -108,7 +107,7 @@ TEST_CASE("concatenation: bad input is named") {
   CHECK(make_concatenation({}, start)->surface(Controls(0, 3)) == start);
 }
 
-TEST_CASE("concatenation: rotation rows of rigid parts are shifted to their place among the stacked controls") {
+TEST_CASE("concatenation: rotation rows of rigid components are shifted to their rows among all controls") {
   const Positions rest = Positions::Random(3, 3);
   const auto whole = make_concatenation(
       {{make_identity(1), {0}}, {make_rigid(rest), {1, 2, 3}}, {make_rigid(rest), {4, 5, 6}}}, Positions::Zero(7, 3));

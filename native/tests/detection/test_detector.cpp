@@ -37,12 +37,12 @@ MovingScene falling_vertex() {
 
 }  // namespace
 
-TEST_CASE("detector: both cuts of a recut face meet others, and never each other") {
+TEST_CASE("detector: both cuts of a flip face meet others, and never each other") {
   SurfaceDefinition definition;
   definition.vertex_count = 5;
   definition.triangles.resize(4, 3);
   definition.triangles << 0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3;
-  definition.recut_faces = {{0, 1, 2, 3}};
+  definition.flip_faces = {{0, 1, 2, 3}};
   MovingScene scene;
   scene.surface = std::make_shared<const Surface>(definition);
   scene.start.resize(5, 3);

@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "stiv/deformation/concatenation.hpp"
-#include "stiv/deformation/identity.hpp"
-#include "stiv/deformation/rigid.hpp"
+#include "stiv/deformation/combination.hpp"
+#include "stiv/deformation/linear.hpp"
+#include "stiv/deformation/placement.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv::tests {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "editing/effective_separation.hpp"
-#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;

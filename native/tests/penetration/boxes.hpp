@@ -6,12 +6,12 @@
 
 #include "acceptance/shapes.hpp"
 
-// Boxes and other bodies with flat faces, and what polygons keep behind planes.
+// Boxes and other polyhedra, and the clipping of polygons by planes.
 namespace stiv {
 
 using Polygon = std::vector<Vector3>;
 
-/// A body with flat faces given by loops of vertices that run counter-clockwise seen from outside, cut into fans.
+/// A polyhedron from loops of vertices, counter-clockwise seen from outside, triangulated as fans.
 inline void add_body(Assembly& assembly, const std::vector<Vector3>& corners,
                      const std::vector<std::vector<Index>>& faces) {
   const Index base = assembly.begin_body(static_cast<Index>(corners.size()), Mobility::deformable);
@@ -24,7 +24,7 @@ inline void add_body(Assembly& assembly, const std::vector<Vector3>& corners,
 inline const std::vector<std::vector<Index>> box_faces{{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1},
                                                        {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}};
 
-/// A cube of side 4 around the origin, placed.
+/// A transformed cube of side 4 around the origin.
 inline std::vector<Vector3> box_corners(const Eigen::Affine3d& frame) {
   std::vector<Vector3> corners;
   for (int k = 0; k < 8; ++k) corners.push_back(frame * Vector3((k & 4) - 2, 2 * (k & 2) - 2, 4 * (k & 1) - 2));
@@ -35,7 +35,7 @@ inline void add_box(Assembly& assembly, const Eigen::Affine3d& frame) {
   add_body(assembly, box_corners(frame), box_faces);
 }
 
-/// A flat sheet of cells x cells quads, of side 2 around the origin in the plane z = 0, placed.
+/// A transformed flat sheet of cells x cells quads, of side 2 around the origin in the plane z = 0.
 inline void add_sheet(Assembly& assembly, Index cells, const Eigen::Affine3d& frame) {
   const Index side = cells + 1, base = assembly.begin_body(side * side, Mobility::deformable);
   for (Index i = 0; i < side; ++i)

@@ -16,7 +16,7 @@ inline BodyMesh whole_body(const Surface& surface, Index body) {
   return body_mesh(surface, std::move(triangles));
 }
 
-/// The first two bodies of an assembly where they stand, with the pairs of their triangles that meet.
+/// The first two bodies of an assembly with the intersecting pairs of their triangles.
 struct PlacedPair {
   explicit PlacedPair(const Assembly& assembly)
       : surface(assembly.surface()),
@@ -31,7 +31,7 @@ struct PlacedPair {
   PlacedPair(const PlacedPair&) = delete;
   PlacedPair& operator=(const PlacedPair&) = delete;
 
-  Crossings crossings(int nudge = 1) const { return Crossings(first, second, meeting, nudge); }
+  Crossings crossings(int perturbation = 1) const { return Crossings(first, second, meeting, perturbation); }
 
   std::shared_ptr<const Surface> surface;
   std::array<BodyMesh, 2> meshes;

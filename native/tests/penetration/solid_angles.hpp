@@ -8,8 +8,8 @@
 
 namespace stiv {
 
-/// How often triangles (F, 3) wind around a point off them: their solid angles [van Oosterom, Strackee 1983] over a
-/// full one.
+/// The winding number of triangles, (F, 3), around a point off them: the sum of their solid angles [van Oosterom,
+/// Strackee 1983] over 4 pi.
 inline double winding_by_solid_angles(const Triangles& triangles, const Positions& q, const Vector3& point) {
   double sum = 0;
   for (const auto& corners : triangles.rowwise()) {

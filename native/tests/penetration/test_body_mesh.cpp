@@ -16,7 +16,7 @@ const Eigen::Affine3d unit = Eigen::Affine3d::Identity();
 
 }  // namespace
 
-TEST_CASE("a body's mesh has its triangles alone, with the corners that the surface has") {
+TEST_CASE("a body's mesh has its triangles only, with the surface's corners") {
   Assembly assembly;
   add_sheet(assembly, 3, unit);
   add_box(assembly, unit);
@@ -30,10 +30,10 @@ TEST_CASE("a body's mesh has its triangles alone, with the corners that the surf
             surface->triangles()(mesh.triangles[k], static_cast<Index>(corner)));
 }
 
-TEST_CASE("the walk reaches every vertex once, from a seed for each component") {
+TEST_CASE("the spanning forest reaches every vertex once, from one seed for each component") {
   Assembly assembly;
   add_sheet(assembly, 4, unit);
-  assembly.definition.vertex_count += 25;  // a second piece of the same body
+  assembly.definition.vertex_count += 25;  // a second component of the same body
   assembly.definition.vertex_body.resize(50, 0);
   const Triangles piece = assembly.definition.triangles;
   assembly.definition.triangles.conservativeResize(2 * piece.rows(), 3);
@@ -46,4 +46,27 @@ TEST_CASE("the walk reaches every vertex once, from a seed for each component") 
     CHECK(reached.insert(to).second);
   }
   CHECK(reached.size() == 50);
+}
+
+TEST_CASE("a placed box: corners, outward area vectors, and a volume with the sign of its orientation") {
+  std::mt19937 random(1);
+  for (const double scale : {1e-7, 1.0, 1e7}) {
+    Assembly scene;
+    add_sheet(scene, 2, Eigen::Affine3d::Identity());
+    add_box(scene, random_frame(random, 3) * Eigen::Scaling(1.0, 2.0, 0.5));
+    scene.q *= scale;
+    const BodyMesh mesh = whole_body(*scene.surface(), 1);
+    const PlacedBody box(mesh, scene.q);
+    REQUIRE(box.triangle_count() == 12);
+    const Vector3 middle = scene.q.bottomRows(8).colwise().mean().transpose();
+    for (Index k = 0; k < 12; ++k) CHECK(box.area_vector(k).dot(box.triangle(k)[0] - middle) > 0);
+    for (Index vertex = 0; vertex < 8; ++vertex) {
+      CHECK(box.point(vertex) == scene.q.row(9 + vertex).transpose());
+      CHECK(box.box().contains(box.point(vertex)));
+    }
+    CHECK(box.signed_volume() / (scale * scale * scale) == doctest::Approx(64));
+    scene.definition.triangles.bottomRows(12).rowwise().reverseInPlace();
+    const BodyMesh turned = whole_body(*scene.surface(), 1);
+    CHECK(PlacedBody(turned, scene.q).signed_volume() / (scale * scale * scale) == doctest::Approx(-64));
+  }
 }

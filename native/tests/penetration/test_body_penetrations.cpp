@@ -11,7 +11,7 @@ namespace {
 
 const Eigen::Affine3d unit = Eigen::Affine3d::Identity();
 
-/// Two boxes that overlap a little, a sheet in both by parts, and a sheet that cuts that.
+/// Two overlapping boxes, a sheet partly in both, and a second sheet that intersects the first.
 Assembly scene_of_four() {
   Assembly scene;
   add_box(scene, unit);
@@ -48,7 +48,7 @@ struct Measured {
 
 }  // namespace
 
-TEST_CASE("closed bodies are looked at two by two, open ones with closed ones, and no two open ones") {
+TEST_CASE("pairs of closed bodies and of an open and a closed one are measured, pairs of open ones are not") {
   const Measured measured(scene_of_four());
   std::vector<BodyPair> bodies;
   for (const auto& pair : measured.all.pairs()) bodies.push_back(pair.bodies);
@@ -59,7 +59,7 @@ TEST_CASE("closed bodies are looked at two by two, open ones with closed ones, a
   CHECK(measured(1, 2) == doctest::Approx(3));
 }
 
-TEST_CASE("bodies that face inward are as deep in each other") {
+TEST_CASE("bodies that face inward have the same penetration") {
   Assembly scene = scene_of_four();
   const Measured outward(scene);
   scene.definition.triangles.topRows(12).rowwise().reverseInPlace();
@@ -68,7 +68,7 @@ TEST_CASE("bodies that face inward are as deep in each other") {
     CHECK(inward.found[k].amount == doctest::Approx(outward.found[k].amount));
 }
 
-TEST_CASE("only pairs with a displaced body are measured again, and areas are those of the start") {
+TEST_CASE("only pairs with a displaced body are updated, and areas are those of the start") {
   Assembly scene = scene_of_four();
   Measured measured(scene);
   scene.q.middleRows(8, 25).col(0).array() -= 0.5;  // the first sheet
@@ -84,7 +84,7 @@ TEST_CASE("only pairs with a displaced body are measured again, and areas are th
   CHECK(measured(1, 2) == 0);
 }
 
-TEST_CASE("a body with closed and open components is two: a figure with a skirt, in a box and cut by a sheet") {
+TEST_CASE("closed and open components of a body count as two, in a box and with a sheet") {
   Assembly scene;
   add_box(scene, unit);
   add_sheet(scene, 4, Eigen::Affine3d(Eigen::Translation3d(2, 0.1, 5.3)));
@@ -103,7 +103,7 @@ TEST_CASE("a body with closed and open components is two: a figure with a skirt,
   CHECK(measured.found[2].amount == doctest::Approx(2));
 }
 
-TEST_CASE("bodies that never meet, and one body alone, are not looked at") {
+TEST_CASE("ignored pairs of bodies and a body with itself are not measured") {
   Assembly scene = scene_of_four();
   const IndexPairs pairs = intersecting(scene);
   scene.definition.ignored = {{0, 2}};

@@ -10,7 +10,7 @@ using namespace stiv;
 
 namespace {
 
-/// Tetrahedra with corners on a coarse grid, so that they touch in all ways.
+/// Tetrahedra with corners on a coarse grid, so that all kinds of contact occur.
 Assembly tetrahedra_on_grid(std::mt19937& random) {
   std::uniform_int_distribution<int> coordinate(0, 3);
   Assembly scene;
@@ -36,28 +36,29 @@ Vector3 end_of(const Crossings& crossings, const Cut& cut, std::size_t side, std
 
 }  // namespace
 
-TEST_CASE("bodies that touch cross as they do when the second is moved by a little") {
+TEST_CASE("bodies that touch have the crossings of a slightly translated second body") {
   std::mt19937 random(9);
   int touching = 0, cuts = 0;
   for (int round = 0; round < 2000; ++round) {
     Assembly scene = tetrahedra_on_grid(random);
-    const int nudge = round % 2 == 0 ? 1 : -1;
+    const int perturbation = round % 2 == 0 ? 1 : -1;
     const PlacedPair on_grid(scene);
-    scene.q.bottomRows(4).rowwise() += nudge * Eigen::RowVector3d(0x1p-12, 0x1p-24, 0x1p-36);
+    scene.q.bottomRows(4).rowwise() += perturbation * Eigen::RowVector3d(0x1p-12, 0x1p-24, 0x1p-36);
     const PlacedPair moved(scene);
-    const Crossings nudged = on_grid.crossings(nudge), general = moved.crossings(nudge);
-    REQUIRE(triangles_of_cuts(nudged) == triangles_of_cuts(general));
+    const Crossings perturbed = on_grid.crossings(perturbation), general = moved.crossings(perturbation);
+    REQUIRE(triangles_of_cuts(perturbed) == triangles_of_cuts(general));
     for (std::size_t side : {0, 1})
       for (Index a = 0; a < 4; ++a)
-        for (Index b = 0; b < 4; ++b) REQUIRE(nudged.gained(side, a, b) == general.gained(side, a, b));
-    touching += nudged.touching();
-    cuts += !nudged.cuts().empty();
+        for (Index b = 0; b < 4; ++b)
+          REQUIRE(perturbed.winding_increase(side, a, b) == general.winding_increase(side, a, b));
+    touching += perturbed.touching();
+    cuts += !perturbed.cuts().empty();
   }
   CHECK(touching > 1000);
   CHECK(cuts > 500);
 }
 
-TEST_CASE("the ends of a cut lie in both triangles, and it runs along their normals' product") {
+TEST_CASE("the ends of a cut are in both triangles, ordered along the cross product of their normals") {
   std::mt19937 random(2);
   int cuts = 0;
   for (const double scale : {1e-7, 1.0, 1e7})
@@ -82,7 +83,7 @@ TEST_CASE("the ends of a cut lie in both triangles, and it runs along their norm
   CHECK(cuts > 100);
 }
 
-TEST_CASE("the mean along an edge is the part of it that lies inside") {
+TEST_CASE("the mean along an edge is its fraction inside") {
   Assembly scene;
   add_box(scene, Eigen::Affine3d::Identity());
   add_body(scene, {{-3, 0.5, 0.25}, {5, 0.75, 0.5}, {9, 9, 9}}, {{0, 1, 2}});
@@ -90,5 +91,5 @@ TEST_CASE("the mean along an edge is the part of it that lies inside") {
   const Crossings crossings = pair.crossings();
   CHECK(crossings.mean_along(1, 0, 1, 0) == doctest::Approx(0.5));
   CHECK(crossings.mean_along(1, 1, 0, 0) == doctest::Approx(0.5));
-  CHECK(crossings.gained(1, 0, 1) == 0);
+  CHECK(crossings.winding_increase(1, 0, 1) == 0);
 }

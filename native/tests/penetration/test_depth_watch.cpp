@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "editing/small_scenes.hpp"
 #include "penetration/boxes.hpp"
 
 using namespace stiv;
@@ -20,7 +21,7 @@ Assembly sheet_half_in_box() {
   return scene;
 }
 
-/// The watch of an assembly at its start, and questions about where its first body is then.
+/// The depth watch of an assembly, and tests with its first body displaced.
 struct Watched {
   explicit Watched(const Assembly& scene)
       : surface(scene.surface()), start(scene.q), watch(surface, intersecting(start), rounding) {
@@ -48,7 +49,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("a sheet goes no deeper into a box, but out, along, and back to where it began") {
+TEST_CASE("a sheet may leave a box, move along it and return, but not penetrate deeper") {
   Watched sheet(sheet_half_in_box());
   CHECK_FALSE(sheet.is_deeper(sheet.start));
   CHECK(sheet.is_deeper_when_moved({-0.1, 0, 0}));
@@ -59,20 +60,20 @@ TEST_CASE("a sheet goes no deeper into a box, but out, along, and back to where 
   CHECK_FALSE(sheet.is_deeper(sheet.start));
 }
 
-TEST_CASE("what rounding may hide is let through, and no more") {
+TEST_CASE("a penetration within rounding is accepted, a larger one is not") {
   Watched sheet(sheet_half_in_box());
   CHECK_FALSE(sheet.is_deeper_when_moved({-0.9 * rounding, 0, 0}));
   CHECK(sheet.is_deeper_when_moved({-1.1 * rounding, 0, 0}));
 }
 
-TEST_CASE("what stretches without going in is no deeper") {
+TEST_CASE("stretching does not count as penetration") {
   Watched sheet(sheet_half_in_box());
   Positions q = sheet.start;
   q.topRows(sheet_vertices).col(1) *= 1.4;
   CHECK_FALSE(sheet.is_deeper(q));
 }
 
-TEST_CASE("the box may not come over the sheet either") {
+TEST_CASE("the box may not move over the sheet") {
   Watched sheet(sheet_half_in_box());
   Positions q = sheet.start;
   q.bottomRows(8).col(0).array() += 0.1;
@@ -81,7 +82,7 @@ TEST_CASE("the box may not come over the sheet either") {
   CHECK_FALSE(sheet.is_deeper(q));
 }
 
-TEST_CASE("a sheet that lies on a box is not pressed into it, and slides and leaves") {
+TEST_CASE("a sheet on a box may slide and leave, but not be pressed into it") {
   Assembly scene;
   add_sheet(scene, 4, Eigen::Affine3d(Eigen::Translation3d(0.5, 0.25, 2)));
   add_box(scene, Eigen::Affine3d::Identity());
@@ -91,7 +92,7 @@ TEST_CASE("a sheet that lies on a box is not pressed into it, and slides and lea
   CHECK(sheet.is_deeper_when_moved({0, 0, -0.1}));
 }
 
-TEST_CASE("two boxes that touch in a face are not pressed into each other, and slide and leave") {
+TEST_CASE("two boxes that touch in a face may slide and leave, but not be pressed into each other") {
   Assembly scene;
   add_box(scene, Eigen::Affine3d::Identity());
   add_box(scene, Eigen::Affine3d(Eigen::Translation3d(4, 1, 0)));
@@ -106,11 +107,22 @@ TEST_CASE("two boxes that touch in a face are not pressed into each other, and s
   CHECK_FALSE(is_deeper({0, 0.7, 1.3}));
 }
 
-TEST_CASE("two sheets are not watched") {
+TEST_CASE("two open bodies are not measured") {
   Assembly scene;
   add_sheet(scene, 4, Eigen::Affine3d::Identity());
   add_sheet(scene, 4, Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1.2, Vector3::UnitX()));
   Watched sheets(scene);
   CHECK_FALSE(sheets.is_deeper_when_moved({0, 0, 0.2}));
   CHECK_FALSE(sheets.is_deeper_when_moved({0, 0, -0.2}));
+}
+
+TEST_CASE("a body is displaced if any bit of a vertex changed") {
+  const tests::Scene scene = tests::two_sheets();
+  const Positions& from = scene.controls;
+  Positions to = from;
+  CHECK(displaced_bodies(*scene.surface, from, to) == std::vector<unsigned char>{0, 0});
+  to(60, 1) = std::nextafter(to(60, 1), 9.0);
+  CHECK(displaced_bodies(*scene.surface, from, to) == std::vector<unsigned char>{0, 1});
+  to(0, 2) += 1;
+  CHECK(displaced_bodies(*scene.surface, from, to) == std::vector<unsigned char>{1, 1});
 }

@@ -14,7 +14,7 @@ const Eigen::Affine3d unit = Eigen::Affine3d::Identity();
 
 Eigen::Affine3d at(double x, double y, double z) { return Eigen::Affine3d(Eigen::Translation3d(x, y, z)); }
 
-/// The volume that two convex bodies have in common, from their faces cut by the planes of each other's.
+/// The common volume of two convex bodies, from faces clipped by the planes of the other body.
 double convex_volume(const std::vector<Polygon>& first, const std::vector<Polygon>& second) {
   double volume = 0;
   for (const auto& [faces, planes] : {std::pair(first, second), std::pair(second, first)})
@@ -58,7 +58,7 @@ Penetration area_of_first(const Assembly& assembly, double rounding = 0) {
 
 }  // namespace
 
-TEST_CASE("the common volume of random boxes is that of their faces cut by planes, wherever they are") {
+TEST_CASE("the common volume of random boxes equals that from clipped faces") {
   std::mt19937 random(5);
   for (const double scale : {1e-7, 1.0, 1e7}) {
     int crossing = 0;
@@ -74,7 +74,7 @@ TEST_CASE("the common volume of random boxes is that of their faces cut by plane
   }
 }
 
-TEST_CASE("a body that faces inward has the negative volume in common, and the negative area inside of it") {
+TEST_CASE("a body that faces inward gives a negative common volume and a negative area inside") {
   std::mt19937 random(7);
   Assembly boxes = two_boxes(random_frame(random, 0.3), random_frame(random, 0.3));
   const Penetration outward = volume_of(boxes);
@@ -88,7 +88,7 @@ TEST_CASE("a body that faces inward has the negative volume in common, and the n
   CHECK(area_of_first(sheet).amount == doctest::Approx(-area));
 }
 
-TEST_CASE("apart there is no volume, inside it is the whole, and what it changes by is the inner surface") {
+TEST_CASE("common volume: 0 apart, the whole inside; its uncertainty is that of the inner surface") {
   const Penetration apart = volume_of(two_boxes(unit, at(9, 0, 0)));
   CHECK(apart.amount == 0);
   CHECK(apart.uncertainty == 0);
@@ -97,7 +97,7 @@ TEST_CASE("apart there is no volume, inside it is the whole, and what it changes
   CHECK(inner.uncertainty == doctest::Approx(24));
 }
 
-TEST_CASE("a cavity does not count: only what is in the wall") {
+TEST_CASE("the volume in a cavity does not count") {
   std::mt19937 random(11);
   for (int k = 0; k < 20; ++k) {
     const Eigen::Affine3d turn(random_frame(random, 0).linear());
@@ -120,7 +120,7 @@ TEST_CASE("a cavity does not count: only what is in the wall") {
   }
 }
 
-TEST_CASE("boxes on a grid have the volume in common that their sides say, however they touch") {
+TEST_CASE("boxes on a grid have the exact common volume for all kinds of contact") {
   for (int x = -5; x <= 5; ++x)
     for (int y = -5; y <= 5; ++y)
       for (int z : {-4, -3, 0, 2}) {
@@ -130,7 +130,7 @@ TEST_CASE("boxes on a grid have the volume in common that their sides say, howev
       }
 }
 
-TEST_CASE("of a sheet half in a box half of the area is inside, and it changes with the line in which they meet") {
+TEST_CASE("a sheet half in a box: half of its area, with the uncertainty of the intersection line") {
   const Assembly scene = sheet_and_box(at(2, 0.1, 0.3));  // from x = 1 to 3
   const Penetration found = area_of_first(scene, 1e-3);
   CHECK(found.amount == doctest::Approx(2));
@@ -139,7 +139,7 @@ TEST_CASE("of a sheet half in a box half of the area is inside, and it changes w
   CHECK(area_of_first(sheet_and_box(slanted), 1e-3).uncertainty == doctest::Approx(4e-3));
 }
 
-TEST_CASE("the area of random sheets inside of boxes is what planes leave of them") {
+TEST_CASE("the area of random sheets inside boxes equals that from clipped polygons") {
   std::mt19937 random(13);
   for (const double scale : {1e-7, 1.0, 1e7})
     for (int round = 0; round < 40; ++round) {
@@ -153,14 +153,14 @@ TEST_CASE("the area of random sheets inside of boxes is what planes leave of the
     }
 }
 
-TEST_CASE("triangles count with the area that they had at the start") {
+TEST_CASE("triangles count with their area at the start") {
   const PlacedPair pair(sheet_and_box(at(2, 0.1, 0.3)));
   const PlacedPair smaller(sheet_and_box(at(0.3, 0.1, 0.3) * Eigen::Scaling(0.1)));
   CHECK(area_inside(smaller.first, areas_of(pair.first), smaller.second, smaller.meeting, 0).amount ==
         doctest::Approx(4));
 }
 
-TEST_CASE("what moves away from the middle of a box goes no deeper, and what moves toward it comes no less deep") {
+TEST_CASE("penetration decreases away from the middle of a box and increases toward it") {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> factor(1, 1.3);
   int changed = 0;
@@ -180,7 +180,7 @@ TEST_CASE("what moves away from the middle of a box goes no deeper, and what mov
   CHECK(changed > 50);
 }
 
-TEST_CASE("what lies in the surface of a closed body counts half, whatever side of the body that is") {
+TEST_CASE("area on the surface of a closed body counts half, on any side") {
   const Eigen::AngleAxisd upright(std::numbers::pi / 2, Vector3::UnitY());
   for (const double side : {-2.0, 2.0}) {
     CHECK(area_of_first(sheet_and_box(at(0, 0, side))).amount == doctest::Approx(2));
@@ -192,7 +192,7 @@ TEST_CASE("what lies in the surface of a closed body counts half, whatever side 
   CHECK(area_of_first(sheet_and_box(at(-2, 0.5, 0) * upright)).amount == doctest::Approx(2));
 }
 
-TEST_CASE("a triangle that has lost its area counts by the part of it that is inside") {
+TEST_CASE("a triangle that became degenerate counts by its fraction inside") {
   Assembly scene;
   add_body(scene, {{0, 0, 0.25}, {4, 0, 0.25}, {2, 0, 0.25}}, {{0, 1, 2}});
   add_box(scene, unit);

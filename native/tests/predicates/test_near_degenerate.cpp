@@ -138,7 +138,7 @@ int exact_turn(const WidePoint& a, const WidePoint& b, const WidePoint& c, const
 
 }  // namespace
 
-TEST_CASE("near-degenerate: a product and its tail are the exact product, at the ends of the range too") {
+TEST_CASE("near-degenerate: a product and its error are exact, also at the ends of the range") {
   Random random(7);
   int wrong = 0;
   for (int k = 0; k < cases / 10; ++k) {

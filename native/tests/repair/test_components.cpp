@@ -25,7 +25,7 @@ std::shared_ptr<const Surface> three_bodies() {
 
 }  // namespace
 
-TEST_CASE("bodies that all pairs have in common, closed ones first") {
+TEST_CASE("bodies in all pairs, closed ones first") {
   const auto surface = three_bodies();
   StaticPairs pairs;
   pairs.faces = {{0, 1}, {0, 2}};
@@ -38,7 +38,7 @@ TEST_CASE("bodies that all pairs have in common, closed ones first") {
   CHECK(bodies_in_all_pairs(*surface, vertices) == std::vector<Index>{0});
 }
 
-TEST_CASE("components come with the smaller first, and only what may move is marked") {
+TEST_CASE("components are sorted by size and contain movable vertices only") {
   const auto surface = three_bodies();
   StaticPairs pairs;
   pairs.faces = {{0, 5}};
@@ -50,7 +50,7 @@ TEST_CASE("components come with the smaller first, and only what may move is mar
   CHECK(components[1] == Marks{0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1});
 }
 
-TEST_CASE("a region reaches as many edges as asked") {
+TEST_CASE("a region contains vertices up to the given number of edges away") {
   Scene scene;
   Triangles triangles(0, 3);
   const Index cells = 9, side = cells + 1;

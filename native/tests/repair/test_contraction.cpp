@@ -66,7 +66,7 @@ TEST_CASE("a step of contraction solves the stacked least-squares problem") {
     CHECK(largest_difference(stepped(scene, {}, smoothing), dense_step(scene, smoothing)) < 1e-10);
 }
 
-TEST_CASE("a second step holds each vertex by the share of its area that is left") {
+TEST_CASE("a second step weights each vertex by its remaining area") {
   const Scene scene = dented_sheet();
   const ContractionSystem system = contraction_system(*scene.surface, scene.controls, {});
   const Positions once = contraction_step(*scene.surface, system, scene.controls, 2);
@@ -88,7 +88,7 @@ TEST_CASE("contraction does not depend on the size of the shape") {
   }
 }
 
-TEST_CASE("vertices that do not move stay to the last bit, and the others take them into account") {
+TEST_CASE("fixed vertices stay exactly, and constrain the others") {
   const Scene scene = dented_sheet();
   std::vector<unsigned char> moves(static_cast<std::size_t>(scene.surface->vertex_count()), 0);
   for (std::size_t k = 5; k < 20; ++k) moves[k] = 1;
@@ -120,7 +120,7 @@ TEST_CASE("contraction ends at the first step without intersections") {
   CHECK(test.is_free(result.positions, {}, execution));
 }
 
-TEST_CASE("contraction that makes things worse gives back the best step") {
+TEST_CASE("contraction returns the best step if later steps are worse") {
   // Only the flat sheet shrinks, within its plane toward the spike in its middle: more and more of it meets the spike.
   Scene scene = spike_through_sheet();
   const Index first = scene.surface->vertex_count() / 2;
@@ -135,7 +135,7 @@ TEST_CASE("contraction that makes things worse gives back the best step") {
   CHECK_FALSE(result.free);
 }
 
-TEST_CASE("contraction refuses marks and options that do not fit, and can be cancelled") {
+TEST_CASE("contraction rejects invalid marks and options, and can be cancelled") {
   const Scene scene = spike_through_sheet();
   Execution execution(1);
   CHECK_THROWS_AS(contract(scene.surface, scene.controls, {1, 0}, {}, execution), InputError);

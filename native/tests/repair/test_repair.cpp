@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "repair/shrinking.hpp"
+#include "repair/component_shrinking.hpp"
 #include "repair/tangled_scenes.hpp"
-#include "stiv/deformation/identity.hpp"
 #include "stiv/deformation/linear.hpp"
 #include "stiv/error.hpp"
-#include "stiv/repair/expansion.hpp"
+#include "stiv/repair/contraction.hpp"
 
 using namespace stiv;
 using namespace stiv::tests;
@@ -47,7 +46,7 @@ Scene coincident_sheets() {
 
 }  // namespace
 
-TEST_CASE("a repaired surface is free by the exact test and near the one before") {
+TEST_CASE("a repaired surface passes the exact test and is close to the input") {
   const Scene scene = spike_through_sheet();
   const RepairResult result = repaired(scene);
   CHECK(result.status == RepairStatus::repaired);
@@ -66,14 +65,14 @@ TEST_CASE("repair gives the same bits for any number of threads") {
   CHECK(repaired(scene, {}, 1).positions == repaired(scene, {}, 2).positions);
 }
 
-TEST_CASE("what is free already stays as it is") {
+TEST_CASE("a surface without intersections stays unchanged") {
   const Scene scene = two_sheets();
   const RepairResult result = repaired(scene);
   CHECK(result.status == RepairStatus::already_free);
   CHECK(result.positions == scene.controls);
 }
 
-TEST_CASE("fixed bodies and vertices that may not move stay to the last bit") {
+TEST_CASE("fixed bodies and vertices stay exactly") {
   const Index moving = 81;
   const auto check = [&](const Scene& scene, const RepairOptions& options) {
     const RepairResult result = repaired(scene, options);
@@ -97,7 +96,7 @@ TEST_CASE("coincident triangles are refused") {
   check_unchanged(scene, result);
 }
 
-TEST_CASE("an intersection of which nothing may move is refused") {
+TEST_CASE("an intersection without movable vertices is refused") {
   const Scene scene = spike_through_sheet();
   RepairOptions options;
   options.moves.assign(static_cast<std::size_t>(scene.surface->vertex_count()), 0);
@@ -106,7 +105,7 @@ TEST_CASE("an intersection of which nothing may move is refused") {
   check_unchanged(scene, result);
 }
 
-TEST_CASE("a surface that no contraction frees is refused, and the pairs are listed") {
+TEST_CASE("a surface that no contraction repairs is refused, with its pairs") {
   const Scene scene = spike_through_sheet();
   RepairOptions options;
   options.contraction.max_steps = 0;
@@ -115,7 +114,7 @@ TEST_CASE("a surface that no contraction frees is refused, and the pairs are lis
   check_unchanged(scene, result);
 }
 
-TEST_CASE("a repair that deviates by more than is wanted is refused") {
+TEST_CASE("a repair above the maximum deviation is refused") {
   const Scene scene = spike_through_sheet();
   RepairOptions options;
   options.max_deviation = 1e-6;
@@ -125,7 +124,7 @@ TEST_CASE("a repair that deviates by more than is wanted is refused") {
   check_unchanged(scene, result);
 }
 
-TEST_CASE("a cancelled repair changes nothing, whenever it is cancelled") {
+TEST_CASE("a repair cancelled at any time changes nothing") {
   const Scene scene = spike_through_sheet();
   for (int calls = 0; calls < 40; calls += 3) {
     Execution execution(1);
@@ -157,7 +156,7 @@ TEST_CASE("a cage is contracted until its surface is free, and expanded back") {
   CHECK_THROWS_AS(repair(caged, scene.controls.topRows(count - 1), {}, execution), InputError);
 }
 
-TEST_CASE("components that smoothing cannot take apart are shrunk until they are") {
+TEST_CASE("components that smoothing cannot separate are shrunk") {
   const Scene scene = spike_through_sheet();  // two components
   Execution execution(1);
   const CagedSurface caged = without_cage(scene.surface);
@@ -166,7 +165,7 @@ TEST_CASE("components that smoothing cannot take apart are shrunk until they are
   const Contracted apart = shrink_components(caged, movable, {}, scene.controls, execution);
   CHECK(apart.pairs == 0);
   CHECK(pairs_at(scene, apart.positions).empty());
-  // What moved is similar to what it was: all edges have become shorter by one factor.
+  // The moved component is scaled: all edges are shorter by the same factor.
   double least = 1, most = 0;
   for (const auto& corners : scene.surface->triangles().rowwise()) {
     const auto length = [&](const Positions& q) { return (q.row(corners[0]) - q.row(corners[1])).norm(); };
@@ -180,7 +179,7 @@ TEST_CASE("components that smoothing cannot take apart are shrunk until they are
   CHECK(most <= doctest::Approx(0.5));
 }
 
-TEST_CASE("expansion goes toward any target, and never through anything") {
+TEST_CASE("expansion toward any target stays free of intersections") {
   const Scene scene = two_sheets();
   Positions target = scene.controls;
   target.topRows(49).col(2).array() -= 0.7;

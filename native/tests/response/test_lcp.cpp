@@ -67,7 +67,7 @@ TEST_CASE("lcp: the same bits for every vector target") {
   for (const Eigen::VectorXd& x : results) CHECK(x == results.front());
 }
 
-TEST_CASE("lcp: repeated rows have no unique multipliers but one correction") {
+TEST_CASE("lcp: repeated rows have a unique correction without unique multipliers") {
   std::srand(5);
   for (int trial = 0; trial < 30; ++trial) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Random(6, 9);
@@ -83,7 +83,7 @@ TEST_CASE("lcp: repeated rows have no unique multipliers but one correction") {
   }
 }
 
-TEST_CASE("lcp: rows that nothing can change are left alone, contradictions end") {
+TEST_CASE("lcp: rows without a positive diagonal are ignored, contradictions terminate") {
   Eigen::MatrixXd B(3, 3);
   B << 0, 0, 0, 0, 2, 0, 0, 0, 1;
   CHECK(solve_lcp(B, Eigen::Vector3d(-1, -1, 4)) == Eigen::Vector3d(0, 0.5, 0));
@@ -93,7 +93,7 @@ TEST_CASE("lcp: rows that nothing can change are left alone, contradictions end"
   CHECK(solve_lcp(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)).size() == 0);
 }
 
-TEST_CASE("lcp: a good first guess is the answer at once") {
+TEST_CASE("lcp: the solution as a first guess is returned at once") {
   std::srand(9);
   const Eigen::MatrixXd A = Eigen::MatrixXd::Random(5, 8);
   const Eigen::MatrixXd B = A * A.transpose();

@@ -61,7 +61,7 @@ Controls resolve(const std::vector<Stiv>& stivs, const Controls& p, const Eigen:
 
 }  // namespace
 
-TEST_CASE("resolver: constraints are normalised in the metric, whatever their scale") {
+TEST_CASE("resolver: constraints are normalised in the metric, at any scale") {
   const Copy deformation(2);
   const Controls p = Controls::Random(2, 3);
   const DiagonalMetric metric(Eigen::Vector2d(1, 4));
@@ -74,7 +74,7 @@ TEST_CASE("resolver: constraints are normalised in the metric, whatever their sc
   }
 }
 
-TEST_CASE("resolver: one half-space is met by the shortest step") {
+TEST_CASE("resolver: one half-space is satisfied by the shortest step") {
   const Controls p = Controls::Random(3, 3);
   const Vector3 normal = Vector3(1, 2, -2) / 3;
   Controls expected = p;
@@ -82,7 +82,7 @@ TEST_CASE("resolver: one half-space is met by the shortest step") {
   CHECK((resolve({half_space(1, normal, -0.7, 5)}, p, Eigen::Vector3d::Ones()) - expected).norm() < 1e-12);
 }
 
-TEST_CASE("resolver: a pair shares the correction by its weights, a pinned one does not move") {
+TEST_CASE("resolver: weights divide the correction of a pair, and pinned controls do not move") {
   const Controls p = Controls::Zero(2, 3);
   const Stiv pair{-1, {{0, 1}, {Vector3::UnitZ(), -Vector3::UnitZ()}}};
   const Controls shared = resolve({pair}, p, Eigen::Vector2d(1, 3));
@@ -102,7 +102,7 @@ TEST_CASE("resolver: constraints that no free control can change are left out") 
   CHECK(control_constraints({rounding}, deformation, p, metric, p).empty());
 }
 
-TEST_CASE("resolver: collinear constraints count once, kept ones are met together with new ones") {
+TEST_CASE("resolver: collinear constraints count once, accumulated and new ones are solved together") {
   const Copy deformation(1);
   const Controls p = Controls::Zero(1, 3);
   const DiagonalMetric metric(Eigen::VectorXd::Ones(1));
@@ -118,7 +118,7 @@ TEST_CASE("resolver: collinear constraints count once, kept ones are met togethe
   CHECK((second.row(0) - Eigen::RowVector3d(1, 2, 0)).norm() < 1e-8);  // the corner of both half-spaces
 }
 
-TEST_CASE("resolver: hundreds of random constraints are all met, and the correction is a sum of their steps") {
+TEST_CASE("resolver: hundreds of random constraints are satisfied by a combination of their steps") {
   std::srand(11);
   const Index count = 400;
   const Controls p = Controls::Random(count, 3);
@@ -140,7 +140,7 @@ TEST_CASE("resolver: hundreds of random constraints are all met, and the correct
   for (const int threads : {2, 5}) CHECK(resolve(stivs, p, Eigen::VectorXd::Ones(count), threads) == resolved);
 }
 
-TEST_CASE("resolver: constraints as equations are all met, also those that an inequality would let go") {
+TEST_CASE("resolver: equations hold for all constraints, also for inactive ones") {
   Controls p = Controls::Zero(2, 3);
   const std::vector<Stiv> stivs{half_space(0, Vector3::UnitX(), -1), half_space(0, Vector3::UnitY(), 0.5),
                                 half_space(0, Vector3::UnitX(), -1, 3)};  // the third repeats the first

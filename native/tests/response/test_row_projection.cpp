@@ -72,7 +72,7 @@ TEST_CASE("row projection: the same point as the LCP with its matrix, from any f
   }
 }
 
-TEST_CASE("row projection: sets that change from the matrix to the rows and back, and drop some, meet all they hold") {
+TEST_CASE("row projection: sets that switch between matrix and rows, and drop some, satisfy all constraints") {
   std::mt19937 random(7);
   const Index count = 200;
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(count);

@@ -31,7 +31,7 @@ double product_entry_by_entry(const SparseField& a, const SparseField& b) {
 
 }  // namespace
 
-TEST_CASE("sparse fields: the product is that of all entries in order, to the last bit, with gaps and without") {
+TEST_CASE("sparse fields: products equal those of all entries in order, bit for bit, with and without gaps") {
   std::mt19937 random(3);
   std::uniform_int_distribution<Index> place(0, 40);
   for (int repeat = 0; repeat < 200; ++repeat) {

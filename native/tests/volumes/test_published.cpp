@@ -11,7 +11,7 @@ using namespace stiv;
 
 namespace {
 
-/// A single pair of primitives in any motion, its contact found anew for any end by the paper's narrow phase.
+/// A moving pair of primitives; the paper's narrow phase finds its contact for any end.
 struct MovingPair {
   EventKind kind = EventKind::vertex_face;
   Proximity proximity;
@@ -127,7 +127,7 @@ struct Fall {
 
 }  // namespace
 
-TEST_CASE("published volumes: of a vertex that falls onto a face at rest, (1 - t) of its own way times its area") {
+TEST_CASE("published volumes: a vertex that falls onto a face has (1 - t) of its own path times its area") {
   const std::vector<Stiv> stivs = Fall(-3, 0).volumes(ConstraintKind::per_patch);
   REQUIRE(stivs.size() == 1);  // the face has no motion, so no volume
   CHECK(stivs[0].volume == doctest::Approx(0.5 * (1 - 0.25) * -4));
@@ -135,7 +135,7 @@ TEST_CASE("published volumes: of a vertex that falls onto a face at rest, (1 - t
   CHECK(stivs[0].gradient.value[0].isApprox(Vector3(0, 0, 0.5 * (1 - 0.25))));
 }
 
-TEST_CASE("published volumes: each side counts by its own motion, with the normal turned against it") {
+TEST_CASE("published volumes: each side counts its own motion against the normal") {
   const Fall fall(-2, 2);  // they meet at 1/5
   const std::vector<Stiv> stivs = fall.volumes(ConstraintKind::per_patch);
   REQUIRE(stivs.size() == 2);  // by neighbouring vertices alone, the two sides are two patches
@@ -148,7 +148,7 @@ TEST_CASE("published volumes: each side counts by its own motion, with the norma
   CHECK(single[0].volume == doctest::Approx(stivs[0].volume + stivs[1].volume));
 }
 
-TEST_CASE("published volumes: a vertex that flees is held to account too, as in the paper") {
+TEST_CASE("published volumes: a vertex that moves away counts too, as in the paper") {
   const Fall fall(-2, -1);  // the face flees down, slower than the vertex falls
   const std::vector<Stiv> stivs = fall.volumes(ConstraintKind::single);
   REQUIRE(stivs.size() == 1);

@@ -37,7 +37,7 @@ std::vector<Region> regions_of(const Events& events, double fall = 1) {
 
 }  // namespace
 
-TEST_CASE("region: an event falls into the cells of the heaviest vertex of either side") {
+TEST_CASE("region: an event belongs to the vertices of largest weight on both sides") {
   const auto regions = regions_of({vertex_on_face(0.5)});
   REQUIRE(regions.size() == 2);
   CHECK(regions[0].vertex == 0);
@@ -52,12 +52,12 @@ TEST_CASE("region: an event falls into the cells of the heaviest vertex of eithe
   CHECK(of_edges[1].vertex == 2);
 }
 
-TEST_CASE("region: the earliest event is kept, of equal ones the first") {
+TEST_CASE("region: the earliest event, the first of equals") {
   Events events{vertex_on_face(0.7), vertex_on_face(0.3), vertex_on_face(0.3)};
   for (const Region& region : regions_of(events)) CHECK(region.event == 1);
 }
 
-TEST_CASE("region: an unusable normal gives way to a later usable one, and none is left when all are") {
+TEST_CASE("region: later usable normals replace unusable ones, and there is no region if all are unusable") {
   Event sliding = vertex_on_face(0.1);
   sliding.normal = Vector3::UnitX();
   Event unknown = vertex_on_face(0.2);
@@ -69,7 +69,7 @@ TEST_CASE("region: an unusable normal gives way to a later usable one, and none 
   CHECK(regions_of({vertex_on_face(0.5)}, 0).empty());
 }
 
-TEST_CASE("region: edges that are nearly parallel or meet at an end count only without others") {
+TEST_CASE("region: nearly parallel edges and contacts at ends count only without others") {
   Positions start(8, 3);
   start << 0, 0, 1, 1, 1e-5, 1, 0, 0, 0, 1, 0, 0, 0.5, 0.5, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   Positions end = start;
@@ -90,7 +90,7 @@ TEST_CASE("region: edges that are nearly parallel or meet at an end count only w
   CHECK(earliest_regions(points(8), {parallel, face}, start, end).front().vertex == 4);
 }
 
-TEST_CASE("region: contact by contact, every usable event is one region, that of its first side") {
+TEST_CASE("region: per contact, every usable event is a region of its first side") {
   Positions start(4, 3);
   start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   Positions end = start;
@@ -109,7 +109,7 @@ TEST_CASE("region: contact by contact, every usable event is one region, that of
   for (std::size_t k = 0; k < rigid.size(); ++k) CHECK(rigid[k].event == earliest[k].event);
 }
 
-TEST_CASE("region: what happens to a rigid body after its first contact is left out, and many contacts are thinned") {
+TEST_CASE("region: later contacts of a rigid body are left out, and many contacts are thinned") {
   Positions start(4, 3);
   start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   Positions end = start;

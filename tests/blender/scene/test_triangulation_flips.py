@@ -55,7 +55,7 @@ def test_a_flip_is_found_and_added_once() -> None:
     extended = add_triangles(assembly, [cut.new])
     assert len(extended.surface.triangles) == 4
     assert [extended.face(k).number for k in range(4)] == [0] * 4
-    assert extended.surface.recut_faces == ((0, 1, 2, 3),)
+    assert extended.surface.flip_faces == ((0, 1, 2, 3),)
     assert find_flips(bpy.context, extended) == ()
     assert len(stiv.find_intersections(extended.positions, extended.surface)) == 0
 

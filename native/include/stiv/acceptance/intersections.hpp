@@ -10,18 +10,19 @@
 
 namespace stiv {
 
-/// Do two triangles meet in a point off the hull of the vertices they share (nothing, that vertex, that edge)? Shared
-/// corners are told by equal indices; three of them always count as meeting. Touching, coplanar overlap, coincident
-/// vertices of different index and neighbours folded flat onto each other count; triangles without area are segments or
-/// points. Exact in the range of orientation_3d.
+/// True if two triangles intersect apart from the hull of their shared vertices (nothing, a vertex, an edge). Shared
+/// vertices have equal indices; two triangles that share three always intersect. Touching, coplanar overlap, coincident
+/// vertices of different index and neighbours folded flat onto each other are intersections. A triangle without area is
+/// a segment or a point. Exact for coordinates in the range of coordinate_range.hpp.
+/// @param first, second corners, rows of q
 bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q);
 
 /// Pairs of indices, sorted.
 using IndexPairs = std::vector<std::pair<Index, Index>>;
 
-/// All that intersects in a surface at rest.
+/// All intersections of a surface at rest.
 struct StaticPairs {
-  IndexPairs faces;           ///< pairs of triangles
+  IndexPairs faces;           ///< pairs of triangles, smaller index first
   IndexPairs loose_edges;     ///< (loose edge, triangle)
   IndexPairs loose_vertices;  ///< (vertex of no edge, triangle)
 
@@ -29,8 +30,8 @@ struct StaticPairs {
   bool empty() const { return count() == 0; }
 };
 
-/// Exact static test of a whole surface; keeps its trees between calls. Pairs of bodies that do not meet are left out.
-/// Positions are finite. Results do not depend on the number of threads.
+/// Exact static test of a whole surface at positions q, (N, 3), all finite. It keeps its trees between calls. Pairs of
+/// bodies that do not meet are left out. Results do not depend on the number of threads.
 class IntersectionTest {
  public:
   explicit IntersectionTest(std::shared_ptr<const Surface> surface);
@@ -38,26 +39,29 @@ class IntersectionTest {
   IntersectionTest(IntersectionTest&&) noexcept;
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
 
-  /// All pairs of triangles (smaller index first) that intersect at positions q, (N, 3).
+  /// All pairs of triangles (smaller index first) that intersect.
   IndexPairs find(const PositionsView& q, Execution& execution);
 
-  /// Pairs (loose edge, triangle) that meet off the vertices they share.
+  /// Pairs (loose edge, triangle) that intersect apart from their shared vertices.
   IndexPairs find_loose_edges(const PositionsView& q, Execution& execution);
 
-  /// Pairs (vertex of no edge at all, triangle) that meet.
+  /// Pairs (vertex of no edge, triangle) that intersect.
   IndexPairs find_loose_vertices(const PositionsView& q, Execution& execution);
 
-  /// True if there is none of any kind; ends at the first. `moved` (N, may be empty: all) marks vertices that differ
-  /// from a state known to be free: pairs of which no vertex is marked are not looked at.
+  /// All three of them.
+  StaticPairs find_all(const PositionsView& q, Execution& execution) {
+    return {find(q, execution), find_loose_edges(q, execution), find_loose_vertices(q, execution)};
+  }
+
+  /// True if nothing intersects; stops at the first intersection.
+  /// @param moved (N) nonzero for vertices that differ from a state known to be free; only pairs with a moved vertex
+  /// are
+  ///        tested. Empty: all
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution);
 
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-inline StaticPairs find_static_pairs(IntersectionTest& test, const Positions& q, Execution& execution) {
-  return {test.find(q, execution), test.find_loose_edges(q, execution), test.find_loose_vertices(q, execution)};
-}
 
 }  // namespace stiv

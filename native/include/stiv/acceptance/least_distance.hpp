@@ -9,15 +9,21 @@
 
 namespace stiv {
 
-/// Where two triangles of a surface are nearest to each other.
+/// The closest points of two triangles of a surface.
 struct NearestTriangles {
-  double distance = 0;               ///< 0 where they intersect
+  double distance = 0;               ///< 0 if they intersect
   std::array<Index, 2> triangles{};  ///< smaller index first
-  std::array<Vector3, 2> points{};   ///< on each of them; where they intersect, the nearest points of their borders
+  std::array<Vector3, 2> points{};   ///< on each of them; if they intersect, the closest points of their edges
 };
 
-/// The least distance between triangles at rest, by a tree that is kept between calls. Pairs of bodies that do not meet
-/// are left out. Loose edges and vertices do not count. Not for use from two threads at once.
+/// The pairs of triangles whose distance counts.
+enum class DistancePairs {
+  between_bodies,  ///< those of different bodies
+  all              ///< those within a body too, unless they share a vertex
+};
+
+/// The least distance between triangles at rest. It keeps a tree between calls, so it is not for use from two threads
+/// at once. Pairs of bodies that do not meet are left out, and so are loose edges and vertices.
 class LeastDistance {
  public:
   explicit LeastDistance(std::shared_ptr<const Surface> surface);
@@ -25,9 +31,10 @@ class LeastDistance {
   LeastDistance(LeastDistance&&) noexcept;
   LeastDistance& operator=(LeastDistance&&) noexcept;
 
-  /// At positions q, (N, 3); nothing if there is no pair. Of several pairs at the same distance always the same one.
-  /// @param within also pairs of one body, but those that share a vertex
-  std::optional<NearestTriangles> find(const PositionsView& q, bool within = false);
+  /// The closest pair at positions q, (N, 3), or nothing if there is no pair. The choice among equal distances depends
+  /// on the input alone.
+  /// @throws InputError as Surface::check_positions
+  std::optional<NearestTriangles> find(const PositionsView& q, DistancePairs pairs = DistancePairs::between_bodies);
 
  private:
   class Implementation;

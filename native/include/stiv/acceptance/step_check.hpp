@@ -6,9 +6,9 @@
 
 namespace stiv {
 
-/// Is the linear step start -> end free, and its end free of intersections, given that its start is? Conservative
-/// continuous check of the path, then the exact static test: the two conditions of an accepted state.
-/// (mathematics.md, "Guarantee")
+/// True if the linear step start -> end, (N, 3) each, is proven free of interference and its end free of intersections.
+/// The start must be free. These are the two conditions of an accepted state: a conservative continuous test of the
+/// path, then the exact static test. (mathematics.md, "Guarantee")
 bool is_step_free(Detector& detector, IntersectionTest& intersections, const PositionsView& start,
                   const PositionsView& end, Proximity proximity, Execution& execution);
 

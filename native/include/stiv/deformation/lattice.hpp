@@ -18,14 +18,14 @@ struct LatticeDefinition {
   Eigen::VectorXd point_weights;  ///< (u v w) weights of the lattice's own vertex group, or empty: all 1
 };
 
-/// Weights of the lattice's points in vertices at `rest_vertices` (n, 3), given in the lattice's frame, so that
-///   x_out = x + W (P - R)   (rows of W scaled by `influence`, (n), strength times modifier group; empty: all 1),
-/// equal to Blender's Lattice modifier. With point weights the influence enters twice, as it does in Blender.
-/// @throws InputError: a resolution below 1, sizes that do not fit, coordinates not finite.
+/// Weights W, (n, u v w), of the lattice's points at `rest_vertices`, (n, 3), in the lattice's frame. x + W (P - R) is
+/// the result of Blender's Lattice modifier. The influence, (n), is strength times modifier group; empty: all 1. With
+/// point weights it applies twice, as in Blender.
+/// @throws InputError for a resolution below 1, invalid sizes, and coordinates that are not finite
 WeightMatrix lattice_weights(const LatticeDefinition& lattice, const Positions& rest_vertices,
                              const Eigen::VectorXd& influence = Eigen::VectorXd());
 
-/// What a lattice deforms, and where.
+/// The vertices that a lattice deforms.
 struct LatticePlacement {
   Positions rest_vertices;    ///< (n, 3), in the lattice's frame
   Eigen::VectorXd influence;  ///< (n), or empty: all 1
@@ -33,9 +33,9 @@ struct LatticePlacement {
   Controls points;            ///< (u v w, 3) rest positions of the points, in the world
 };
 
-/// q = vertices + W (p - points), whose controls are the lattice's points in the world. As make_linear with the weights
-/// above, but the product is made from the weights along each axis.
-/// @throws InputError as lattice_weights, and where sizes do not fit
+/// q = vertices + W (p - points), with the lattice's points in the world as controls. As make_linear with
+/// lattice_weights, but products use the weights along each axis.
+/// @throws InputError as lattice_weights, and if sizes do not match
 std::shared_ptr<const LinearDeformation> make_lattice(const LatticeDefinition& lattice, const LatticePlacement& placed);
 
 }  // namespace stiv

@@ -8,25 +8,28 @@
 
 namespace stiv {
 
-/// Weights of controls in vertices, (n, m), the same for x, y and z.
+/// q = p: one control for each vertex. The metric is the identity.
+std::shared_ptr<const Deformation> make_identity(Index vertex_count);
+
+/// Weights of controls at vertices, (n, m), the same for x, y and z.
 using WeightMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
 
-/// Weights from compressed rows: those of vertex i are values[starts[i]] to values[starts[i + 1] - 1], of the controls
-/// at the same places of `controls`, in any order; weights of one control in one row add up.
-/// @throws InputError naming the row: lists that do not fit, a control out of range.
+/// Weights from compressed rows. Those of vertex i are values[starts[i]] to values[starts[i + 1] - 1], for the controls
+/// at the same positions of `controls`, in any order. Repeated entries add up.
+/// @throws InputError naming the row: lists of the wrong length, a control out of range
 WeightMatrix weights_from_rows(const std::vector<Index>& starts, const std::vector<Index>& controls,
                                const std::vector<double>& values, Index control_count);
 
-/// A deformation q = M p + c whose weights can be looked at.
+/// A deformation q = M p + c with explicit weights.
 class LinearDeformation : public Deformation {
  public:
   virtual const WeightMatrix& weights() const = 0;  ///< M, (n, m)
   virtual const Positions& offset() const = 0;      ///< c, (n, 3), or (0, 3) for none
 };
 
-/// q = M p + c. Every linear deformation (subdivision, lattice, their chains) becomes one of these.
+/// q = M p + c. Subdivisions, lattices and their compositions are of this kind.
 /// @param offset (n, 3), or (0, 3) for none
-/// @throws InputError naming the row: weights or offset not finite, shapes that do not fit.
+/// @throws InputError naming the row: weights or offset not finite, shapes that do not match
 std::shared_ptr<const LinearDeformation> make_linear(WeightMatrix matrix, Positions offset = Positions());
 
 }  // namespace stiv

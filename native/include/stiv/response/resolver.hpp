@@ -5,47 +5,47 @@
 
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/execution.hpp"
-#include "stiv/volumes/stiv.hpp"
+#include "stiv/volumes/relative.hpp"
 
 namespace stiv {
 
-/// How constraints are met together. [P3.3]
+/// How constraints are solved together. [P3.3]
 enum class ConstraintSolver {
-  lcp,    ///< as inequalities, with multipliers that are not negative: contacts push
+  lcp,    ///< as inequalities with nonnegative multipliers: contacts push
   linear  ///< as equations: contacts may also pull
 };
 
-/// A linear constraint on the controls, row . p >= bound, with its image step = M^-1 row; row . step = 1.
+/// A linear constraint on the controls, row . p >= bound, with step = M^-1 row, scaled so that row . step = 1.
 struct ControlConstraint {
   SparseField row;
   SparseField step;
   double bound = 0;
 };
 
-/// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control can change are left
-/// out. (mathematics.md, Eq. 5)
-/// @param metric_at controls at which the metric is taken; the same for constraints that are solved together
-/// @param execution shares the work, and is asked whether to go on: there may be a STIV for each of thousands of
-/// contacts; null: one thread
+/// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
+/// (mathematics.md, Eq. 5)
+/// @param metric_at controls at which the metric is evaluated, the same for all constraints solved together
+/// @param execution threads and cancellation; null: one thread
+/// @throws Interrupted
 std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stivs, const Deformation& deformation,
                                                    const Controls& p, const Metric& metric, const Controls& metric_at,
                                                    const Execution* execution = nullptr);
 
-/// Constraints that are met together. The last multipliers are the next first guess and the Gram matrix, where it is
-/// used, grows with the constraints, so that adding a few rows and projecting again is cheap.
+/// Constraints that are solved together. The last multipliers are the next first guess, and the Gram matrix grows with
+/// the constraints, so that adding a few rows and projecting again is cheap.
 class ConstraintSet {
  public:
   void add(std::vector<ControlConstraint> constraints);
   std::size_t size() const { return constraints_.size(); }
 
-  /// Forget the constraints that the last projection did not rest on; they are found again if they are met again.
+  /// Removes constraints that were inactive in the last projection.
   void drop_inactive();
 
-  /// The point nearest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
+  /// The point closest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
   /// multipliers of the LCP. (mathematics.md, Eq. 6)
   Controls project(const Controls& from, const Execution& execution);
 
-  /// The same with all constraints as equations, of which the least multipliers solve as many as can be solved.
+  /// The same with all constraints as equations, in the least-squares sense with the smallest multipliers.
   /// [P3.3; Harmon et al. 2008]
   Controls project_as_equations(const Controls& from, const Execution& execution);
 
@@ -55,7 +55,7 @@ class ConstraintSet {
   Controls moved_by_multipliers(const Controls& from) const;
 
   std::vector<ControlConstraint> constraints_;
-  Eigen::MatrixXd gram_;  ///< row_r . step_s, of the first constraints: as far as it was needed
+  Eigen::MatrixXd gram_;  ///< row_r . step_s of the first constraints
   Eigen::VectorXd multipliers_;
 };
 

@@ -8,19 +8,19 @@
 
 namespace stiv {
 
+/// How regions are grouped into STIVs.
 enum class ConstraintKind {
   per_patch,   ///< one STIV for each patch
-  single,      ///< one for all
-  per_contact  ///< one for each event, the finest there is: many constraints, few rounds
+  single,      ///< one STIV for all
+  per_contact  ///< one STIV for each event: many constraints, few rounds
 };
 
-/// Label of each region, 0, 1, ...: regions of neighbouring vertices and regions of the same event are one patch.
-/// Regions of rigid bodies are joined by event only: with six degrees of freedom, a body that lies flat on another
-/// needs more than one constraint not to tip over. Joining by side alone gives collinear constraints. [P3.3;
-/// mathematics.md, "Rigid bodies"]
+/// The patch of each region, 0, 1, ... Regions of neighbouring vertices, and regions of the same event, are one patch.
+/// Regions of rigid bodies are joined by event only: a rigid body that lies flat on another needs several constraints,
+/// or it tips over. [P3.3; mathematics.md, "Rigid bodies"]
 std::vector<Index> patch_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind);
 
-/// The same with patches as the paper has them, joined by neighbouring vertices alone. [P4.1]
+/// The same with the paper's patches: only regions of neighbouring vertices are joined. [P4.1]
 std::vector<Index> ring_labels(const Surface& surface, const std::vector<Region>& regions, ConstraintKind kind);
 
 }  // namespace stiv

@@ -8,28 +8,28 @@
 
 namespace stiv {
 
-/// The barycentric cell of a vertex, with the event it is hit by first. [P4, "Interference prisms"]
+/// The barycentric cell of a vertex with its earliest event. [P4, "Interference prisms"]
 struct Region {
   Index vertex = 0;
-  Index event = 0;     ///< position in the list of events
-  bool rigid = false;  ///< a rigid body takes part in the event
+  Index event = 0;     ///< index into the events
+  bool rigid = false;  ///< true if the event involves a rigid body
 };
 
-/// Each event falls into one region on either side, that of its heaviest vertex; a region keeps the earliest event
-/// whose normal is usable (n . Drho < -1e-8 |Drho|). Events whose nearest points lie on a
-/// vertex or edge of a face or at an end of an edge, and those of nearly parallel edges, count only if there are no
-/// others: their normals are not steady. Sorted by vertex; ties go to the first event. Empty although there are events:
-/// none of them tells a way out, and the edit has to be truncated.
+/// The regions of a step, sorted by vertex. Each event belongs to one region on each side, that of the vertex with the
+/// largest weight. A region has its earliest event with a usable normal (n . Drho < -1e-8 |Drho|), the first of equals.
+/// The normals of some events are unstable: closest points on a vertex or edge of the face, or at an end of an edge,
+/// and nearly parallel edges. They count only if there are no others. If events have no region, no direction resolves
+/// them, and the edit must be truncated.
 ///
-/// A rigid body has six degrees of freedom, and what its other vertices do after the first contact follows from that
-/// contact: of the events of a pair of bodies of which one is rigid only those of nearly the earliest time count, and
-/// at most 32 regions, evenly taken. (mathematics.md, "Rigid bodies")
+/// A rigid body has six degrees of freedom, so its first contact determines the motion of its other vertices. For a
+/// pair with a rigid body, only events of nearly the earliest time count, in at most 32 evenly chosen regions.
+/// (mathematics.md, "Rigid bodies")
 /// @param start, end the step, (N, 3) each
 std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
                                      const Positions& end);
 
-/// The same events, but all of them, each in the region of its first side alone; those of rigid bodies as above. For
-/// deformations in which each contact can be answered by itself. Not in the order of vertices.
+/// A region for each event, on its first side alone; events of rigid bodies as above. For local metrics, where each
+/// contact can be resolved by itself (Metric::is_local). Not sorted by vertex.
 std::vector<Region> contact_regions(const Surface& surface, const Events& events, const Positions& start,
                                     const Positions& end);
 

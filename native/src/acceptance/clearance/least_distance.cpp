@@ -25,28 +25,28 @@ double squared_gap(const PackedBox& a, const PackedBox& b) {
   return sum;
 }
 
-/// A node of the tree, or at level -1 a primitive: a place in the blocks.
-struct Part {
+/// A node of the tree or, at level -1, a position in the order of primitives.
+struct Subtree {
   Index level = 0, node = 0;
   PackedBox box;
   Index group = 0;
 };
 
-/// Up to eight parts.
-struct Parts {
-  std::array<Part, Bvh::width> parts;
+/// Up to eight subtrees.
+struct Subtrees {
+  std::array<Subtree, Bvh::width> items;
   std::size_t count = 0;
 };
 
-/// Branch and bound over pairs of nodes, nearest first.
+/// Branch and bound over pairs of subtrees, closest first.
 class Search {
  public:
-  Search(const Surface& surface, const Primitives& triangles, const PositionsView& q, bool within)
-      : surface_(surface), triangles_(triangles), tree_(triangles.tree()), q_(q), within_(within) {}
+  Search(const Surface& surface, const Primitives& triangles, const PositionsView& q, DistancePairs pairs)
+      : surface_(surface), triangles_(triangles), tree_(triangles.tree()), q_(q), pairs_(pairs) {}
 
   std::optional<NearestTriangles> run() {
     const auto top = static_cast<Index>(tree_.levels().size()) - 1;
-    const Part root{top, 0, tree_.levels().back().boxes[0], tree_.levels().back().groups[0]};
+    const Subtree root{top, 0, tree_.levels().back().boxes[0], tree_.levels().back().groups[0]};
     visit(root, root);
     return best_;
   }
@@ -57,23 +57,23 @@ class Search {
     std::uint8_t a = 0, b = 0;
   };
 
-  void visit(const Part& a, const Part& b) {
-    const bool alike = a.level == b.level && a.node == b.node;
-    const Parts first = a.level >= b.level ? children(a) : itself(a);
-    const Parts second = b.level >= a.level ? children(b) : itself(b);
+  void visit(const Subtree& a, const Subtree& b) {
+    const bool same = a.level == b.level && a.node == b.node;
+    const Subtrees first = a.level >= b.level ? children(a) : itself(a);
+    const Subtrees second = b.level >= a.level ? children(b) : itself(b);
     std::array<Pair, Bvh::width * Bvh::width> pairs;
     std::size_t count = 0;
     for (std::size_t i = 0; i < first.count; ++i)
-      for (std::size_t j = alike ? i : 0; j < second.count; ++j) {
-        const Part &x = first.parts[i], &y = second.parts[j];
-        if ((alike && i == j && x.level < 0) || !may_count(x.group, y.group)) continue;
+      for (std::size_t j = same ? i : 0; j < second.count; ++j) {
+        const Subtree &x = first.items[i], &y = second.items[j];
+        if ((same && i == j && x.level < 0) || !is_counted(x.group, y.group)) continue;
         const double bound = squared_gap(x.box, y.box);
         if (bound < squared_best_) pairs[count++] = {bound, std::uint8_t(i), std::uint8_t(j)};
       }
     std::sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(count),
               [](const Pair& x, const Pair& y) { return std::tie(x.bound, x.a, x.b) < std::tie(y.bound, y.a, y.b); });
     for (std::size_t k = 0; k < count && pairs[k].bound < squared_best_; ++k) {
-      const Part &x = first.parts[pairs[k].a], &y = second.parts[pairs[k].b];
+      const Subtree &x = first.items[pairs[k].a], &y = second.items[pairs[k].b];
       if (x.level < 0 && y.level < 0)
         examine(tree_.order()[at(x.node)], tree_.order()[at(y.node)], pairs[k].bound == 0);
       else
@@ -81,43 +81,43 @@ class Search {
     }
   }
 
-  static Parts itself(const Part& part) {
-    Parts parts;
-    parts.parts[parts.count++] = part;
-    return parts;
+  static Subtrees itself(const Subtree& subtree) {
+    Subtrees result;
+    result.items[result.count++] = subtree;
+    return result;
   }
 
-  Parts children(const Part& part) const {
-    const Bvh::Level& level = tree_.levels()[at(part.level)];
-    const Bvh::Node& node = level.nodes[at(part.node)];
-    const Index below = part.level > 0 ? static_cast<Index>(tree_.levels()[at(part.level - 1)].nodes.size())
-                                       : static_cast<Index>(tree_.order().size());
-    Parts parts;
-    for (Index lane = 0; lane < std::min(Bvh::width, below - part.node * Bvh::width); ++lane) {
-      const Index child = part.node * Bvh::width + lane;
-      if (part.level == 0 && tree_.order()[at(child)] < 0) continue;
-      Part& next = parts.parts[parts.count++];
-      next.level = part.level - 1;
+  Subtrees children(const Subtree& subtree) const {
+    const Bvh::Level& level = tree_.levels()[at(subtree.level)];
+    const Bvh::Node& node = level.nodes[at(subtree.node)];
+    const Index below = subtree.level > 0 ? static_cast<Index>(tree_.levels()[at(subtree.level - 1)].nodes.size())
+                                          : static_cast<Index>(tree_.order().size());
+    Subtrees result;
+    for (Index lane = 0; lane < std::min(Bvh::width, below - subtree.node * Bvh::width); ++lane) {
+      const Index child = subtree.node * Bvh::width + lane;
+      if (subtree.level == 0 && tree_.order()[at(child)] < 0) continue;
+      Subtree& next = result.items[result.count++];
+      next.level = subtree.level - 1;
       next.node = child;
       for (std::size_t k = 0; k < 7; ++k) next.box.values[k] = node.planes[k][lane];
-      next.group = part.level > 0 ? tree_.levels()[at(part.level - 1)].groups[at(child)] : part.group;
+      next.group = subtree.level > 0 ? tree_.levels()[at(subtree.level - 1)].groups[at(child)] : subtree.group;
     }
-    return parts;
+    return result;
   }
 
-  bool may_count(Index a, Index b) const {
+  bool is_counted(Index a, Index b) const {
     if (a == Bvh::mixed || b == Bvh::mixed) return true;
-    return (within_ || a != b) && surface_.bodies_meet(a, b);
+    return (pairs_ == DistancePairs::all || a != b) && surface_.bodies_meet(a, b);
   }
 
-  void examine(Index a, Index b, bool boxes_meet) {
+  void examine(Index a, Index b, bool boxes_overlap) {
     if (a > b) std::swap(a, b);
     const std::array<Index, 3>&first = triangles_.corners(a), &second = triangles_.corners(b);
     for (const Index corner : first)
       if (std::find(second.begin(), second.end(), corner) != second.end()) return;
     if (best_ && least_triangle_distance(first, second, q_) >= best_->distance) return;
     NearestTriangles nearest = triangle_distance(first, second, q_);
-    if (boxes_meet && triangles_intersect(first, second, q_)) nearest.distance = 0;
+    if (boxes_overlap && triangles_intersect(first, second, q_)) nearest.distance = 0;
     if (best_ && nearest.distance >= best_->distance) return;
     nearest.triangles = {a, b};
     best_ = nearest;
@@ -128,7 +128,7 @@ class Search {
   const Primitives& triangles_;
   const Bvh& tree_;
   PositionsView q_;
-  bool within_;
+  DistancePairs pairs_;
   std::optional<NearestTriangles> best_;
   double squared_best_ = std::numeric_limits<double>::infinity();
 };
@@ -140,12 +140,12 @@ class LeastDistance::Implementation {
   explicit Implementation(std::shared_ptr<const Surface> surface)
       : surface_(std::move(surface)), triangles_(*surface_, triangle_corners(*surface_)) {}
 
-  std::optional<NearestTriangles> find(const PositionsView& q, bool within) {
+  std::optional<NearestTriangles> find(const PositionsView& q, DistancePairs pairs) {
     surface_->check_positions(q);
     if (triangles_.empty()) return std::nullopt;
     const Execution execution(1);
     triangles_.update(vertex_boxes(q, {}, execution), execution);
-    return Search(*surface_, triangles_, q, within).run();
+    return Search(*surface_, triangles_, q, pairs).run();
   }
 
  private:
@@ -159,9 +159,9 @@ LeastDistance::~LeastDistance() = default;
 LeastDistance::LeastDistance(LeastDistance&&) noexcept = default;
 LeastDistance& LeastDistance::operator=(LeastDistance&&) noexcept = default;
 
-std::optional<NearestTriangles> LeastDistance::find(const PositionsView& q, bool within) {
+std::optional<NearestTriangles> LeastDistance::find(const PositionsView& q, DistancePairs pairs) {
   const FloatingPointScope floating_point;
-  return implementation_->find(q, within);
+  return implementation_->find(q, pairs);
 }
 
 }  // namespace stiv

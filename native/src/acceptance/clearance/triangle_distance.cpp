@@ -19,7 +19,7 @@ Corners seen_from(const Vector3& origin, const std::array<Index, 3>& triangle, c
   return corners;
 }
 
-/// By how much the second lies beyond the first along a direction, over its length.
+/// The gap between two triangles along a direction, in units of its length.
 double gap_along(const Vector3& direction, const Corners& a, const Corners& b) {
   const double length = direction.norm();
   if (!(length > 0)) return 0;
@@ -48,7 +48,7 @@ double least_triangle_distance(const std::array<Index, 3>& first, const std::arr
 
 NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                    const PositionsView& q) {
-  const Vector3 origin = q.row(first[0]);  // differences are exact to the size of the pair, not of the scene
+  const Vector3 origin = q.row(first[0]);  // rounding then scales with the pair, not with the scene
   const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
   NearestTriangles nearest;
   nearest.distance = std::numeric_limits<double>::infinity();

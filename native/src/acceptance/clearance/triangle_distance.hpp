@@ -7,13 +7,13 @@
 
 namespace stiv {
 
-/// The nearest points of the borders and corners of two triangles: the nearest points of the triangles, unless they
-/// intersect. `triangles` is left to the caller.
+/// The closest points of the boundaries of two triangles, which are those of the triangles unless they intersect. Does
+/// not set NearestTriangles::triangles.
 NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                    const PositionsView& q);
 
-/// A quick bound from below of their distance, a little loose for rounding: by planes across the line of the centres
-/// and along both triangles.
+/// A fast lower bound of their distance, with a margin for rounding: from planes orthogonal to the line through the
+/// centres and parallel to each triangle.
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                const PositionsView& q);
 

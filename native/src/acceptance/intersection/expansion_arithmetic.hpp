@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// A double and what was lost in computing it: high + low is the exact result.
+/// A rounded result and its rounding error: high + low is exact.
 struct Rounded {
   double high;
   double low;
@@ -33,15 +33,15 @@ inline Rounded split(double x) {
   return {high, x - high};
 }
 
-/// x * y. By additions and multiplications alone: on some platforms std::fma rounds twice. [theorem 18, after Dekker]
+/// x * y. Without std::fma, which rounds twice on some platforms. [theorem 18, after Dekker]
 inline Rounded two_product(double x, double y) {
   const double product = x * y;
   const Rounded a = split(x), b = split(y);
   return {product, ((a.high * b.high - product) + a.high * b.low + a.low * b.high) + a.low * b.low};
 }
 
-/// A real number held exactly as a sum of doubles: non-adjacent terms, smallest first, zeros left out; the last one
-/// carries the sign. The operations below keep that form, round-to-even assumed. [Shewchuk 1997, section 2]
+/// A number as an exact sum of nonadjacent doubles, smallest first, without zeros. The last term has its sign. All
+/// operations preserve this form under rounding to even. [Shewchuk 1997, section 2]
 template <int Capacity>
 struct Expansion {
   std::array<double, static_cast<std::size_t>(Capacity)> term;
@@ -83,7 +83,7 @@ Expansion<N> operator-(Expansion<N> e) {
   return e;
 }
 
-/// [theorem 12, EXPANSION-SUM: unlike the linear-time sum it needs no more than what all operations here preserve]
+/// [theorem 12, EXPANSION-SUM: unlike the linear-time sum, it requires no more than nonadjacent terms]
 template <int N, int M>
 Expansion<N + M> operator+(const Expansion<N>& e, const Expansion<M>& f) {
   Expansion<N + M> sum;

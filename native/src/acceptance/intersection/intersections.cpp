@@ -4,27 +4,27 @@
 #include <algorithm>
 #include <atomic>
 
-#include "acceptance/intersection/pair_examination.hpp"
-#include "acceptance/intersection/point_rows.hpp"
+#include "acceptance/intersection/candidate_test.hpp"
+#include "acceptance/intersection/packed_points.hpp"
 #include "acceptance/intersection/stars.hpp"
 
 namespace stiv {
 
 namespace {
 
-GroupTable meeting_bodies(const Surface& surface) {
+GroupTable pairs_of_bodies(const Surface& surface) {
   const auto count = static_cast<Index>(surface.bodies().size());
-  std::vector<unsigned char> meets;
+  std::vector<unsigned char> tested;
   for (Index a = 0; a < count; ++a)
-    for (Index b = 0; b < count; ++b) meets.push_back(surface.bodies_meet(a, b));
-  return {count, std::move(meets)};
+    for (Index b = 0; b < count; ++b) tested.push_back(surface.bodies_meet(a, b));
+  return {count, std::move(tested)};
 }
 
-/// Pairs of two kinds of primitives, or of one with itself, that intersect.
+/// Searches for intersections of two kinds of primitives, or of one kind with itself.
 class Search {
  public:
   Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
-         const PositionsView& q, const PointRows& points)
+         const PositionsView& q, const PackedPoints& points)
       : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q), points_(points) {
     if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
   }
@@ -53,25 +53,25 @@ class Search {
   }
 
  private:
-  /// Calls `report(pair)` for what intersects, until it returns false.
+  /// Calls `report(pair)` for each intersection until it returns false.
   template <class Report>
   void scan(const Bvh::Task& task, const Report& report) const {
-    PairExamination examination(surface_, first_, second_, q_, points_, report);
+    CandidateTest test(surface_, first_, second_, q_, points_, report);
     PairBuffer candidates;
     bool more = true;
     candidates.limit = 4096;
     candidates.full = [&](PairBuffer& found) {
-      for (std::size_t k = 0; k < found.count && more; ++k) more = examination.take(found[k]);
+      for (std::size_t k = 0; k < found.count && more; ++k) more = test.add(found[k]);
       found.count = 0;
       return more;
     };
     first_.tree().overlaps(task, second_.tree(), bodies_, candidates);
-    if (candidates.full(candidates)) examination.finish();
+    if (candidates.full(candidates)) test.finish();
   }
 
-  IndexPairs sorted(const std::vector<IndexPairs>& parts) const {
+  IndexPairs sorted(const std::vector<IndexPairs>& found) const {
     IndexPairs pairs;
-    for (const IndexPairs& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
+    for (const IndexPairs& chunk : found) pairs.insert(pairs.end(), chunk.begin(), chunk.end());
     if (&first_ == &second_)
       for (auto& [a, b] : pairs)
         if (b < a) std::swap(a, b);
@@ -83,7 +83,7 @@ class Search {
   const Primitives &first_, &second_;
   const GroupTable& bodies_;
   PositionsView q_;
-  const PointRows& points_;
+  const PackedPoints& points_;
   std::vector<Bvh::Task> tasks_;
 };
 
@@ -97,7 +97,7 @@ class IntersectionTest::Implementation {
         loose_edges_(*surface_, loose_edge_corners(*surface_)),
         loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
         stars_(triangles_.all_corners(), surface_->vertex_count()),
-        bodies_(meeting_bodies(*surface_)) {}
+        bodies_(pairs_of_bodies(*surface_)) {}
 
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
   IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
@@ -127,7 +127,7 @@ class IntersectionTest::Implementation {
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
     surface_->check_positions(q);
-    points_ = point_rows(q, execution);
+    points_ = pack_points(q, execution);
     const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
     for (Primitives* kind : kinds) kind->update(boxes, execution);
     triangles_.leave_out_neighbours(stars_.find_free(points_, moved, execution), execution);
@@ -137,7 +137,7 @@ class IntersectionTest::Implementation {
   Primitives triangles_, loose_edges_, loose_vertices_;
   Stars stars_;
   GroupTable bodies_;
-  PointRows points_;  ///< of the update
+  PackedPoints points_;  ///< of the update
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)

@@ -20,7 +20,8 @@ constexpr double error_3d = (7 + 56 * epsilon) * epsilon;
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-/// Is the sign of `value` safe from rounding? It is beyond the error bound, or exactly 0 since all products vanish.
+/// True if rounding cannot have changed the sign: |value| is above the error bound, or the bound is 0 because each
+/// product has a factor of exactly 0.
 bool is_certain(double value, double bound) { return std::abs(value) > bound || bound == 0; }
 
 Expansion<16> exact_minor(const Expansion<2>& ax, const Expansion<2>& ay, const Expansion<2>& bx,

@@ -67,8 +67,8 @@ void Primitives::update(const std::vector<PackedBox>& vertices, const Execution&
   tree_->refit([&](Index primitive) { return box_of(corners(primitive), vertices); }, execution);
 }
 
-// The tree leaves out primitives with a corner of one name. Where their star is not known to be free, corners get names
-// that no other has: negative numbers.
+// The tree skips pairs of primitives with equal corner names. Corners whose star is not proven free get unique negative
+// names.
 void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution) {
   names_.resize(3 * corners_.size());
   execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {

@@ -10,7 +10,7 @@
 
 namespace stiv {
 
-/// Corner indices of triangles; of edges and vertices too, as triangles without area: (a, b, b), (a, a, a).
+/// Corner indices of triangles. Edges and vertices are triangles without area: (a, b, b), (a, a, a).
 using CornerList = std::vector<std::array<Index, 3>>;
 
 CornerList triangle_corners(const Surface& surface);
@@ -18,11 +18,11 @@ CornerList loose_edge_corners(const Surface& surface);
 /// Vertices of no triangle and no loose edge.
 CornerList loose_vertex_corners(const Surface& surface);
 
-/// Boxes of all vertices, (N); active are those that `moved`, as in IntersectionTest::is_free, marks.
+/// Boxes of all vertices, (N); active if marked in `moved`, as in IntersectionTest::is_free.
 std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
                                     const Execution& execution);
 
-/// Primitives of one kind with the tree over them, built when first needed and refitted from then on.
+/// Primitives of one kind and their tree, which the first update builds and later updates refit.
 class Primitives {
  public:
   Primitives(const Surface& surface, CornerList corners);
@@ -30,7 +30,7 @@ class Primitives {
   /// A primitive is active if one of its vertices is.
   void update(const std::vector<PackedBox>& vertices, const Execution& execution);
 
-  /// From now on the tree's pairs with itself leave out those that share a vertex marked in `free_stars` (N).
+  /// Excludes pairs that share a vertex marked in `free_stars`, (N), from later searches of the tree with itself.
   void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution);
 
   bool empty() const { return corners_.empty(); }
@@ -41,7 +41,7 @@ class Primitives {
  private:
   CornerList corners_;
   std::vector<Index> bodies_;
-  std::vector<Index> names_;  // of corners as the tree knows them, three a primitive
+  std::vector<Index> names_;  // of corners in the tree, three for each primitive
   std::optional<Bvh> tree_;
 };
 

@@ -8,11 +8,11 @@ namespace stiv {
 
 namespace {
 
-// A sum of at most three products of differences is off by at most ((1 + u)^5 - 1) times the sum of its magnitudes,
-// u = 2^-53 [Higham 2002, section 3.1]; 8 u covers that, and the rounding of the bound itself.
+// The error of a sum of at most three products of differences is at most ((1 + u)^5 - 1) times the sum of their
+// magnitudes, u = 2^-53 [Higham 2002, section 3.1]. 8 u covers that and the rounding of the bound itself.
 constexpr double rounding = 8 * 0x1p-53;
 
-/// An interval that holds direction . (point - origin).
+/// An interval that contains direction . (point - origin).
 struct Height {
   double value;
   double error;
@@ -38,7 +38,7 @@ bool apart_along(const Vector3& direction, const Triangle& below, const Triangle
   return bottom - top > 4 * error;
 }
 
-/// Sides of a directed line in a projection; 0 when rounding leaves it open.
+/// Side of a directed line in a projection; 0 if rounding makes it uncertain.
 class Line {
  public:
   Line(const Vector3& from, const Vector3& to, int drop) : from_(from), x_((drop + 1) % 3), y_((drop + 2) % 3) {
@@ -65,12 +65,12 @@ int largest_axis(const Vector3& vector) {
   return axis;
 }
 
-/// The axis along which a triangle looks largest.
+/// The axis along which a triangle's projection is largest.
 int widest_projection(const Vector3& a, const Vector3& b, const Vector3& c) {
   return largest_axis((b - a).cross(c - a));
 }
 
-/// Does the line of an edge of `a`, seen along `drop`, run between the rest of `a` and all of `b`?
+/// True if, projected along `drop`, the line of an edge of `a` separates `a` from `b`.
 bool apart_over_edge(const Triangle& a, const Triangle& b, int drop) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Line line(a[k], a[(k + 1) % 3], drop);
@@ -80,7 +80,7 @@ bool apart_over_edge(const Triangle& a, const Triangle& b, int drop) {
   return false;
 }
 
-/// Does a side of `a` at the corner, seen along `drop`, run between the rest of `a` and all of `b`?
+/// True if, projected along `drop`, the line of a side of `a` at the corner separates `a` from `b`.
 bool apart_over_side(const Vector3& corner, const Segment& a, const Segment& b, int drop) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Line line(corner, a[k], drop);
@@ -92,14 +92,14 @@ bool apart_over_side(const Vector3& corner, const Segment& a, const Segment& b, 
 
 }  // namespace
 
-bool clearly_apart(const Triangle& a, const Triangle& b) {
+bool separated_by_plane(const Triangle& a, const Triangle& b) {
   const Vector3 direction = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);
   if (apart_along(direction, a, b)) return true;
   return apart_over_edge(a, b, widest_projection(a[0], a[1], a[2])) ||
          apart_over_edge(b, a, widest_projection(b[0], b[1], b[2]));
 }
 
-bool clearly_apart_at_corner(const Vector3& corner, const Segment& a, const Segment& b) {
+bool separated_at_corner(const Vector3& corner, const Segment& a, const Segment& b) {
   const Vector3 direction = (b[0] + b[1]) - (a[0] + a[1]);
   if (Height(direction, a[0], corner).is_negative() && Height(direction, a[1], corner).is_negative() &&
       Height(direction, b[0], corner).is_positive() && Height(direction, b[1], corner).is_positive())
@@ -108,7 +108,7 @@ bool clearly_apart_at_corner(const Vector3& corner, const Segment& a, const Segm
          apart_over_side(corner, b, a, widest_projection(corner, b[0], b[1]));
 }
 
-bool clearly_apart_at_edge(const Segment& edge, const Vector3& a, const Vector3& b) {
+bool separated_at_edge(const Segment& edge, const Vector3& a, const Vector3& b) {
   const Line line(edge[0], edge[1], widest_projection(edge[0], edge[1], a));
   return line.side(a) * line.side(b) < 0;
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "acceptance/intersection/exact_meeting.hpp"
+#include "acceptance/intersection/exact_intersection.hpp"
 
 namespace stiv {
 
-/// Quick proofs that two triangles do not meet, in plain floating point with a rounding bound. True is certain; false
-/// means nothing. They decide nearly all pairs, flat surfaces included, where exact determinants vanish and are dear.
+/// Fast proofs that two triangles do not intersect, in floating point with rounding bounds. True is certain; false is
+/// inconclusive. They decide nearly all pairs, also of flat surfaces, where exact determinants are expensive.
 
-/// Separated by a plane across the line that joins the centres, or over an edge of one in some projection.
-bool clearly_apart(const Triangle& a, const Triangle& b);
+/// Tries planes orthogonal to the line through the centres, and planes through an edge along an axis.
+bool separated_by_plane(const Triangle& a, const Triangle& b);
 
-/// (corner, a0, a1) and (corner, b0, b1) meet in the corner alone.
-bool clearly_apart_at_corner(const Vector3& corner, const Segment& a, const Segment& b);
+/// True: (corner, a0, a1) and (corner, b0, b1) share only the corner.
+bool separated_at_corner(const Vector3& corner, const Segment& a, const Segment& b);
 
-/// (e0, e1, a) and (e0, e1, b) meet in the edge alone: seen along some axis, it runs between a and b.
-bool clearly_apart_at_edge(const Segment& edge, const Vector3& a, const Vector3& b);
+/// True: (e0, e1, a) and (e0, e1, b) share only the edge, which separates a and b in a projection along some axis.
+bool separated_at_edge(const Segment& edge, const Vector3& a, const Vector3& b);
 
 }  // namespace stiv

@@ -10,34 +10,35 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// A pair a lane, seen from the first corner of the first triangle: its other two, then those of the second.
+/// One pair in each lane, relative to the first corner of the first triangle: its other two, then those of the second.
 struct Pair {
   Point first[2], second[3];
-  Point reach;  ///< of the coordinates, in magnitude
+  Point magnitude;  ///< of the coordinates
 };
 
 HWY_INLINE Point magnitude(Point a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
 HWY_INLINE Point larger(Point a, Point b) { return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)}; }
 
-HWY_INLINE Point load_corners(const TrianglePairs& pairs, std::size_t corner, std::size_t at, const PointRow* points) {
+HWY_INLINE Point load_corners(const TrianglePairs& pairs, std::size_t corner, std::size_t at,
+                              const PackedPoint* points) {
   const double* rows[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane)
     rows[lane] = points[pairs.corners[corner][at + lane]].coordinates;
   return load_points(rows);
 }
 
-HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const PointRow* points) {
+HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const PackedPoint* points) {
   const Point origin = load_corners(pairs, 0, at, points);
   Pair pair;
   for (std::size_t k = 0; k < 2; ++k) pair.first[k] = load_corners(pairs, k + 1, at, points) - origin;
   for (std::size_t k = 0; k < 3; ++k) pair.second[k] = load_corners(pairs, k + 3, at, points) - origin;
-  pair.reach = larger(magnitude(pair.first[0]), magnitude(pair.first[1]));
-  for (const Point& corner : pair.second) pair.reach = larger(pair.reach, magnitude(corner));
+  pair.magnitude = larger(magnitude(pair.first[0]), magnitude(pair.first[1]));
+  for (const Point& corner : pair.second) pair.magnitude = larger(pair.magnitude, magnitude(corner));
   return pair;
 }
 
-/// Any direction is as good as exact. A height along it is a sum of three products of a difference, off by at most
-/// ((1 + u)^4 - 1) times the sum of their magnitudes; twice that and the rounding of the bound itself stay below 16 u.
+/// Any direction is valid, rounded or not. A height along it is a sum of three products of differences, with an error
+/// of at most ((1 + u)^4 - 1) times the sum of their magnitudes. 16 u covers twice that and the rounding of the bound.
 HWY_INLINE Mask separates(Point direction, const Pair& pair) {
   constexpr double underflow = 0x1p-970;
   const Lanes zero = hn::Zero(Doubles());
@@ -46,7 +47,7 @@ HWY_INLINE Mask separates(Point direction, const Pair& pair) {
               b2 = dot(direction, pair.second[2]);
   const Lanes beyond = hn::Sub(min3(b0, b1, b2), max3(zero, a1, a2));
   const Lanes before = hn::Sub(min3(zero, a1, a2), max3(b0, b1, b2));
-  const Lanes error = hn::Mul(all(0x1p-49), dot(magnitude(direction), pair.reach));
+  const Lanes error = hn::Mul(all(0x1p-49), dot(magnitude(direction), pair.magnitude));
   return hn::Gt(hn::Max(beyond, before), hn::Add(error, all(underflow)));
 }
 
@@ -69,7 +70,7 @@ HWY_INLINE Mask separated(const Pair& pair) {
   return hn::Or(quick, upright);
 }
 
-void find_separated(const TrianglePairs& pairs, const PointRow* points, unsigned char* result) {
+void find_separated(const TrianglePairs& pairs, const PackedPoint* points, unsigned char* result) {
   const Doubles d;
   const std::size_t width = hn::Lanes(d);
   static_assert(TrianglePairs::capacity % HWY_MAX_BYTES == 0);
@@ -86,7 +87,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_separated(const TrianglePairs& pairs, const PointRows& points, TriangleFlags& separated) {
+void find_separated(const TrianglePairs& pairs, const PackedPoints& points, TriangleFlags& separated) {
   STIV_FOR_VECTOR_TARGET(find_separated)(pairs, points.data(), separated.data());
 }
 

@@ -4,15 +4,15 @@
 #include <array>
 #include <cstddef>
 
-#include "acceptance/intersection/point_rows.hpp"
+#include "acceptance/intersection/packed_points.hpp"
 
 namespace stiv {
 
-/// Up to so many pairs of triangles, as arrays over the pairs.
+/// Up to `capacity` pairs of triangles, as arrays over the pairs.
 struct TrianglePairs {
   static constexpr std::size_t capacity = 64;
 
-  std::array<std::array<Index, capacity>, 6> corners{};  ///< three of the first, then three of the second
+  std::array<std::array<Index, capacity>, 6> corners{};  ///< of the first triangle, then of the second
   std::size_t count = 0;
 
   void add(const std::array<Index, 3>& first, const std::array<Index, 3>& second) {
@@ -27,8 +27,8 @@ struct TrianglePairs {
 /// 1 or 0 for each pair of a block.
 using TriangleFlags = std::array<unsigned char, TrianglePairs::capacity>;
 
-/// 1 for each pair that a plane separates strictly, beyond all rounding: across the line that joins the centres, in
-/// parallel to one of the triangles, or upright on one over one of its edges. True is certain; false means nothing.
-void find_separated(const TrianglePairs& pairs, const PointRows& points, TriangleFlags& separated);
+/// 1 for each pair that one of these planes strictly separates, rounding included: orthogonal to the line through the
+/// centres, parallel to a triangle, or orthogonal to a triangle through an edge of it. 1 is certain; 0 is inconclusive.
+void find_separated(const TrianglePairs& pairs, const PackedPoints& points, TriangleFlags& separated);
 
 }  // namespace stiv

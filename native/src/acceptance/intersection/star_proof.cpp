@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivation: docs/mathematics.md, "Stars".
+// Derivation: mathematics.md, "Stars".
 #include "acceptance/intersection/star_proof.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -11,58 +11,60 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-// A determinant of two differences and an exact direction: each of its six products carries at most seven roundings.
-// 32 u times a bound of their magnitudes covers that, and the rounding of the bound itself.
+// Each of the six products in a determinant of two differences and an exact direction has at most seven roundings.
+// 32 u times a bound of their magnitudes covers that and the rounding of the bound itself.
 constexpr double rounding = 32 * 0x1p-53;
-// More than what underflow can take from a determinant.
+// More than the error of a determinant by underflow.
 constexpr double underflow = 0x1p-960;
 
 HWY_INLINE Lanes largest(Point a) { return max3(hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)); }
 
-/// From a star's vertex to one of its rim.
-struct Arm {
-  Point way;
+/// The edge from a star's vertex to a vertex of its link.
+struct InteriorEdge {
+  Point vector;
   Lanes size;
 };
 
-/// Turns between directions from a vertex, seen along `view`, and what rounding leaves open of them.
+/// Turns between interior edges seen along `view`, with their error bounds.
 struct Turns {
   Point view;
   Lanes scale;
 
   explicit Turns(Point along) : view(along), scale(hn::Mul(all(rounding * 6), largest(along))) {}
 
-  Lanes turn(Arm from, Arm to) const { return dot(view, cross(from.way, to.way)); }
-  Lanes error(Arm from, Arm to) const { return hn::Add(hn::Mul(hn::Mul(scale, from.size), to.size), all(underflow)); }
+  Lanes turn(InteriorEdge from, InteriorEdge to) const { return dot(view, cross(from.vector, to.vector)); }
+  Lanes error(InteriorEdge from, InteriorEdge to) const {
+    return hn::Add(hn::Mul(hn::Mul(scale, from.size), to.size), all(underflow));
+  }
 };
 
-HWY_INLINE Point points_of(const Index* vertices, const PointRow* points) {
+HWY_INLINE Point points_of(const Index* vertices, const PackedPoint* points) {
   const double* rows[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) rows[lane] = points[vertices[lane]].coordinates;
   return load_points(rows);
 }
 
-/// Of as many stars as there are lanes, from `first` on.
-HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PointRow* points) {
+/// For as many stars as there are lanes, starting with `first`.
+HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPoint* points) {
   const Doubles d;
   const Point centre = points_of(stars.vertices.data() + first, points);
-  Arm arms[StarBlock::most_triangles + 1];
+  InteriorEdge edges[StarBlock::most_triangles + 1];
   for (std::size_t k = 0; k <= stars.triangles; ++k) {
     Index around[HWY_MAX_BYTES / sizeof(double)];
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) around[lane] = stars.rims[first + lane][k];
-    arms[k].way = points_of(around, points) - centre;
-    arms[k].size = largest(arms[k].way);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) around[lane] = stars.links[first + lane][k];
+    edges[k].vector = points_of(around, points) - centre;
+    edges[k].size = largest(edges[k].vector);
   }
   Point view{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (std::size_t k = 0; k < stars.triangles; ++k) view = view + cross(arms[k].way, arms[k + 1].way);
+  for (std::size_t k = 0; k < stars.triangles; ++k) view = view + cross(edges[k].vector, edges[k + 1].vector);
 
   const Turns turns(view);
   Mask free = hn::Eq(hn::Zero(d), hn::Zero(d)),
-       before = hn::Not(free);  // arm k may not lie left of arm 0
+       before = hn::Not(free);  // edge k may not lie left of edge 0
   for (std::size_t k = 0; k < stars.triangles; ++k) {
-    free = hn::And(free, hn::Gt(turns.turn(arms[k], arms[k + 1]), turns.error(arms[k], arms[k + 1])));
-    const Lanes turn = turns.turn(arms[0], arms[k + 1]), error = turns.error(arms[0], arms[k + 1]);
-    // Does triangle k hold the first arm, on which it neither begins nor ends?
+    free = hn::And(free, hn::Gt(turns.turn(edges[k], edges[k + 1]), turns.error(edges[k], edges[k + 1])));
+    const Lanes turn = turns.turn(edges[0], edges[k + 1]), error = turns.error(edges[0], edges[k + 1]);
+    // Does triangle k hold the first edge, on which it neither begins nor ends?
     const bool on_it = k == 0 || (stars.closed && k + 1 == stars.triangles);
     if (!on_it) free = hn::AndNot(hn::AndNot(hn::Lt(turn, hn::Neg(error)), before), free);
     before = hn::Not(hn::Gt(turn, error));
@@ -70,7 +72,7 @@ HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PointRow
   return free;
 }
 
-void prove_stars(const StarBlock& stars, const PointRow* points, unsigned char* free) {
+void prove_stars(const StarBlock& stars, const PackedPoint* points, unsigned char* free) {
   const Doubles d;
   static_assert(HWY_MAX_BYTES / sizeof(double) <= StarBlock::capacity);
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
@@ -86,11 +88,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PointRows& points) {
+std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points) {
   StarBlock whole = stars;  // lanes that nobody asked for repeat the last one
   for (std::size_t k = stars.count; k < StarBlock::capacity; ++k) {
     whole.vertices[k] = stars.vertices[stars.count - 1];
-    whole.rims[k] = stars.rims[stars.count - 1];
+    whole.links[k] = stars.links[stars.count - 1];
   }
   std::array<unsigned char, StarBlock::capacity> free{};
   STIV_FOR_VECTOR_TARGET(prove_stars)(whole, points.data(), free.data());

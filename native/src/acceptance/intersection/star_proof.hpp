@@ -4,24 +4,24 @@
 #include <array>
 #include <cstddef>
 
-#include "acceptance/intersection/point_rows.hpp"
+#include "acceptance/intersection/packed_points.hpp"
 
 namespace stiv {
 
-/// Stars of equally many triangles, closed or open all of them, side by side.
+/// Stars with the same number of triangles, all closed or all open.
 struct StarBlock {
-  static constexpr std::size_t capacity = 8;         ///< no vector has more lanes
+  static constexpr std::size_t capacity = 8;         ///< lanes of the widest vector
   static constexpr std::size_t most_triangles = 32;  ///< of a star
 
   std::size_t triangles = 0;
-  bool closed = false;  ///< the last vertex of a rim is the first
+  bool closed = false;  ///< the last vertex of each link is its first
   std::array<Index, capacity> vertices{};
-  std::array<const Index*, capacity> rims{};  ///< triangles + 1 vertices: triangle k is (vertex, rim k, rim k + 1)
+  std::array<const Index*, capacity> links{};  ///< triangles + 1 vertices: triangle k is (vertex, link[k], link[k + 1])
   std::size_t count = 0;
 };
 
-/// 1 for each star of a block that is proven to meet itself in nothing but the corners and edges that its triangles
-/// share. True is certain; false means nothing. [docs/mathematics.md, "Stars"]
-std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PointRows& points);
+/// 1 for each star that is proven free: its triangles share only their common corners and edges. 1 is certain; 0 is
+/// inconclusive. (mathematics.md, "Stars")
+std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points);
 
 }  // namespace stiv

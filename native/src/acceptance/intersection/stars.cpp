@@ -11,77 +11,77 @@ namespace stiv {
 
 namespace {
 
-/// The side of a triangle opposite to a vertex, in its direction of turning.
-struct Spoke {
+/// The edge of a triangle opposite to a vertex, in the triangle's orientation.
+struct LinkEdge {
   Index from, to;
 };
 
-/// Spokes of each vertex, in compressed rows.
-struct SpokeTable {
+/// Link edges of each vertex, in compressed rows.
+struct LinkEdgeTable {
   std::vector<std::size_t> start;
-  std::vector<Spoke> spokes;
+  std::vector<LinkEdge> edges;
 
-  SpokeTable(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count) : start(at(vertex_count) + 2, 0) {
+  LinkEdgeTable(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count)
+      : start(at(vertex_count) + 2, 0) {
     for (const auto& corners : triangles)
       for (const Index corner : corners) ++start[at(corner) + 2];
     for (std::size_t k = 2; k < start.size(); ++k) start[k] += start[k - 1];
-    spokes.resize(3 * triangles.size());
+    edges.resize(3 * triangles.size());
     for (const auto& [a, b, c] : triangles) {
-      spokes[start[at(a) + 1]++] = {b, c};
-      spokes[start[at(b) + 1]++] = {c, a};
-      spokes[start[at(c) + 1]++] = {a, b};
+      edges[start[at(a) + 1]++] = {b, c};
+      edges[start[at(b) + 1]++] = {c, a};
+      edges[start[at(c) + 1]++] = {a, b};
     }
   }
-  std::span<Spoke> of(Index vertex) {
-    return {spokes.data() + start[at(vertex)], spokes.data() + start[at(vertex) + 1]};
+  std::span<LinkEdge> of(Index vertex) {
+    return {edges.data() + start[at(vertex)], edges.data() + start[at(vertex) + 1]};
   }
 };
 
-/// Puts spokes into the order in which each begins where the one before ends. False if they are not one such chain, in
-/// which no vertex begins or ends two.
-bool chain(std::span<Spoke> spokes) {
-  for (std::size_t k = 0; k < spokes.size(); ++k)
-    for (std::size_t other = 0; other < spokes.size(); ++other)
-      if (other != k && (spokes[k].from == spokes[other].from || spokes[k].to == spokes[other].to)) return false;
-  const auto begins_chain = [&](const Spoke& spoke) {
-    return std::none_of(spokes.begin(), spokes.end(), [&](const Spoke& before) { return before.to == spoke.from; });
+/// Orders link edges so that each begins at the end of the one before. Returns false if they are not a single chain
+/// without repeated vertices.
+bool chain(std::span<LinkEdge> edges) {
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    for (std::size_t other = 0; other < edges.size(); ++other)
+      if (other != k && (edges[k].from == edges[other].from || edges[k].to == edges[other].to)) return false;
+  const auto begins_chain = [&](const LinkEdge& edge) {
+    return std::none_of(edges.begin(), edges.end(), [&](const LinkEdge& before) { return before.to == edge.from; });
   };
-  const auto first = std::find_if(spokes.begin(), spokes.end(), begins_chain);
-  if (first != spokes.end()) std::swap(*first, spokes.front());
-  for (std::size_t k = 0; k + 1 < spokes.size(); ++k) {
-    const auto next = std::find_if(spokes.begin() + static_cast<std::ptrdiff_t>(k) + 1, spokes.end(),
-                                   [&](const Spoke& spoke) { return spoke.from == spokes[k].to; });
-    if (next == spokes.end()) return false;
-    std::swap(*next, spokes[k + 1]);
+  const auto first = std::find_if(edges.begin(), edges.end(), begins_chain);
+  if (first != edges.end()) std::swap(*first, edges.front());
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    const auto next = std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(k) + 1, edges.end(),
+                                   [&](const LinkEdge& edge) { return edge.from == edges[k].to; });
+    if (next == edges.end()) return false;
+    std::swap(*next, edges[k + 1]);
   }
   return true;
 }
 
-/// Of one triangle alone, nothing is to be left out; stars of many are left to the tests of pairs, which are more work
-/// by then in any case.
-bool may_be_proven(std::span<Spoke> spokes) {
-  return spokes.size() > 1 && spokes.size() <= StarBlock::most_triangles && chain(spokes);
+/// A single triangle has no pair of neighbours. Stars of very many triangles are left to the tests of pairs.
+bool is_provable(std::span<LinkEdge> edges) {
+  return edges.size() > 1 && edges.size() <= StarBlock::most_triangles && chain(edges);
 }
 
 }  // namespace
 
 Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count) {
-  SpokeTable table(triangles, vertex_count);
+  LinkEdgeTable table(triangles, vertex_count);
   start_.reserve(at(vertex_count) + 1);
-  rims_.reserve(table.spokes.size() + at(vertex_count));
+  links_.reserve(table.edges.size() + at(vertex_count));
   for (Index vertex = 0; vertex < vertex_count; ++vertex) {
-    start_.push_back(static_cast<Index>(rims_.size()));
-    const std::span<Spoke> spokes = table.of(vertex);
-    if (!may_be_proven(spokes)) continue;
+    start_.push_back(static_cast<Index>(links_.size()));
+    const std::span<LinkEdge> edges = table.of(vertex);
+    if (!is_provable(edges)) continue;
     stars_.push_back(vertex);
-    for (const Spoke& spoke : spokes) rims_.push_back(spoke.from);
-    rims_.push_back(spokes.back().to);
+    for (const LinkEdge& edge : edges) links_.push_back(edge.from);
+    links_.push_back(edges.back().to);
   }
-  start_.push_back(static_cast<Index>(rims_.size()));
+  start_.push_back(static_cast<Index>(links_.size()));
   std::stable_sort(stars_.begin(), stars_.end(), [this](Index a, Index b) { return shape(a) < shape(b); });
 }
 
-std::vector<unsigned char> Stars::find_free(const PointRows& points, const std::vector<unsigned char>& moved,
+std::vector<unsigned char> Stars::find_free(const PackedPoints& points, const std::vector<unsigned char>& moved,
                                             const Execution& execution) const {
   constexpr Index chunk_size = 4096;
   std::vector<unsigned char> free(points.size(), 0);
@@ -96,14 +96,14 @@ std::vector<unsigned char> Stars::find_free(const PointRows& points, const std::
     };
     for (std::size_t k = at(begin); k < at(end); ++k) {
       const Index vertex = stars_[k];
-      const std::span<const Index> around = rim(vertex);
+      const std::span<const Index> around = link(vertex);
       if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) continue;
       const auto [triangles, closed] = shape(vertex);
       if (block.count == StarBlock::capacity || triangles != block.triangles || closed != block.closed) prove();
       block.triangles = triangles;
       block.closed = closed;
       block.vertices[block.count] = vertex;
-      block.rims[block.count] = around.data();
+      block.links[block.count] = around.data();
       ++block.count;
     }
     prove();
@@ -112,12 +112,12 @@ std::vector<unsigned char> Stars::find_free(const PointRows& points, const std::
 }
 
 std::pair<std::size_t, bool> Stars::shape(Index vertex) const {
-  const std::span<const Index> around = rim(vertex);
+  const std::span<const Index> around = link(vertex);
   return {around.size() - 1, around.front() == around.back()};
 }
 
-std::span<const Index> Stars::rim(Index vertex) const {
-  const auto begin = rims_.begin() + start_[at(vertex)], end = rims_.begin() + start_[at(vertex) + 1];
+std::span<const Index> Stars::link(Index vertex) const {
+  const auto begin = links_.begin() + start_[at(vertex)], end = links_.begin() + start_[at(vertex) + 1];
   return {begin, end};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "acceptance/intersection/exact_meeting.hpp"
+#include "acceptance/intersection/exact_intersection.hpp"
 #include "acceptance/intersection/separating_plane.hpp"
 #include "stiv/acceptance/intersections.hpp"
 
@@ -9,7 +9,7 @@ namespace stiv {
 
 namespace {
 
-/// Up to three different vertex indices.
+/// Up to three distinct vertex indices.
 struct Corners {
   std::array<Index, 3> index{};
   std::size_t count = 0;
@@ -22,7 +22,7 @@ struct Corners {
   }
 };
 
-/// Corners that both have, and those that only one of them has; repeated ones once.
+/// Shared corners of two triangles and corners of one alone, each once.
 struct Sharing {
   Corners both, first_only, second_only;
 
@@ -41,7 +41,7 @@ class Points {
   Triangle triangle(const std::array<Index, 3>& corners) const {
     return {(*this)(corners[0]), (*this)(corners[1]), (*this)(corners[2])};
   }
-  /// One or two corners; a single one twice.
+  /// The segment of one or two corners.
   Segment segment(const Corners& corners) const {
     return {(*this)(corners.index[0]), (*this)(corners.index[corners.count - 1])};
   }
@@ -50,14 +50,16 @@ class Points {
   PositionsView q_;
 };
 
-bool disjoint_triangles(const Triangle& a, const Triangle& b) { return !clearly_apart(a, b) && triangles_meet(a, b); }
+bool disjoint_triangles(const Triangle& a, const Triangle& b) {
+  return !separated_by_plane(a, b) && triangles_intersect(a, b);
+}
 
 bool vertex_neighbours(const Vector3& corner, const Segment& a, const Segment& b) {
-  return !clearly_apart_at_corner(corner, a, b) && fans_meet(corner, a, b);
+  return !separated_at_corner(corner, a, b) && vertex_neighbours_intersect(corner, a, b);
 }
 
 bool edge_neighbours(const Segment& edge, const Vector3& a, const Vector3& b) {
-  return !clearly_apart_at_edge(edge, a, b) && wings_meet(edge, a, b);
+  return !separated_at_edge(edge, a, b) && edge_neighbours_intersect(edge, a, b);
 }
 
 }  // namespace

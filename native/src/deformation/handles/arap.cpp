@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/arap.hpp"
+#include "stiv/deformation/handles.hpp"
 
 #include <limits>
 #include <mutex>
@@ -215,7 +215,7 @@ class Arap final : public HandleDeformation {
         now = energy(shape.u, shape.fits, d);
       }
       before = now;
-      plain = start + map_.answer(cells_.load(shape.fits));
+      plain = start + map_.solve(cells_.load(shape.fits));
       const double motion = (plain - shape.u).cwiseAbs().maxCoeff();
       if (motion <= least * size_) return;
       shape.u = acceleration.next(shape.u, plain);
@@ -228,7 +228,7 @@ class Arap final : public HandleDeformation {
   /// saddle.
   Positions solve_hessian(const Shape& shape, const Positions& right) const {
     Positions y = Positions::Zero(vertex_count(), 3), residual = freed(right);
-    Positions z = map_.answer(residual), direction = z, pushed = residual;
+    Positions z = map_.solve(residual), direction = z, pushed = residual;
     double product = residual.cwiseProduct(z).sum();
     const double end = least_residual * least_residual * product;
     for (int step = 0; step < most_steps && product > end; ++step) {
@@ -238,7 +238,7 @@ class Arap final : public HandleDeformation {
       const double length = product / curvature;
       y += length * direction;
       residual -= length * curved;
-      z = map_.answer(residual);
+      z = map_.solve(residual);
       const double next = residual.cwiseProduct(z).sum(), share = next / product;
       direction = z + share * direction;
       pushed = residual + share * pushed;

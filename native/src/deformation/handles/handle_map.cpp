@@ -3,84 +3,21 @@
 
 #include <algorithm>
 
+#include "deformation/handles/handle_system.hpp"
 #include "deformation/handles/truncated_map.hpp"
-#include "deformation/metric/axis_metric.hpp"
-#include "deformation/metric/gram_metric.hpp"
 
 namespace stiv {
 
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double, Index>>;
-
-SymmetricMatrix matrix_of(const Triplets& entries, std::size_t rows, std::size_t columns) {
-  SymmetricMatrix matrix(static_cast<Index>(rows), static_cast<Index>(columns));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-/// K of the free vertices, with the pulls of soft handles.
-SymmetricMatrix free_stiffness(const HandleDefinition& definition, const HandlePartition& partition,
-                               const SymmetricMatrix& stiffness) {
-  Triplets entries;
-  for (const Index vertex : partition.free)
-    for (SymmetricMatrix::InnerIterator entry(stiffness, vertex); entry; ++entry)
-      if (const Index row = partition.place[at(entry.row())]; row >= 0)
-        entries.emplace_back(row, partition.place[at(vertex)], entry.value());
-  for (Index k = 0; k < definition.pull.size(); ++k) {
-    const Index place = partition.place[at(definition.handles[at(k)])];
-    entries.emplace_back(place, place, definition.pull[k]);
-  }
-  return matrix_of(entries, partition.free.size(), partition.free.size());
-}
-
-/// A soft handle's pull; minus the columns of K of a hard one.
-SymmetricMatrix drive_of(const HandleDefinition& definition, const HandlePartition& partition,
-                         const SymmetricMatrix& stiffness) {
-  Triplets entries;
-  for (std::size_t k = 0; k < definition.handles.size(); ++k) {
-    const Index handle = definition.handles[k], control = static_cast<Index>(k);
-    const Index place = partition.place[at(handle)];
-    if (place >= 0) {
-      entries.emplace_back(place, control, definition.pull[control]);
-      continue;
-    }
-    for (SymmetricMatrix::InnerIterator entry(stiffness, handle); entry; ++entry)
-      if (const Index row = partition.place[at(entry.row())]; row >= 0)
-        entries.emplace_back(row, control, -entry.value());
-  }
-  return matrix_of(entries, partition.free.size(), definition.handles.size());
-}
-
-/// Rows of a matrix that have an entry, ascending.
-std::vector<Index> rows_in_use(const SymmetricMatrix& matrix) {
-  std::vector<unsigned char> used(static_cast<std::size_t>(matrix.rows()), 0);
-  for (Index column = 0; column < matrix.outerSize(); ++column)
-    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry) used[at(entry.row())] = 1;
-  std::vector<Index> rows;
-  for (Index row = 0; row < matrix.rows(); ++row)
-    if (used[at(row)] != 0) rows.push_back(row);
-  return rows;
-}
-
-SymmetricMatrix selected_rows(const SymmetricMatrix& matrix, const std::vector<Index>& rows) {
-  Triplets entries;
-  for (Index column = 0; column < matrix.outerSize(); ++column)
-    for (SymmetricMatrix::InnerIterator entry(matrix, column); entry; ++entry)
-      if (const auto found = std::lower_bound(rows.begin(), rows.end(), entry.row());
-          found != rows.end() && *found == entry.row())
-        entries.emplace_back(static_cast<Index>(found - rows.begin()), column, entry.value());
-  return matrix_of(entries, rows.size(), static_cast<std::size_t>(matrix.cols()));
-}
-
-/// The first `count` of the columns of an inverse that `rows` names from `first` on; zero beyond.
+/// Unit columns of the rows `first` to `first + count - 1` of `rows`; zero beyond.
 ColumnBlock unit_columns(const std::vector<Index>& rows, Index first, Index count, Index size) {
   ColumnBlock unit = ColumnBlock::Zero(size, ColumnBlock::ColsAtCompileTime);
   for (Index k = 0; k < count; ++k) unit(rows[at(first + k)], k) = 1;
   return unit;
 }
 
-/// The direction that all values of a field have, but for rounding; or the three axes if they have none in common.
+/// The common direction of all values of a field, up to rounding, or the three axes if there is none.
 std::vector<Vector3> directions_of(const SparseField& field) {
   constexpr double rounding = 1e-14;
   Vector3 largest = Vector3::Zero();
@@ -102,7 +39,7 @@ SparseField whole_field(Index count) {
   return field;
 }
 
-/// Begins of runs of fields that need no more columns together than a block has, and the end of the last.
+/// Boundaries of runs of fields that fit together into the columns of one block.
 std::vector<std::size_t> runs_of(const std::vector<SparseField>& fields) {
   std::vector<std::size_t> begins{0};
   std::size_t used = 0;
@@ -126,19 +63,19 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
       partition_(handle_partition(definition, mesh)),
       handles_(definition.handles),
       hard_(definition.pull.size() == 0),
-      drive_(drive_of(definition, partition_, stiffness)),
+      drive_(drive_matrix(definition, partition_, stiffness)),
       factor_(std::make_unique<SparseFactor>(free_stiffness(definition, partition_, stiffness), "handles")) {
   const std::vector<Index> driven = rows_in_use(drive_);
   needed_ = factor_->needed_for(driven);
   if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) {
-    keep_in_full();
+    build_full_map();
     return;
   }
   if (static_cast<double>(driven.size()) * static_cast<double>(factor_->size()) <= limits_.entries) {
-    keep_answers(driven);
+    cache_columns(driven);
     return;
   }
-  constexpr double doubles_per_entry = 2;  // with its place
+  constexpr double doubles_per_entry = 2;  // with its index
   const double products = static_cast<double>(vertex_count()) * control_count();
   truncated_ = truncated_map(*factor_, drive_, partition_, limits_.negligible,
                              std::min(limits_.density * products, limits_.entries / doubles_per_entry));
@@ -146,7 +83,7 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
 
 /// M d by a solve.
 template <class Block>
-Block HandleMap::solved(const Block& d) const {
+Block HandleMap::product_by_solve(const Block& d) const {
   const Block free = factor_->solve(Block(drive_ * d));
   Block u = Block::Zero(vertex_count(), d.cols());
   for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[at(k)]) = free.row(k);
@@ -157,7 +94,7 @@ Block HandleMap::solved(const Block& d) const {
 
 /// M'g by a solve.
 template <class Block>
-Block HandleMap::pulled(const Block& g) const {
+Block HandleMap::transposed_product_by_solve(const Block& g) const {
   Block free(static_cast<Index>(partition_.free.size()), g.cols());
   for (Index k = 0; k < free.rows(); ++k) free.row(k) = g.row(partition_.free[at(k)]);
   Block covector = drive_.transpose() * factor_->solve(free, needed_);
@@ -166,51 +103,51 @@ Block HandleMap::pulled(const Block& g) const {
   return covector;
 }
 
-void HandleMap::keep_in_full() {
+void HandleMap::build_full_map() {
   constexpr Index width = ColumnBlock::ColsAtCompileTime;
   full_.resize(vertex_count(), control_count());
   for (Index first = 0; first < control_count(); first += width) {
     const Index count = std::min(width, control_count() - first);
     ColumnBlock unit = ColumnBlock::Zero(control_count(), width);
     for (Index k = 0; k < count; ++k) unit(first + k, k) = 1;
-    full_.middleCols(first, count) = solved(unit).leftCols(count);
+    full_.middleCols(first, count) = product_by_solve(unit).leftCols(count);
   }
 }
 
-/// Few rows are driven where handles lie side by side: those along the border of the patch. M'g = D' K^-1 g asks for
-/// these rows alone, so with their part of K^-1 kept, a contact costs a few products.
-void HandleMap::keep_answers(const std::vector<Index>& driven) {
+/// Adjacent handles drive few rows, those along the boundary of the patch. M'g = D' K^-1 g reads these rows alone, so
+/// with their columns of K^-1 cached, a contact costs a few products.
+void HandleMap::cache_columns(const std::vector<Index>& driven) {
   constexpr Index width = ColumnBlock::ColsAtCompileTime;
   const auto count = static_cast<Index>(driven.size());
-  answers_.resize(factor_->size(), count);
+  cached_columns_.resize(factor_->size(), count);
   for (Index first = 0; first < count; first += width) {
     const Index some = std::min(width, count - first);
-    answers_.middleCols(first, some) =
+    cached_columns_.middleCols(first, some) =
         factor_->solve(unit_columns(driven, first, some, factor_->size())).leftCols(some);
   }
-  drive_of_answers_ = selected_rows(drive_, driven);
+  cached_drive_ = selected_rows(drive_, driven);
 }
 
-/// M'g from the part of K^-1 that is kept.
-Controls HandleMap::pulled_by_answers(const SparseField& g) const {
-  Positions driven = Positions::Zero(drive_of_answers_.rows(), 3), held = Positions::Zero(control_count(), 3);
+/// M'g from the cached columns of K^-1.
+Controls HandleMap::pull_back_cached(const SparseField& g) const {
+  Positions driven = Positions::Zero(cached_drive_.rows(), 3), held = Positions::Zero(control_count(), 3);
   for (std::size_t k = 0; k < g.index.size(); ++k) {
     const auto vertex = static_cast<std::size_t>(g.index[k]);
     if (const Index place = partition_.place[vertex]; place >= 0)
-      driven += answers_.row(place).transpose() * g.value[k].transpose();
+      driven += cached_columns_.row(place).transpose() * g.value[k].transpose();
     else if (const Index control = partition_.control[vertex]; control >= 0)
       held.row(control) += g.value[k];
   }
-  return drive_of_answers_.transpose() * driven + held;
+  return cached_drive_.transpose() * driven + held;
 }
 
-/// A product reads M once, in order; a solve reads L twice, and jumps: four times as dear an entry.
+/// A product reads M once, in order. A solve reads L twice, out of order: four times the cost for each entry.
 bool HandleMap::product_is_cheaper() const {
   return is_full() && static_cast<double>(full_.size()) < 4.0 * factor_->entries();
 }
 
 Positions HandleMap::follow(const Controls& d) const {
-  if (!product_is_cheaper()) return solved(d);
+  if (!product_is_cheaper()) return product_by_solve(d);
   Positions u(vertex_count(), 3);
   for (Index row = 0; row < u.rows(); ++row) {
     Vector3 sum = Vector3::Zero();
@@ -221,7 +158,7 @@ Positions HandleMap::follow(const Controls& d) const {
   return u;
 }
 
-/// M'g of some fields by one solve, a column for each of their directions.
+/// M'g of several fields by one solve, with a column for each of their directions.
 template <class Block>
 void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseField* covectors) const {
   Block right = Block::Zero(vertex_count(), Block::ColsAtCompileTime);
@@ -233,7 +170,7 @@ void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseFie
         right(g[field].index[k], column) = direction.dot(g[field].value[k]);
       ++column;
     }
-  const Block left = pulled(right);
+  const Block left = transposed_product_by_solve(right);
   column = 0;
   for (std::size_t field = 0; field < count; ++field) {
     covectors[field] = whole_field(control_count());
@@ -247,7 +184,7 @@ void HandleMap::pull_by_solve(const SparseField* g, std::size_t count, SparseFie
 SparseField HandleMap::pull_back(const SparseField& g) const {
   if (is_truncated()) return stiv::pull_back(*truncated_, g);
   SparseField covector = whole_field(control_count());
-  if (!is_full() && !keeps_answers()) {
+  if (!is_full() && !has_cached_columns()) {
     pull_by_solve<Positions>(&g, 1, &covector);
     return covector;
   }
@@ -255,14 +192,14 @@ SparseField HandleMap::pull_back(const SparseField& g) const {
   if (is_full())
     for (std::size_t k = 0; k < g.index.size(); ++k) sum += full_.row(g.index[k]).transpose() * g.value[k].transpose();
   else
-    sum = pulled_by_answers(g);
+    sum = pull_back_cached(g);
   for (Index k = 0; k < control_count(); ++k) covector.value[at(k)] = sum.row(k);
   return covector;
 }
 
 std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const {
   std::vector<SparseField> covectors(g.size());
-  if (pulls_by_products()) {
+  if (pulls_back_by_products()) {
     constexpr Index products_per_chunk = 16;
     execution.for_chunks(static_cast<Index>(g.size()), products_per_chunk, [&](Index begin, Index end, Index) {
       for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
@@ -281,9 +218,9 @@ std::vector<SparseField> HandleMap::pull_back_all(const std::vector<SparseField>
   return covectors;
 }
 
-Positions HandleMap::answer(const Positions& right) const {
+Positions HandleMap::solve(const Positions& rhs) const {
   Positions free(static_cast<Index>(partition_.free.size()), 3);
-  for (Index k = 0; k < free.rows(); ++k) free.row(k) = right.row(partition_.free[at(k)]);
+  for (Index k = 0; k < free.rows(); ++k) free.row(k) = rhs.row(partition_.free[at(k)]);
   free = factor_->solve(free);
   Positions u = Positions::Zero(vertex_count(), 3);
   for (Index k = 0; k < free.rows(); ++k) u.row(partition_.free[at(k)]) = free.row(k);
@@ -296,45 +233,14 @@ std::vector<Index> HandleMap::support(Index control) const {
   std::vector<Index> vertices;
   if (drives)
     for (const Index vertex : partition_.free)
-      if (partition_.part[at(vertex)] == partition_.part[handle]) vertices.push_back(vertex);
+      if (partition_.component[at(vertex)] == partition_.component[handle]) vertices.push_back(vertex);
   if (hard_) vertices.insert(std::lower_bound(vertices.begin(), vertices.end(), handle), static_cast<Index>(handle));
   return vertices;
 }
 
 ColumnBlock HandleMap::gram_product(const ColumnBlock& d, const WeightMatrix* surface_gram) const {
-  const ColumnBlock u = solved(d);
-  return pulled(surface_gram == nullptr ? u : ColumnBlock(*surface_gram * u));
-}
-
-Eigen::MatrixXd HandleMap::gram(const WeightMatrix* surface_gram) const {
-  if (surface_gram != nullptr) return full_.transpose() * (*surface_gram * full_);
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(control_count(), control_count());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(full_.transpose());
-  return gram.selfadjointView<Eigen::Lower>();
-}
-
-std::unique_ptr<Metric> HandleMap::metric(const MetricOptions& options, const WeightMatrix* surface_gram) const {
-  ResponseWeights weights = checked_weights(options, control_count());
-  if (is_truncated()) {
-    const Eigen::VectorXd diagonal = gram_diagonal(*truncated_, surface_gram);
-    return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
-      return make_diagonal_metric(diagonal, options.smoothness, active_controls(diagonal, some));
-    });
-  }
-  const double products = static_cast<double>(vertex_count()) * control_count() * control_count();
-  if (!is_full() || products > limits_.products) {
-    const auto product = [&](const ColumnBlock& d) { return gram_product(d, surface_gram); };
-    return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
-      return make_low_rank_metric(product, limits_.probes, options.smoothness,
-                                  active_controls(Eigen::VectorXd::Ones(control_count()), some));
-    });
-  }
-  const Eigen::MatrixXd whole = gram(surface_gram);
-  return make_axis_metric(std::move(weights), [&](const Eigen::VectorXd& some) {
-    ActiveControls active = active_controls(whole.diagonal(), some);
-    Eigen::MatrixXd selected = whole(active.control, active.control);
-    return make_gram_metric(std::move(selected), options.smoothness, std::move(active));
-  });
+  const ColumnBlock u = product_by_solve(d);
+  return transposed_product_by_solve(surface_gram == nullptr ? u : ColumnBlock(*surface_gram * u));
 }
 
 }  // namespace stiv

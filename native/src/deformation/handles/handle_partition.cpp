@@ -17,7 +17,7 @@ void check_vertex(Index vertex, Index count, const std::string& name) {
                      std::to_string(count));
 }
 
-/// The control of each vertex, -1 for those that are no handle.
+/// The control of each vertex, -1 if it is not a handle.
 std::vector<Index> controls_of_vertices(const HandleDefinition& definition) {
   const auto count = static_cast<Index>(definition.rest.rows());
   std::vector<Index> control(static_cast<std::size_t>(count), -1);
@@ -37,8 +37,8 @@ void check_pull(const HandleDefinition& definition) {
   const Eigen::VectorXd& pull = definition.pull;
   if (pull.size() == 0) return;
   if (pull.size() != static_cast<Eigen::Index>(definition.handles.size()))
-    throw InputError("handles: there are " + std::to_string(definition.handles.size()) + ", but the pulls of " +
-                     std::to_string(pull.size()) + "; give one for each, or none");
+    throw InputError("handles: there are " + std::to_string(definition.handles.size()) + ", but " +
+                     std::to_string(pull.size()) + " pulls; give one for each handle, or none");
   for (Eigen::Index k = 0; k < pull.size(); ++k)
     if (!(pull[k] > 0) || !std::isfinite(pull[k]))
       throw InputError("handle " + std::to_string(k) + ": its pull must be positive and finite");
@@ -50,25 +50,25 @@ void check_fixed(const HandleDefinition& definition) {
     check_vertex(vertex, static_cast<Index>(definition.rest.rows()), "fixed");
     if (const Index handle = control[at(vertex)]; handle >= 0)
       throw InputError("fixed: vertex " + std::to_string(vertex) + " is handle " + std::to_string(handle) +
-                       "; a vertex may be one of the two");
+                       "; choose one of the two");
   }
 }
 
-/// A number for each vertex, the same for all that edges connect.
-std::vector<Index> connected_parts(const Surface& mesh) {
-  std::vector<Index> part(static_cast<std::size_t>(mesh.vertex_count()), -1);
+/// A label for each vertex, the same for all vertices of a connected component.
+std::vector<Index> connected_components(const Surface& mesh) {
+  std::vector<Index> component(static_cast<std::size_t>(mesh.vertex_count()), -1);
   std::vector<Index> waiting;
   for (Index first = 0; first < mesh.vertex_count(); ++first) {
-    if (part[at(first)] < 0) waiting.push_back(first);
+    if (component[at(first)] < 0) waiting.push_back(first);
     while (!waiting.empty()) {
       const Index vertex = waiting.back();
       waiting.pop_back();
-      if (part[at(vertex)] >= 0) continue;
-      part[at(vertex)] = first;
+      if (component[at(vertex)] >= 0) continue;
+      component[at(vertex)] = first;
       waiting.insert(waiting.end(), mesh.neighbours_begin(vertex), mesh.neighbours_end(vertex));
     }
   }
-  return part;
+  return component;
 }
 
 }  // namespace
@@ -87,14 +87,15 @@ HandlePartition handle_partition(const HandleDefinition& definition, const Surfa
   const auto count = static_cast<std::size_t>(mesh.vertex_count());
   HandlePartition partition;
   partition.control = controls_of_vertices(definition);
-  partition.part = connected_parts(mesh);
+  partition.component = connected_components(mesh);
   partition.place.assign(count, -1);
   std::vector<unsigned char> moves(count, 0), held(count, 0);
-  for (const Index handle : definition.handles) moves[at(partition.part[at(handle)])] = 1;
+  for (const Index handle : definition.handles) moves[at(partition.component[at(handle)])] = 1;
   for (const Index vertex : definition.fixed) held[at(vertex)] = 1;
   const bool hard = definition.pull.size() == 0;
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    const bool still = !moves[at(partition.part[vertex])] || held[vertex] || (hard && partition.control[vertex] >= 0);
+    const bool still =
+        !moves[at(partition.component[vertex])] || held[vertex] || (hard && partition.control[vertex] >= 0);
     if (still) continue;
     partition.place[vertex] = static_cast<Index>(partition.free.size());
     partition.free.push_back(static_cast<Index>(vertex));

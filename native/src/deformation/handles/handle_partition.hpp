@@ -8,17 +8,17 @@
 
 namespace stiv {
 
-/// The mesh of a definition.
+/// The mesh of a definition, whose elements it checks.
 /// @throws InputError: see make_laplacian
 Surface checked_mesh(const HandleDefinition& definition);
 
-/// Which vertices of a mesh are solved for. The others are held: by a hard handle, because they are fixed, or because
-/// nothing of their part of the mesh is a handle.
+/// Divides the vertices of a mesh into free ones, which are solved for, and the others: hard handles, fixed vertices,
+/// and connected components without a handle.
 struct HandlePartition {
-  std::vector<Index> free;     ///< vertices that are solved for, ascending
-  std::vector<Index> place;    ///< (n) place of a vertex among them, or -1
-  std::vector<Index> control;  ///< (n) the control whose handle a vertex is, or -1
-  std::vector<Index> part;     ///< (n) which connected part of the mesh it belongs to
+  std::vector<Index> free;       ///< free vertices, ascending
+  std::vector<Index> place;      ///< (n) position of a vertex in `free`, or -1
+  std::vector<Index> control;    ///< (n) the control whose handle a vertex is, or -1
+  std::vector<Index> component;  ///< (n) connected component of a vertex
 };
 
 HandlePartition handle_partition(const HandleDefinition& definition, const Surface& mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/laplacian.hpp"
+#include "stiv/deformation/handles.hpp"
 
 #include "deformation/checks.hpp"
 #include "deformation/handles/handle_map.hpp"

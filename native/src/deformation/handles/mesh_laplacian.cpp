@@ -10,12 +10,12 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double, Index>>;
 
-/// Obtuse triangles can make an edge's cotangents add up to nothing or less, slivers to any number: weights stay
-/// between a thousandth and a thousand, so that every vertex hangs on its neighbours and every row has a sum.
+/// Bounds of edge weights, so that the Laplacian stays definite: obtuse triangles can make the sum of an edge's
+/// cotangents zero or negative, slivers make it arbitrarily large.
 constexpr double least_weight = 1e-3;
 constexpr double most_cotangent = 1e3;
 
-/// Half the cotangent of the angle at `apex`, within bounds; where a side has no length, there is no angle: 0.
+/// Half the cotangent of the angle at `apex`, clamped; 0 if a side has no length.
 double half_cotangent(const Vector3& apex, const Vector3& a, const Vector3& b) {
   const double cosine = (a - apex).dot(b - apex), sine = (a - apex).cross(b - apex).norm();
   if (std::abs(cosine) > most_cotangent * sine) return std::copysign(most_cotangent / 2, cosine);

@@ -7,13 +7,13 @@
 
 namespace stiv {
 
-/// The weights of a mesh's edges at rest, (n, n), symmetric, all positive.
+/// The edge weights of a mesh at rest, (n, n), symmetric and positive.
 SymmetricMatrix edge_weights(const Surface& mesh, const Positions& rest, EdgeWeights kind);
 
-/// D - W, with D the sums of the rows of the edges' weights W.
+/// D - W, with edge weights W and D the diagonal of their row sums.
 SymmetricMatrix mesh_laplacian(const SymmetricMatrix& weights);
 
-/// L'L of the Laplacian whose rows are divided by their diagonal, L = 1 - D^-1 W; zero for vertices without edges.
+/// L'L with L = 1 - D^-1 W, the Laplacian with rows divided by their diagonal; zero rows for vertices without edges.
 SymmetricMatrix squared_laplacian(const SymmetricMatrix& weights);
 
 }  // namespace stiv

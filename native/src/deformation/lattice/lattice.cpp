@@ -40,7 +40,7 @@ void check_influence(const Eigen::VectorXd& influence, Eigen::Index vertex_count
       throw InputError("lattice, vertex " + std::to_string(vertex) + ": influence is not finite");
 }
 
-/// Weights of all points at one place, each point once for each way to reach it.
+/// Weights of all points at one position; a point occurs once for each of its places.
 struct PointWeights {
   std::vector<Index> point;
   std::vector<double> weight;
@@ -62,8 +62,8 @@ void weights_at(const std::array<LatticeAxis, 3>& axes, const Vector3& place, Po
       }
 }
 
-/// Strength, modifier group and the lattice's own group. The last one blends with the undeformed place, by a factor
-/// into which strength and modifier group enter once more: Blender applies them to the offset and to the blend.
+/// Product of strength, modifier group and the lattice's own group. The last one blends with the undeformed position.
+/// Blender applies strength and modifier group both to the offset and to that blend.
 double row_factor(const LatticeDefinition& lattice, const PointWeights& weights, double influence) {
   if (lattice.point_weights.size() == 0) return influence;
   double blend = 0;

@@ -9,19 +9,19 @@
 
 namespace stiv {
 
-/// The points of a lattice along one axis, which stand at equal distances.
+/// The equidistant points of a lattice along one axis.
 struct LatticeAxis {
   Index count = 1;
   LatticeInterpolation interpolation = LatticeInterpolation::bspline;
   double first = 0, spacing = 1;
 
-  /// Beyond the ends the outermost points stand in for those that are missing.
+  /// The point at a place; places beyond the ends are the outermost points.
   Index point(Index place) const { return std::clamp(place, 0, count - 1); }
 };
 
-/// The four points in a row that act along an axis, and their weights.
+/// Four consecutive points along an axis and their weights.
 struct AxisWeights {
-  Index first = 0;  ///< a place that may lie beyond the ends, see LatticeAxis::point
+  Index first = 0;  ///< may lie beyond the ends, see LatticeAxis::point
   FourWeights weight{};
 };
 
@@ -30,7 +30,7 @@ AxisWeights axis_weights(const LatticeAxis& axis, double coordinate);
 /// @throws InputError if points along an axis coincide
 std::array<LatticeAxis, 3> lattice_axes(const LatticeDefinition& lattice);
 
-/// By what the rows of lattice_weights are scaled; same arguments, which are known to fit.
+/// The factors of the rows of lattice_weights, whose arguments they share; already checked.
 Eigen::VectorXd lattice_factors(const LatticeDefinition& lattice, const Positions& rest_vertices,
                                 const Eigen::VectorXd& influence);
 

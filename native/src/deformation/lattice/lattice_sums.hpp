@@ -10,31 +10,30 @@
 
 namespace stiv {
 
-/// The weights of a lattice's points in vertices as what they are products of, four along each axis: twelve numbers a
-/// vertex instead of 64 with their indices, which do not fit into the processor's cache.
+/// The weights of a lattice's points, factored into four weights along each axis: twelve numbers for each vertex
+/// instead of 64 with indices, which do not fit into the processor's cache.
 class LatticeSums {
  public:
-  /// @param places (n, 3) of the vertices in the lattice's frame
-  /// @param factors (n) of the rows
+  /// @param places (n, 3) positions of the vertices in the lattice's frame
+  /// @param factors (n) of the rows of W
   LatticeSums(const std::array<LatticeAxis, 3>& axes, const Positions& places, const Eigen::VectorXd& factors);
 
-  /// W p, (n, 3): along w, then v, then u, none fused: the same bits whatever the width of vectors and the number of
-  /// threads.
+  /// W p, (n, 3), summed along w, then v, then u, none fused: same bits for any vector width and number of threads.
   Positions sum(const Controls& p, const Execution& execution) const;
-  /// Rows of that, (k, 3).
+  /// The given rows of W p, (k, 3).
   Positions sum(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
 
  private:
   struct Axis {
-    Index first = 0, count = 0;  ///< the places along an axis that act on any vertex, those beyond the ends among them
+    Index first = 0, count = 0;  ///< places along an axis in use, beyond the ends included
   };
 
   Positions sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const;
 
   std::array<Axis, 3> axes_;
-  std::vector<Index> points_;    ///< the lattice's point at each place, u fastest
-  std::vector<double> weights_;  ///< (n, 3, 4) along u, v and w; the last ones times the factor
-  std::vector<Index> starts_;    ///< (n) the first of the places that act on a vertex
+  std::vector<Index> points_;    ///< point at each place, u fastest
+  std::vector<double> weights_;  ///< (n, 3, 4) along u, v and w; those along w times the factor
+  std::vector<Index> starts_;    ///< (n) first place of each vertex
 };
 
 }  // namespace stiv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/linear.hpp"
 
 #include <string>
 #include <utility>
@@ -31,7 +31,7 @@ class Identity final : public Deformation {
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    return make_control_metric(options, count_, true);  // J is the identity
+    return make_control_metric(options, count_, ControlSupport::disjoint);  // J is the identity
   }
 
   std::vector<Index> support(Index control) const override { return {control}; }

@@ -97,7 +97,7 @@ void check_weights(const WeightMatrix& matrix) {
 std::shared_ptr<const LinearDeformation> make_linear(WeightMatrix matrix, Positions offset) {
   if (offset.rows() != 0 && offset.rows() != matrix.rows())
     throw InputError("linear deformation: offset has " + std::to_string(offset.rows()) + " rows, the weights have " +
-                     std::to_string(matrix.rows()) + ": give one row for each vertex, or none");
+                     std::to_string(matrix.rows()) + "; give one row for each vertex, or none");
   check_weights(matrix);
   check_finite(offset, "linear deformation, offset of row");
   matrix.makeCompressed();

@@ -29,7 +29,7 @@ WeightColumns selected_columns(const WeightColumns& matrix, const std::vector<In
   return selected;
 }
 
-/// M'M summed vertex by vertex into a dense matrix: a lattice's 64 weights a vertex fill it, whatever the order.
+/// M'M summed vertex by vertex into a dense matrix, since the 64 weights of a lattice for each vertex fill it.
 Eigen::MatrixXd dense_gram(const WeightColumns& matrix) {
   const Eigen::SparseMatrix<double, Eigen::RowMajor, Index> rows = matrix;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(matrix.cols(), matrix.cols());
@@ -49,7 +49,7 @@ class SparseLinearMetric final : public Metric {
     for (Index k = 0; k < damped.cols(); ++k) damped.coeffRef(k, k) += damping;
     factor_.compute(damped);
     if (factor_.info() != Eigen::Success)
-      throw InputError("the metric of the controls cannot be factored: weights are too large or too small");
+      throw InputError("the metric of the controls cannot be factored: check for very large or very small weights");
   }
 
   SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {

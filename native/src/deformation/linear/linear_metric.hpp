@@ -8,12 +8,12 @@
 
 namespace stiv {
 
-/// Weights of controls in vertices by columns: the weights of one control stand together.
+/// Weights of controls at vertices, stored by controls.
 using WeightColumns = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
-/// The metric of q = M p + c: M'M of the controls that may respond and move something, with eps times its mean
-/// diagonal added to the diagonal. Few controls are solved by an explicit inverse, of which a sparse right-hand side
-/// touches few columns; many by a sparse factor. (mathematics.md, "Metric")
+/// The metric of q = M p + c: M'M of the active controls, damped by eps times its mean diagonal. For few controls it
+/// stores the inverse, of which a sparse right-hand side reads few columns; for many, a sparse factor. (mathematics.md,
+/// "Metric")
 std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options);
 
 }  // namespace stiv

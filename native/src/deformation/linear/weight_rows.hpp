@@ -7,8 +7,8 @@
 
 namespace stiv {
 
-/// Builds a weight matrix row by row. Weights of the same control add up, in the order in which they come; what adds
-/// up to exactly 0 is left out.
+/// Builds a weight matrix row by row. Repeated weights of a control add up in the order given; sums of exactly 0 are
+/// left out.
 class WeightRows {
  public:
   WeightRows(Index row_count, Index control_count);
@@ -16,13 +16,13 @@ class WeightRows {
   void add(Index control, double weight);
   void end_row();
 
-  /// The matrix of the rows ended so far.
+  /// The matrix of the completed rows.
   WeightMatrix matrix() const;
 
  private:
   std::vector<double> sum_;            ///< of the row being built, by control
-  std::vector<unsigned char> in_row_;  ///< by control: has it a sum in this row?
-  std::vector<Index> touched_;         ///< controls of this row
+  std::vector<unsigned char> in_row_;  ///< by control: 1 if it has a sum in this row
+  std::vector<Index> touched_;         ///< controls with a sum in this row
   std::vector<Index> starts_{0}, controls_;
   std::vector<double> weights_;
 };

@@ -7,11 +7,11 @@
 
 namespace stiv {
 
-/// M x, (rows, 3), in an order of additions that depends on the rows alone, none fused: the result is the same to the
-/// last bit whatever the width of the vectors and the number of threads.
+/// M x, (rows, 3). The order of additions depends on the rows alone and none is fused: same bits for any vector width
+/// and number of threads.
 Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution);
 
-/// Some rows of that, (k, 3), with the same bits.
+/// The given rows of M x, (k, 3), bit for bit the same.
 Positions weighted_sums(const WeightMatrix& matrix, std::span<const Index> rows, const Controls& x,
                         const Execution& execution);
 

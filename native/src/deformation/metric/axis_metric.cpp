@@ -9,7 +9,7 @@ namespace stiv {
 
 namespace {
 
-/// A metric and the axes that it is for.
+/// A metric and its axes.
 struct AxisGroup {
   std::unique_ptr<Metric> metric;
   Vector3 mask;  ///< 1 for these axes, 0 for others
@@ -29,7 +29,7 @@ std::vector<AxisGroup> axis_groups(const Eigen::MatrixXd& weights, const MetricO
   return groups;
 }
 
-/// The field along some axes, without the rows that it leaves empty.
+/// The components of a field along some axes, without zero rows.
 SparseField masked(const SparseField& field, const Vector3& mask) {
   SparseField result;
   for (std::size_t k = 0; k < field.index.size(); ++k) {

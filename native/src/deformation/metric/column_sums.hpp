@@ -7,17 +7,17 @@
 
 namespace stiv {
 
-/// A matrix some columns of which are added up again and again.
+/// A matrix for repeated linear combinations of few columns.
 class SummedColumns {
  public:
   explicit SummedColumns(const Eigen::MatrixXd& matrix);
 
-  /// sum_k column[k] value[k]', (rows, 3), in the order given, none fused: the same bits whatever the width of vectors.
+  /// sum_k column[k] value[k]', (rows, 3), in the order given, none fused: same bits for any vector width.
   ActiveColumns sum(const std::vector<Index>& columns, const std::vector<Vector3>& values) const;
 
  private:
   Eigen::Index rows_;
-  Eigen::MatrixXd padded_;  ///< with rows of zeros up to a whole number of tiles
+  Eigen::MatrixXd padded_;  ///< padded with zero rows to a whole number of tiles
 };
 
 }  // namespace stiv

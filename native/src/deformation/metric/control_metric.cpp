@@ -46,9 +46,9 @@ std::unique_ptr<Metric> make_diagonal_metric(const Eigen::VectorXd& diagonal, do
   return std::make_unique<ControlMetric>(std::move(weights), false);
 }
 
-std::unique_ptr<Metric> make_control_metric(const MetricOptions& options, Index control_count, bool local) {
+std::unique_ptr<Metric> make_control_metric(const MetricOptions& options, Index control_count, ControlSupport support) {
   return make_axis_metric(checked_weights(options, control_count), [&](const Eigen::VectorXd& weights) {
-    return std::make_unique<ControlMetric>(weights, local);
+    return std::make_unique<ControlMetric>(weights, support == ControlSupport::disjoint);
   });
 }
 

@@ -10,17 +10,17 @@
 
 namespace stiv {
 
-/// Up to so many controls the inverse is kept in full: a few MB, and a sparse right side touches few of its columns.
+/// Number of controls up to which the inverse is stored: a few MB, of which a sparse right-hand side reads few columns.
 constexpr Index full_inverse_limit = 600;
 
-/// The metric whose J'J, (a, a) over the active controls, is given in full; eps times its mean diagonal is added.
+/// The metric of a given J'J, (a, a) over the active controls, damped by eps times its mean diagonal.
 std::unique_ptr<Metric> make_gram_metric(Eigen::MatrixXd gram, double smoothness, ActiveControls active);
 
 /// J'J X for X (m, 16) over all controls.
 using GramProduct = std::function<ColumnBlock(const ColumnBlock&)>;
 
-/// The metric whose J'J is known by its products alone: its part in the space of `rank` probes (Nystrom approximation
-/// [Halko, Martinsson, Tropp 2011, 5.5]), and on the rest of the space the mean of what is left of its trace.
+/// The metric of a J'J known only by its products: the Nystrom approximation from `rank` probes [Halko, Martinsson,
+/// Tropp 2011, 5.5], and on its orthogonal complement the mean of the remaining trace.
 /// @param rank multiple of 16
 std::unique_ptr<Metric> make_low_rank_metric(const GramProduct& gram, Index rank, double smoothness,
                                              ActiveControls active);

@@ -10,14 +10,14 @@ namespace stiv {
 
 namespace {
 
-constexpr double least_eigenvalue = 1e-12;  // of the largest one: less is rounding
+constexpr double least_eigenvalue = 1e-12;  // of the largest one; smaller ones are rounding errors
 
-/// J'J and what it was found from: `probes` (a, rank) and `products` = J'J probes.
+/// Probes, (a, rank), and their products with J'J.
 struct Probing {
   Eigen::MatrixXd probes, products;
 };
 
-/// Signs at random, the same on every machine.
+/// Random signs, the same on every machine.
 Probing probe(const GramProduct& gram, Index rank, const ActiveControls& active, std::mt19937& generator) {
   const auto count = static_cast<Index>(active.control.size());
   Probing probing{Eigen::MatrixXd(count, rank), Eigen::MatrixXd(count, rank)};
@@ -33,11 +33,11 @@ Probing probe(const GramProduct& gram, Index rank, const ActiveControls& active,
 }
 
 struct Spectrum {
-  Eigen::MatrixXd vectors;  ///< (a, r) of length 1, at right angles
+  Eigen::MatrixXd vectors;  ///< (a, r) orthonormal
   Eigen::VectorXd values;   ///< (r)
 };
 
-/// Columns divided by the roots of `squares`; those of the largest ones alone.
+/// Columns divided by the roots of `squares`, without those of the smallest.
 Eigen::MatrixXd normalised(const Eigen::MatrixXd& columns, const Eigen::VectorXd& squares) {
   const double least = least_eigenvalue * std::max(squares.maxCoeff(), 0.0);
   const auto dropped = (squares.array() <= least).count();  // eigenvalues come in ascending order
@@ -45,7 +45,7 @@ Eigen::MatrixXd normalised(const Eigen::MatrixXd& columns, const Eigen::VectorXd
   return columns.rightCols(kept) * squares.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-/// C C' = Y (O'Y)^-1 Y' by its eigenvectors.
+/// The eigenvectors of C C' = Y (O'Y)^-1 Y'.
 Spectrum spectrum_of(const Probing& probing) {
   const Eigen::MatrixXd inner = probing.probes.transpose() * probing.products;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> first((inner + inner.transpose()) / 2);
@@ -56,8 +56,8 @@ Spectrum spectrum_of(const Probing& probing) {
   return spectrum;
 }
 
-/// The trace of J'J without the part that the spectrum knows: the mean of x'(J'J - V L V')x over random signs x. The
-/// large eigenvalues, whose share in such means varies most, are out of it. [Meyer et al. 2021, Hutch++]
+/// Estimates the trace of J'J - V L V' by the mean of x'(J'J - V L V')x over random signs x. Without the largest
+/// eigenvalues, the variance of the estimate is small. [Meyer et al. 2021, Hutch++]
 double remaining_trace(const Spectrum& spectrum, const Probing& fresh) {
   const Eigen::MatrixXd inner = spectrum.vectors.transpose() * fresh.probes;
   const double whole = fresh.probes.cwiseProduct(fresh.products).sum();
@@ -67,7 +67,7 @@ double remaining_trace(const Spectrum& spectrum, const Probing& fresh) {
 
 class LowRankMetric final : public Metric {
  public:
-  /// @param fresh probes that the spectrum was not found from
+  /// @param fresh probes independent of the spectrum
   LowRankMetric(Spectrum spectrum, const Probing& fresh, double smoothness, ActiveControls active)
       : active_(std::move(active)), spectrum_(std::move(spectrum)) {
     const auto count = static_cast<double>(active_.control.size());
@@ -91,8 +91,8 @@ class LowRankMetric final : public Metric {
  private:
   ActiveControls active_;
   Spectrum spectrum_;
-  double beyond_ = 0;       ///< inverse on what is at right angles to the eigenvectors
-  Eigen::VectorXd within_;  ///< and along each of them
+  double beyond_ = 0;       ///< inverse on the orthogonal complement of the eigenvectors
+  Eigen::VectorXd within_;  ///< inverse along each eigenvector
 };
 
 }  // namespace

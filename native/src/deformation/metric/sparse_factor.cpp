@@ -15,9 +15,7 @@ bool SparseFactor::factor(const SymmetricMatrix& matrix) {
 
 SparseFactor::SparseFactor(const SymmetricMatrix& matrix, const char* what) {
   if (!factor(matrix))
-    throw InputError(std::string(what) +
-                     ": the equations cannot be factored; the mesh is too long for so few handles, "
-                     "or its weights are too different: add handles or fixed vertices");
+    throw InputError(std::string(what) + ": the system is singular to rounding; add handles or fixed vertices");
 }
 
 Index SparseFactor::parent(Index column) const {

@@ -12,7 +12,7 @@ namespace stiv {
 
 namespace {
 
-/// W^1/2 B^-1 W^1/2 g on the axes with w > 0; 0 along the others.
+/// W^1/2 B^-1 W^1/2 g for the axes with w > 0, 0 for the others.
 Vector3 step_of_block(const Eigen::Matrix3d& block, const Vector3& weights, const Vector3& g) {
   std::vector<Index> free;
   for (Index axis = 0; axis < 3; ++axis)

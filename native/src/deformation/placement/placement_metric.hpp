@@ -8,15 +8,15 @@
 
 namespace stiv {
 
-/// The 3 x 3 block of J'J + damping that belongs to the second control row, at controls p.
+/// The (3, 3) block of J'J + damping of the second control row, at controls p.
 using PlacementBlock = std::function<Eigen::Matrix3d(const ControlsView& p)>;
 
-/// Metric of a placement with controls (2, 3): centre, and rotation or scale. Vertices are counted from their mean, so
-/// the 6 x 6 matrix J'J falls into two 3 x 3 blocks; that of the centre is n times the unit matrix.
+/// Metric of a placement with controls (2, 3): centre, and rotation or scale. Vertices are relative to their mean, so
+/// J'J, (6, 6), has two diagonal blocks; that of the centre is n times the identity.
 std::unique_ptr<Metric> make_placement_metric(Index vertex_count, PlacementBlock block, const MetricOptions& options);
 
-/// eps times a diagonal of J'J. Entries of directions in which nothing extends (all vertices on a line, or only one)
-/// are raised to a trifle of the largest, or to 1 where all vanish: nothing pushes there, so nothing moves there.
+/// eps times a diagonal of J'J. Entries that vanish (all vertices on a line, or a single one) are raised to a small
+/// fraction of the largest, or to 1: no force acts in these directions, so nothing moves.
 Vector3 placement_damping(const Vector3& diagonal, double smoothness);
 
 }  // namespace stiv

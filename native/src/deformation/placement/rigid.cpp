@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/rigid.hpp"
+#include "stiv/deformation/placement.hpp"
 
 #include <numeric>
 #include <utility>
@@ -13,8 +13,8 @@ namespace stiv {
 
 namespace {
 
-/// J'J of the rotation, damped, at rotation vector v. The damping is that of the body's inertia about the world axes,
-/// which does not vanish where the left Jacobian is singular: at full turns the directions that turn nothing rest.
+/// J'J of the rotation at rotation vector v, damped relative to the inertia about the world axes. The damping does not
+/// vanish at full turns, where the left Jacobian is singular.
 Eigen::Matrix3d rotation_block(const Eigen::Matrix3d& rest_inertia, const Vector3& v, double smoothness) {
   const Eigen::Matrix3d rotation = rotation_matrix(v);
   const Eigen::Matrix3d inertia = rotation * rest_inertia * rotation.transpose();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/scaling.hpp"
+#include "stiv/deformation/placement.hpp"
 
 #include <Eigen/LU>
 #include <numeric>
@@ -33,7 +33,7 @@ class Scaling final : public Deformation {
     return {{0, 1}, {force, stretch}};
   }
 
-  // Without an offset the map is its own derivative.
+  // The map is linear, so that without an offset it is its own derivative.
   Positions push_forward(const Controls&, const Controls& d) const override { return placed(d); }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
@@ -62,7 +62,7 @@ class Scaling final : public Deformation {
 
 void check_rotation(const Eigen::Matrix3d& rotation) {
   const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  // Single precision is enough: Blender's matrices are stored so.
+  // Blender stores matrices in single precision.
   if (!(error < 1e-5) || !(rotation.determinant() > 0))
     throw InputError(
         "scaling: the matrix of the axes is not a rotation; give unit columns at right angles, without scale");

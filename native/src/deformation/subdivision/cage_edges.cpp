@@ -21,7 +21,8 @@ void check_edges(const Cage& cage) {
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
     const std::string name = "edge " + std::to_string(edge);
     for (Index end = 0; end < 2; ++end) check_vertex(cage, cage.edges(edge, end), name);
-    if (cage.edges(edge, 0) == cage.edges(edge, 1)) throw InputError("cage, " + name + ": both ends are one vertex");
+    if (cage.edges(edge, 0) == cage.edges(edge, 1))
+      throw InputError("cage, " + name + ": both ends are the same vertex");
   }
 }
 
@@ -30,8 +31,7 @@ void check_face_starts(const Cage& cage) {
   const bool fits = starts.empty()
                         ? cage.face_corners.empty()
                         : starts.front() == 0 && starts.back() == static_cast<Index>(cage.face_corners.size());
-  if (!fits)
-    throw InputError("cage: the first corners of the faces must begin with 0 and end with the number of corners");
+  if (!fits) throw InputError("cage: the starts of the faces must begin with 0 and end with the number of corners");
   for (std::size_t face = 0; face + 1 < starts.size(); ++face)
     if (starts[face + 1] - starts[face] < 3)
       throw InputError("cage, face " + std::to_string(face) + ": a face needs at least 3 corners");
@@ -61,7 +61,7 @@ void check_creases(const std::vector<float>& creases, Index count, const std::st
       throw InputError("cage, " + element + " " + std::to_string(k) + ": crease must be in [0, 1]");
 }
 
-/// Ends in ascending order, then the edge: sorted, the first edge between two vertices comes first.
+/// Ends in ascending order, then the edge, so that of several edges between two vertices the first sorts first.
 using EdgeKey = std::tuple<Index, Index, Index>;
 
 std::vector<EdgeKey> sorted_edges(const Cage& cage) {

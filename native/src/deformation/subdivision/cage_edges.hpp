@@ -8,17 +8,17 @@
 
 namespace stiv {
 
-/// @throws InputError naming the element: faces with fewer than 3 corners or a corner twice, edges from a vertex to
-///         itself, indices out of range, creases out of [0, 1] or of another number than edges or vertices.
+/// @throws InputError naming the element: a face with fewer than 3 corners or a repeated one, an edge from a vertex to
+///         itself, an index out of range, a crease out of [0, 1], or the wrong number of creases
 void check_cage(const Cage& cage);
 
-/// How the edges and faces of a cage hang together.
+/// The incidence of edges and faces of a cage.
 class CageEdges {
  public:
-  /// @throws InputError naming a face, one of whose edges is missing from the cage's list.
+  /// @throws InputError naming a face with an edge that the cage does not list
   explicit CageEdges(const Cage& cage);
 
-  /// The edge from a corner of a face to the next one; `corner` counts through the corners of all faces.
+  /// The edge from a corner of a face to the next one; `corner` is an index into Cage::face_corners.
   Index of_corner(Index corner) const { return edge_of_corner_[at(corner)]; }
 
   bool is_loose(Index edge) const { return !in_face_[at(edge)]; }
@@ -28,7 +28,7 @@ class CageEdges {
   std::vector<bool> in_face_;
 };
 
-/// Corners of face `face` as [first, last) in Cage::face_corners.
+/// The range [first, last) of a face in Cage::face_corners.
 inline std::pair<Index, Index> corner_range(const Cage& cage, Index face) {
   return {cage.face_starts[at(face)], cage.face_starts[static_cast<std::size_t>(face) + 1]};
 }

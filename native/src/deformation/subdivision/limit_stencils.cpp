@@ -19,10 +19,10 @@ namespace Sdc = OpenSubdiv::Sdc;
 using Stencils = Far::StencilTableReal<double>;
 using StencilFactory = Far::StencilTableFactoryReal<double>;
 
-/// From here on an edge or vertex is infinitely sharp. (Sdc::Crease::SHARPNESS_INFINITE)
+/// The sharpness at which an edge or vertex is infinitely sharp. (Sdc::Crease::SHARPNESS_INFINITE)
 constexpr float infinite_sharpness = 10;
 
-/// Elements that are not smooth, as OpenSubdiv takes them.
+/// Sharp elements in OpenSubdiv's format.
 struct Sharpness {
   std::vector<int> edge_ends;
   std::vector<float> edge;
@@ -35,8 +35,7 @@ float crease_sharpness(const std::vector<float>& creases, std::size_t k) {
   return creases.empty() ? 0 : infinite_sharpness * creases[k] * creases[k];
 }
 
-/// What a vertex of two edges alone gets on top of its own sharpness: the lesser one of the two, as in Blender's
-/// modifier.
+/// Sharpness added to a vertex of exactly two edges: the lesser one of theirs, as in Blender's modifier.
 std::vector<float> corner_sharpness(const Cage& cage) {
   const auto count = static_cast<std::size_t>(cage.vertex_count);
   std::vector<float> least(count, infinite_sharpness);
@@ -53,7 +52,7 @@ std::vector<float> corner_sharpness(const Cage& cage) {
   return least;
 }
 
-/// "Simple" is the scheme with everything infinitely sharp. Where wires meet a face, its vertex is sharp too.
+/// The type "Simple" is the scheme with everything infinitely sharp. A face's vertex with a loose edge is sharp too.
 Sharpness sharpness_of(const Cage& cage, const CageEdges& edges, const Wires& wires, bool simple) {
   Sharpness sharpness;
   for (Index edge = 0; edge < cage.edges.rows(); ++edge) {
@@ -127,8 +126,8 @@ std::unique_ptr<const Far::PatchTable> make_patches(const Far::TopologyRefiner& 
   return std::unique_ptr<const Far::PatchTable>(Far::PatchTableFactory::Create(refiner, options));
 }
 
-/// Stencils of the vertices that the patches refer to: with uniform refinement those of the cage and of the last
-/// level, with adaptive refinement those of all levels, followed by the patches' own points.
+/// Stencils of the vertices that patches refer to: with uniform refinement those of the cage and the last level, with
+/// adaptive refinement those of all levels and the patches' own points.
 std::unique_ptr<const Stencils> make_stencils(const Far::TopologyRefiner& refiner, const Far::PatchTable& patches,
                                               bool adaptive) {
   StencilFactory::Options options;
@@ -153,7 +152,7 @@ struct LimitStencils::Tables {
 LimitStencils::LimitStencils(const Cage& cage, const CageEdges& edges, const Wires& wires,
                              const SubdivisionOptions& options) {
   const auto refiner = make_refiner(cage, sharpness_of(cage, edges, wires, options.simple), options);
-  if (!refiner) throw InputError("cage: OpenSubdiv cannot subdivide these faces; check them for degenerate ones");
+  if (!refiner) throw InputError("cage: OpenSubdiv cannot subdivide it; remove degenerate faces");
   const bool adaptive = options.limit_surface;
   const int level = options.simple ? 1 : adaptive ? options.quality : options.levels;
   refine(*refiner, adaptive, level);

@@ -4,16 +4,16 @@
 #include <memory>
 
 #include "deformation/linear/weight_rows.hpp"
-#include "deformation/subdivision/surface_locations.hpp"
+#include "deformation/subdivision/subdivided_vertices.hpp"
 #include "deformation/subdivision/wires.hpp"
 
 namespace stiv {
 
-/// Weights of a cage's vertices in points of its subdivision surface, through OpenSubdiv with the settings of
-/// Blender's modifier; for Loop's scheme, which the modifier does not have, with the same ones.
+/// Weights of a cage's vertices for points of its subdivision surface, by OpenSubdiv with the settings of Blender's
+/// modifier. Loop's scheme, which the modifier lacks, uses the same settings.
 class LimitStencils {
  public:
-  /// @throws InputError when OpenSubdiv refuses the cage.
+  /// @throws InputError if OpenSubdiv rejects the cage
   LimitStencils(const Cage& cage, const CageEdges& edges, const Wires& wires, const SubdivisionOptions& options);
   ~LimitStencils();
 

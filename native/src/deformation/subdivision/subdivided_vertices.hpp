@@ -7,8 +7,8 @@
 
 namespace stiv {
 
-/// The numbers that Blender gives to the vertices of a subdivided cage: cage vertices; inner vertices of edges, from
-/// the first end to the second; inner vertices of faces. An edge is cut into `segments` = 2^levels, levels >= 1.
+/// Blender's numbering of the vertices of a subdivided cage: cage vertices; inner vertices of edges, from the first end
+/// to the second; inner vertices of faces. An edge has `segments` = 2^levels segments, levels >= 1.
 ///
 /// A quad is one grid of (segments + 1)^2 points, x from corner 0 to 1, y from corner 0 to 3. Any other face with n
 /// corners is n grids of (segments/2 + 1)^2 points: grid c has its origin at corner c, x along the edge to the next
@@ -46,5 +46,15 @@ class SubdividedVertices {
   Index segments_;
   std::vector<Index> face_first_;  ///< first inner vertex of each face; the number of all at the end
 };
+
+/// A point of the limit surface: a ptex face of OpenSubdiv and coordinates in [0, 1] in it; s + t <= 1 for a triangle
+/// of Loop's scheme.
+struct SurfaceLocation {
+  Index ptex_face = -1;  ///< -1: on no face (a loose vertex, or on a loose edge)
+  double s = 0, t = 0;
+};
+
+/// The location of each vertex of the subdivided cage, in the first of its faces, as in Blender.
+std::vector<SurfaceLocation> surface_locations(const Cage& cage, const SubdividedVertices& vertices);
 
 }  // namespace stiv

@@ -30,7 +30,7 @@ void Wires::add_vertex(Index vertex, WeightRows& rows) const {
   rows.add(neighbours_[v][1], 1.0 / 6);
 }
 
-/// The vertex that continues the chain beyond `vertex`, away from `except`; -1 where it ends, branches or meets a face.
+/// The next vertex of the chain after `vertex`, other than `except`; -1 if the chain ends, branches or meets a face.
 Index Wires::neighbour(Index vertex, Index except) const {
   const auto v = static_cast<std::size_t>(vertex);
   if (on_face_[v] || edge_count_[v] != 2) return -1;

@@ -8,21 +8,21 @@
 
 namespace stiv {
 
-/// What becomes of the parts of a cage that are in no face. Loose edges turn into uniform cubic B-splines through the
-/// chain of their neighbours; where a chain ends, branches or meets a face, it is continued in a straight line.
+/// Subdivision of a cage's loose edges and vertices. Chains of loose edges become uniform cubic B-splines. Where a
+/// chain ends, branches or meets a face, it is extrapolated linearly.
 class Wires {
  public:
-  /// The cage must outlive this.
-  /// @param smooth false: edges stay straight and vertices stay put (the modifier's "Simple" type)
+  /// Refers to the cage, which must outlive it.
+  /// @param smooth false: edges stay straight and vertices in place (the modifier's type "Simple")
   Wires(const Cage& cage, const CageEdges& edges, bool smooth);
 
-  /// Has this vertex a loose edge?
+  /// True if the vertex has a loose edge.
   bool touches(Index vertex) const { return edge_count_[at(vertex)] > 0; }
 
-  /// Weights of a vertex in no face: inside a chain (1, 4, 1) / 6, else where it is.
+  /// Weights of a vertex in no face: (1, 4, 1) / 6 inside a chain, else 1 for itself.
   void add_vertex(Index vertex, WeightRows& rows) const;
 
-  /// Weights of the point at `fraction` in (0, 1) of a loose edge, counted from its first end.
+  /// Weights of the point at `fraction` in (0, 1) of a loose edge, from its first end.
   void add_edge_point(Index edge, double fraction, WeightRows& rows) const;
 
  private:

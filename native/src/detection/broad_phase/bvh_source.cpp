@@ -178,9 +178,9 @@ class BvhSource final : public CandidateSource {
       }
       near.insert(near.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
     }
-    if (surface_.has_recut_faces())
+    if (surface_.has_flip_faces())
       std::erase_if(
-          near, [&](const Candidate& pair) { return surface_.in_one_recut_face(vertices_of(surface_, kind, pair)); });
+          near, [&](const Candidate& pair) { return surface_.in_one_flip_face(vertices_of(surface_, kind, pair)); });
   }
 
   /// Dense scenes compare four pairs for each primitive and cache three. These bounds mean a fraction of a second, and

@@ -14,7 +14,7 @@ bool Relevance::relevant(EventKind kind, const std::array<Index, 4>& v) const {
                                                     : (v[0] != v[2]) & (v[0] != v[3]) & (v[1] != v[2]) & (v[1] != v[3]);
   const auto moved = [&](std::size_t k) { return moved_[v[k]]; };
   return apart & ((moved(0) | moved(1) | moved(2) | moved(3)) != 0) &
-         surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3])) & !surface_.in_one_recut_face(v);
+         surface_.bodies_meet(surface_.body_of(v[0]), surface_.body_of(v[3])) & !surface_.in_one_flip_face(v);
 }
 
 // Without branches: each candidate is written, and the count decides whether it stays.

@@ -78,7 +78,7 @@ double sampled_distance(const Scattering& scene, Index first, Index second) {
 
 }  // namespace
 
-TEST_CASE("least distance: the nearest pair is that of all pairs, each measured by random search") {
+TEST_CASE("least distance: the closest of all pairs, against a random search") {
   for (const double scale : {1.0, 1e-5, 1e6}) {
     const Scattering scene(24, 3, scale);
     const auto nearest = LeastDistance(scene.surface).find(scene.q);
@@ -94,17 +94,17 @@ TEST_CASE("least distance: the nearest pair is that of all pairs, each measured 
   }
 }
 
-TEST_CASE("least distance: bodies that do not meet are left out, and one body is asked about only on request") {
+TEST_CASE("least distance: ignored bodies are left out, and pairs within a body count on request") {
   const Scattering all(300, 4, 1), apart(300, 4, 1, {{0, 1}, {0, 2}, {1, 2}});
   CHECK_FALSE(LeastDistance(apart.surface).find(apart.q));
-  const auto within = LeastDistance(apart.surface).find(apart.q, true);
+  const auto within = LeastDistance(apart.surface).find(apart.q, DistancePairs::all);
   REQUIRE(within);
   CHECK(apart.body(within->triangles[0]) == apart.body(within->triangles[1]));
   CHECK(apart.body(within->triangles[0]) != 2);  // a rigid body does not meet itself
-  CHECK(LeastDistance(all.surface).find(all.q, true)->distance <= within->distance);
+  CHECK(LeastDistance(all.surface).find(all.q, DistancePairs::all)->distance <= within->distance);
 }
 
-TEST_CASE("least distance: zero exactly where the exact test finds what intersects, and trees follow the positions") {
+TEST_CASE("least distance: zero exactly for intersecting pairs, and trees follow the positions") {
   Scattering scene(60, 8, 1);
   LeastDistance search(scene.surface);
   std::mt19937 random(2);
@@ -122,7 +122,7 @@ TEST_CASE("least distance: zero exactly where the exact test finds what intersec
   CHECK(met < 200);
 }
 
-TEST_CASE("least distance: neighbours do not count, and there may be no pair at all") {
+TEST_CASE("least distance: neighbours do not count, and there may be no pair") {
   SurfaceDefinition definition;
   definition.vertex_count = 4;
   definition.triangles.resize(2, 3);
@@ -130,6 +130,6 @@ TEST_CASE("least distance: neighbours do not count, and there may be no pair at 
   const auto surface = std::make_shared<Surface>(definition);
   Positions q(4, 3);
   q << 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0;
-  CHECK_FALSE(LeastDistance(surface).find(q, true));
+  CHECK_FALSE(LeastDistance(surface).find(q, DistancePairs::all));
   CHECK_FALSE(LeastDistance(std::make_shared<Surface>(SurfaceDefinition{})).find(Positions(0, 3)));
 }

@@ -35,7 +35,7 @@ bool is_free(IntersectionTest& test, const Positions& q, const std::vector<unsig
 
 }  // namespace
 
-TEST_CASE("intersections: the tree finds what brute force finds, for any number of threads") {
+TEST_CASE("intersections: the tree equals brute force, for any number of threads") {
   std::mt19937 random(5);
   Assembly scene;
   scene.add_soup(150, 0.1, Mobility::deformable, random);
@@ -52,7 +52,7 @@ TEST_CASE("intersections: the tree finds what brute force finds, for any number 
   }
 }
 
-TEST_CASE("intersections: the cuts of a recut face are tested against all but each other") {
+TEST_CASE("intersections: triangulations of a flip face are tested against all but each other") {
   SurfaceDefinition definition;
   definition.vertex_count = 7;
   definition.triangles.resize(5, 3);
@@ -60,11 +60,11 @@ TEST_CASE("intersections: the cuts of a recut face are tested against all but ea
   Positions q(7, 3);  // a flat square in both cuts, and a triangle that stands in its corner beside one diagonal
   q << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.6, 0.2, -1, 0.6, 0.2, 1, 0.7, 0.25, 1;
   CHECK(find(std::make_shared<const Surface>(definition), q, 1).size() > 2);
-  definition.recut_faces = {{0, 1, 2, 3}};
+  definition.flip_faces = {{0, 1, 2, 3}};
   CHECK(find(std::make_shared<const Surface>(definition), q, 1) == IndexPairs{{0, 4}, {2, 4}});
 }
 
-TEST_CASE("intersections: trees kept between calls follow the positions") {
+TEST_CASE("intersections: cached trees follow the positions") {
   std::mt19937 random(6);
   Assembly scene;
   scene.add_soup(200, 0.1, Mobility::deformable, random);
@@ -107,7 +107,7 @@ TEST_CASE("intersections: a flat sheet is free, in any plane") {
   CHECK_FALSE(is_free(test, folded));
 }
 
-TEST_CASE("intersections: only pairs with a moved vertex are looked at") {
+TEST_CASE("intersections: only pairs with a moved vertex are tested") {
   Assembly scene;
   std::mt19937 random(7);
   scene.add_soup(60, 0.2, Mobility::deformable, random);
@@ -147,7 +147,7 @@ TEST_CASE("intersections: loose edges and loose vertices against faces") {
   CHECK_FALSE(is_free(test, scene.q));
 }
 
-TEST_CASE("intersections: nothing to test is free, and cancelling interrupts") {
+TEST_CASE("intersections: an empty surface is free, and cancelling interrupts") {
   IntersectionTest empty(std::make_shared<const Surface>(SurfaceDefinition{}));
   CHECK(is_free(empty, Positions(0, 3)));
   SurfaceDefinition wire;

@@ -25,7 +25,7 @@ IntegerPoint near_plane(const IntegerPoint& a, const IntegerPoint& b, const Inte
 
 }  // namespace
 
-TEST_CASE("predicates: orientation of a tetrahedron follows the documented sense") {
+TEST_CASE("predicates: the orientation of a tetrahedron has the documented sign") {
   const Vector3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
   CHECK(orientation_3d(a, b, c, {0.2, 0.2, -1}) == 1);
   CHECK(orientation_3d(a, b, c, {0.2, 0.2, 1}) == -1);
@@ -67,7 +67,7 @@ TEST_CASE("predicates: exact where coordinate differences are not representable"
   CHECK(orientation_2d({tiny, 0, 0}, {1, 1, 0}, {2, 2, 0}, 2) == -1);
 }
 
-TEST_CASE("predicates: a cyclic walk along a line in units of the last place stays consistent") {
+TEST_CASE("predicates: consistent along a line in units of the last place") {
   // Shewchuk's figure: points on a grid of one unit in the last place around (0.5, 0.5) against a line through 12, 24.
   const double unit = 0x1p-53;
   for (int i = 0; i < 64; ++i) {

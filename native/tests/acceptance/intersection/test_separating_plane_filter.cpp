@@ -35,13 +35,13 @@ Positions random_corners(std::mt19937& random, int reach, bool integer) {
 
 std::vector<unsigned char> separated(const Batch& batch) {
   TriangleFlags flags{};
-  find_separated(batch.pairs, point_rows(batch.q, Execution(1)), flags);
+  find_separated(batch.pairs, pack_points(batch.q, Execution(1)), flags);
   return {flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(batch.pairs.count)};
 }
 
 }  // namespace
 
-TEST_CASE("separation filter: what it separates does not meet, and all vector targets agree") {
+TEST_CASE("separating plane filter: separated pairs do not intersect, and all vector targets agree") {
   std::mt19937 random(3);
   int apart = 0, meeting = 0;
   for (int round = 0; round < 200; ++round) {
@@ -62,7 +62,7 @@ TEST_CASE("separation filter: what it separates does not meet, and all vector ta
   CHECK(meeting > 1000);
 }
 
-TEST_CASE("separation filter: each kind of plane is tried") {
+TEST_CASE("separating plane filter: each kind of plane is tried") {
   Positions q(18, 3);
   q << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5,    // across the line between the centres
       0, 0, 0, 9, 0, 0, 0, 9, 0, 1, 1, 0.1, 8, 0, 4, 8, -9, 4,  // above the first
@@ -70,7 +70,7 @@ TEST_CASE("separation filter: each kind of plane is tried") {
   CHECK(separated(Batch(q)) == std::vector<unsigned char>{1, 1, 1});
 }
 
-TEST_CASE("separation filter: touching, sharing a place, collapsed and overflowing pairs are left open") {
+TEST_CASE("separating plane filter: touching, coincident, degenerate and overflowing pairs are inconclusive") {
   Positions q(30, 3);
   q << 0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 2, 1, 1,  // vertex on face
       0, 0, 0, 4, 0, 0, 0, 4, 0, 4, 0, 0, 9, 0, 0, 9, 1, 0,   // corner on corner

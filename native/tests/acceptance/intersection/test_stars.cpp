@@ -50,7 +50,7 @@ bool any_pair_intersects(const CornerRows& triangles, const Positions& q) {
 
 std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, const std::vector<unsigned char>& moved) {
   const Execution execution(2);
-  return stars.find_free(point_rows(q, execution), moved, execution);
+  return stars.find_free(pack_points(q, execution), moved, execution);
 }
 
 /// The star of vertex 0, by whatever vector target.
@@ -63,7 +63,7 @@ bool proven(const CornerRows& triangles, const Positions& q) {
 
 }  // namespace
 
-TEST_CASE("stars: flat and raised fans are proven free, closed or open, at any scale and either way round") {
+TEST_CASE("stars: flat and raised fans are proven free, closed or open, at any scale and orientation") {
   std::mt19937 random(1);
   for (const double scale : {1e-7, 1.0, 1e7}) {
     for (const Index count : {3, 6, 31}) {
@@ -80,19 +80,19 @@ TEST_CASE("stars: flat and raised fans are proven free, closed or open, at any s
   }
 }
 
-TEST_CASE("stars: fans that turn more than once are not proven, whatever the direction sees") {
+TEST_CASE("stars: fans that turn more than once are not proven") {
   CHECK_FALSE(proven(fan(12, true), around(12, 2)));           // twice around, on itself
   CHECK_FALSE(proven(fan(12, false), around(12, 1.3)));        // flat, over its beginning
   CHECK_FALSE(proven(fan(12, false), around(12, 1.3, 0.1)));   // above its beginning: free, but not by this proof
   CHECK_FALSE(proven(fan(13, false), around(13, 13.0 / 12)));  // ends just where it begins, in another vertex
 }
 
-TEST_CASE("stars: flat folds, collapsed triangles and what is no single fan are not proven") {
+TEST_CASE("stars: flat folds, degenerate triangles and several fans are not proven") {
   Positions q = around(6, 1);
   q.row(3) = q.row(2);
   CHECK_FALSE(proven(fan(6, true), q));
   q = around(6, 1);
-  q.row(0) = q.row(1) + q.row(2);  // outside of its own rim
+  q.row(0) = q.row(1) + q.row(2);  // outside its own link
   CHECK_FALSE(proven(fan(6, true), q));
   q = around(6, 1);
   CHECK_FALSE(proven({{0, 1, 2}, {0, 3, 4}}, q));             // two fans
@@ -106,7 +106,7 @@ TEST_CASE("stars: flat folds, collapsed triangles and what is no single fan are 
   CHECK_FALSE(proven(fan(64, true), around(64, 1)));  // more than the proof takes
 }
 
-TEST_CASE("stars: what is proven free has no pair that intersects") {
+TEST_CASE("stars: proven stars have no intersecting pair") {
   std::mt19937 random(2);
   int free = 0, meeting = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -129,7 +129,7 @@ TEST_CASE("stars: what is proven free has no pair that intersects") {
   CHECK(meeting > 5000);
 }
 
-TEST_CASE("stars: only those of which a vertex moved are asked for") {
+TEST_CASE("stars: only stars with a moved vertex are tested") {
   Positions q = around(6, 1);
   const Stars stars(fan(6, true), 7);
   const std::vector<unsigned char> all = find_free(stars, q, {});
@@ -140,7 +140,7 @@ TEST_CASE("stars: only those of which a vertex moved are asked for") {
   CHECK(find_free(stars, q, moved) == std::vector<unsigned char>{1, 1, 1, 0, 0, 0, 1});
 }
 
-TEST_CASE("stars: many of several shapes at once are proven as each by itself") {
+TEST_CASE("stars: blocks of several shapes give the results of single stars") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> number(-1, 1);
   CornerRows all;

@@ -86,8 +86,8 @@ TEST_CASE("triangles_intersect: triangles without area") {
   CHECK(intersect(first, second, points({a, b, c, on, on, on})));                 // point on face
   CHECK_FALSE(intersect(first, second, points({a, b, c, above, above, above})));  // point beside
   CHECK(intersect(first, {3, 3, 4}, points({a, b, c, below, above})));            // repeated corner
-  CHECK_FALSE(intersect(first, {0, 0, 3}, points({a, b, c, above})));             // spoke from a shared vertex
-  CHECK(intersect(first, {0, 0, 3}, points({a, b, c, on})));                      // spoke within the face
+  CHECK_FALSE(intersect(first, {0, 0, 3}, points({a, b, c, above})));             // edge from a shared vertex
+  CHECK(intersect(first, {0, 0, 3}, points({a, b, c, on})));                      // edge in the face
   CHECK_FALSE(intersect(first, {0, 0, 1}, points({a, b, c})));                    // the edge itself
   CHECK_FALSE(intersect(first, {0, 0, 0}, points({a, b, c})));                    // the vertex itself
   CHECK(intersect({0, 1, 2}, {0, 3, 4}, points({a, {-2, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 1}})));

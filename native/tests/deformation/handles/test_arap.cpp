@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stiv/deformation/arap.hpp"
+#include "stiv/deformation/handles.hpp"
 
 #include <Eigen/Geometry>
 
 #include "deformation/handle_scenes.hpp"
 #include "deformation/handles/handle_map.hpp"
 #include "deformation/handles/mesh_laplacian.hpp"
-#include "stiv/deformation/composition.hpp"
+#include "stiv/deformation/combination.hpp"
 
 using namespace stiv;
 using namespace stiv::testing;

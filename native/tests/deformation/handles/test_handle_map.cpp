@@ -24,7 +24,7 @@ WeightMatrix twice_unit(Index count) {
 
 }  // namespace
 
-TEST_CASE("handle map: kept in full or solved for, it is the same") {
+TEST_CASE("handle map: the stored map equals the solved one") {
   for (const bool hard : {false, true}) {
     const HandleDefinition definition = sheet_with_handles(9, hard, EdgeWeights::uniform);
     const HandleMap full = map_of(definition, {}), solved = map_of(definition, {0, 0, 32});
@@ -33,7 +33,7 @@ TEST_CASE("handle map: kept in full or solved for, it is the same") {
     CHECK((full.follow(d) - solved.follow(d)).norm() < 1e-10 * full.follow(d).norm());
     const SparseField g = random_field(n, 3, 2);
     CHECK((dense(full.pull_back(g), m) - dense(solved.pull_back(g), m)).norm() < 1e-10);
-    // With more probes than controls nothing is left out.
+    // With more probes than controls the approximation is exact.
     MetricOptions options;
     options.weights = Eigen::VectorXd::LinSpaced(m, 0, 2);
     const SparseField covector = random_field(m, 1, 3);
@@ -49,7 +49,7 @@ TEST_CASE("handle map: kept in full or solved for, it is the same") {
   }
 }
 
-TEST_CASE("handle map: of many handles side by side the part of the inverse at their border is enough") {
+TEST_CASE("handle map: adjacent handles need the columns of the inverse at their boundary only") {
   constexpr Index side = 17;
   for (const bool hard : {false, true}) {
     HandleDefinition definition = sheet_with_handles(side, hard, EdgeWeights::uniform);
@@ -61,8 +61,8 @@ TEST_CASE("handle map: of many handles side by side the part of the inverse at t
     const HandleMap solved = map_of(definition, {0, 0, 32});
     const double entries = static_cast<double>(m) * solved.vertex_count();
     const HandleMap kept = map_of(definition, {entries - 1, 0, 32});
-    CHECK(kept.keeps_answers());
-    CHECK_FALSE(solved.keeps_answers());
+    CHECK(kept.has_cached_columns());
+    CHECK_FALSE(solved.has_cached_columns());
     for (unsigned seed = 0; seed < 5; ++seed) {
       const SparseField g = random_field(kept.vertex_count(), 3, seed);
       CHECK((dense(kept.pull_back(g), m) - dense(solved.pull_back(g), m)).norm() < 1e-10);
@@ -70,7 +70,7 @@ TEST_CASE("handle map: of many handles side by side the part of the inverse at t
   }
 }
 
-TEST_CASE("handle map: many covectors at once have the bits that each has alone, with any number of threads") {
+TEST_CASE("handle map: many covectors give the bits of single ones, for any number of threads") {
   for (const bool hard : {false, true}) {
     const HandleDefinition definition = sheet_with_handles(9, hard, EdgeWeights::uniform);
     std::vector<SparseField> fields;
@@ -97,19 +97,19 @@ TEST_CASE("handle map: many covectors at once have the bits that each has alone,
   }
 }
 
-TEST_CASE("handle map: the answer to a load is the least of its energy") {
+TEST_CASE("handle map: the solution of a load minimises its energy") {
   const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
   const Surface mesh = checked_mesh(definition);
   const SymmetricMatrix stiffness = mesh_laplacian(edge_weights(mesh, definition.rest, definition.edge_weights));
   const HandleMap map(definition, mesh, stiffness);
-  const Positions load = random_positions(map.vertex_count(), 4), u = map.answer(load);
+  const Positions load = random_positions(map.vertex_count(), 4), u = map.solve(load);
   Positions residual = stiffness * u - load;
   for (std::size_t k = 0; k < definition.handles.size(); ++k)
     residual.row(definition.handles[k]) += definition.pull[static_cast<Index>(k)] * u.row(definition.handles[k]);
   for (const Index vertex : map.partition().free) CHECK(residual.row(vertex).norm() < 1e-10);
 }
 
-TEST_CASE("low-rank metric: a spectrum that falls is known by few probes") {
+TEST_CASE("low-rank metric: few probes determine a decaying spectrum") {
   constexpr Index count = 200;
   const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(count, count, [](Eigen::Index row, Eigen::Index column) {
     return std::sin(1.7 * static_cast<double>(row * count + column) * static_cast<double>(row + 1));
@@ -126,7 +126,7 @@ TEST_CASE("low-rank metric: a spectrum that falls is known by few probes") {
   CHECK((a - dense(found->apply_inverse(Controls(), g), count)).norm() < 0.1 * a.norm());
 }
 
-TEST_CASE("sparse factor: sixteen right sides have the bits of three, and solve the equations") {
+TEST_CASE("sparse factor: sixteen right-hand sides have the bits of three, and solve the system") {
   SymmetricMatrix matrix(50, 50);
   std::vector<Eigen::Triplet<double, Index>> entries;
   for (Index k = 0; k < 50; ++k) {
@@ -145,5 +145,5 @@ TEST_CASE("sparse factor: sixteen right sides have the bits of three, and solve 
   CHECK((matrix * x - three).norm() < 1e-12);
   CHECK(factor.solve(sixteen).middleCols<3>(5) == x);
   matrix.coeffRef(20, 20) = -1;
-  CHECK_THROWS_WITH_AS(SparseFactor(matrix, "test"), doctest::Contains("test: the equations"), InputError);
+  CHECK_THROWS_WITH_AS(SparseFactor(matrix, "test"), doctest::Contains("test: the system"), InputError);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/handle_scenes.hpp"
-#include "stiv/deformation/composition.hpp"
-#include "stiv/deformation/laplacian.hpp"
+#include "stiv/deformation/combination.hpp"
+#include "stiv/deformation/handles.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -15,7 +15,7 @@ void for_all_kinds(const std::function<void(const HandleDefinition&)>& check) {
       check(sheet_with_handles(6, hard, weights));
 }
 
-/// Every vertex of a mesh, and one between each two that follow each other.
+/// Every vertex of a mesh, and one between each two consecutive ones.
 std::shared_ptr<const LinearDeformation> refinement(Index count) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   for (Index row = 0; row < 2 * count - 1; ++row) {
@@ -50,7 +50,7 @@ TEST_CASE("laplacian: derivatives and metric") {
   });
 }
 
-TEST_CASE("laplacian: nothing moves at rest, and what is held never does") {
+TEST_CASE("laplacian: the rest surface is exact, and fixed vertices never move") {
   for_all_kinds([](const HandleDefinition& definition) {
     const auto laplacian = make_laplacian(definition);
     CHECK(laplacian->surface(moved_handles(definition, 0)) == definition.rest);
@@ -58,12 +58,12 @@ TEST_CASE("laplacian: nothing moves at rest, and what is held never does") {
     const Positions q = laplacian->surface(p);
     for (const Index vertex : definition.fixed) CHECK(q.row(vertex) == definition.rest.row(vertex));
     for (Index vertex = 36; vertex < 39; ++vertex) CHECK(q.row(vertex) == definition.rest.row(vertex));
-    for (Index k = 0; k + 1 < p.rows(); ++k)  // nothing holds the last one, which is in no triangle
+    for (Index k = 0; k + 1 < p.rows(); ++k)  // except the last one, which is in no triangle
       CHECK((q.row(definition.handles[static_cast<std::size_t>(k)]) == p.row(k)) == (definition.pull.size() == 0));
   });
 }
 
-TEST_CASE("laplacian: the surface is where the sum of squares is least") {
+TEST_CASE("laplacian: the surface minimises the sum of squares") {
   for_all_kinds([](const HandleDefinition& definition) {
     if (definition.edge_weights == EdgeWeights::cotangent || definition.pull.size() == 0) return;
     const auto neighbours = [&](Index vertex) {
@@ -103,7 +103,7 @@ TEST_CASE("laplacian: the surface is where the sum of squares is least") {
   });
 }
 
-TEST_CASE("laplacian: a linear deformation after it") {
+TEST_CASE("laplacian: followed by a linear deformation") {
   for_all_kinds([](const HandleDefinition& definition) {
     const Controls p = moved_handles(definition, 1);
     const auto outer = refinement(static_cast<Index>(definition.rest.rows()));
@@ -119,7 +119,7 @@ TEST_CASE("laplacian: a linear deformation after it") {
   CHECK_THROWS_WITH_AS(make_composition(refinement(7), laplacian), doctest::Contains("7 controls"), InputError);
 }
 
-TEST_CASE("laplacian: slivers and triangles without area have cotangents too") {
+TEST_CASE("laplacian: slivers and triangles without area have finite weights") {
   HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
   definition.rest.row(8) = definition.rest.row(9);
   definition.rest.row(14) = (definition.rest.row(13) + definition.rest.row(15)) / 2;
@@ -129,7 +129,7 @@ TEST_CASE("laplacian: slivers and triangles without area have cotangents too") {
   CHECK((q - definition.rest).cwiseAbs().maxCoeff() < 10);
 }
 
-TEST_CASE("laplacian: scale does not matter") {
+TEST_CASE("laplacian: independent of scale") {
   for_all_kinds([](const HandleDefinition& definition) {
     const Positions q = make_laplacian(definition)->surface(moved_handles(definition, 1));
     HandleDefinition small = definition;
@@ -139,7 +139,7 @@ TEST_CASE("laplacian: scale does not matter") {
   });
 }
 
-TEST_CASE("laplacian: bad input is named") {
+TEST_CASE("laplacian: invalid input is named") {
   const HandleDefinition good = sheet_with_handles(6, false, EdgeWeights::uniform);
   const auto refused = [](const HandleDefinition& definition, const char* message) {
     CHECK_THROWS_WITH_AS(make_laplacian(definition), doctest::Contains(message), InputError);
@@ -158,7 +158,7 @@ TEST_CASE("laplacian: bad input is named") {
   refused(bad, "handle 2: its pull");
   bad = good;
   bad.pull.conservativeResize(2);
-  refused(bad, "pulls of 2");
+  refused(bad, "but 2 pulls");
   bad = good;
   bad.rest(4, 1) = NAN;
   refused(bad, "rest position of vertex 4");

@@ -22,7 +22,7 @@ TEST_CASE("rotation fit: the rotation of a product of rotation and stretch") {
   CHECK(fit_rotation(Eigen::Matrix3d::Zero()).rotation == Eigen::Matrix3d::Identity());
 }
 
-TEST_CASE("rotation fit: always a rotation, and none is nearer") {
+TEST_CASE("rotation fit: always a rotation, and the closest one") {
   for (unsigned seed = 1; seed < 20; ++seed) {
     const Eigen::Matrix3d matrix = random_matrix(seed), rotation = fit_rotation(matrix).rotation;
     CHECK((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-12);
@@ -34,7 +34,8 @@ TEST_CASE("rotation fit: always a rotation, and none is nearer") {
   }
 }
 
-TEST_CASE("rotation fit: Newton's method finds what singular values find, from any rotation, mirrored and flat too") {
+TEST_CASE(
+    "rotation fit: Newton's method equals singular values from any first guess, also for mirrored and flat matrices") {
   for (unsigned seed = 1; seed < 60; ++seed) {
     Eigen::Matrix3d matrix = random_matrix(seed);
     if (seed % 3 == 0) matrix.col(2) = matrix.col(0) - 0.4 * matrix.col(1);
@@ -48,7 +49,7 @@ TEST_CASE("rotation fit: Newton's method finds what singular values find, from a
   }
 }
 
-TEST_CASE("rotation fit: the response against differences, mirrored and flat matrices too") {
+TEST_CASE("rotation fit: the response against finite differences, also for mirrored and flat matrices") {
   constexpr double step = 1e-6;
   for (unsigned seed = 1; seed < 20; ++seed) {
     Eigen::Matrix3d matrix = random_matrix(seed);

@@ -12,7 +12,7 @@ namespace {
 const LatticeInterpolation kinds[] = {LatticeInterpolation::linear, LatticeInterpolation::cardinal,
                                       LatticeInterpolation::catmull_rom, LatticeInterpolation::bspline};
 
-/// Points 1 apart from the origin on.
+/// Points of spacing 1 from the origin.
 LatticeDefinition unit_lattice(std::array<Index, 3> resolution, LatticeInterpolation kind) {
   LatticeDefinition lattice{
       resolution, {kind, kind, kind}, Positions(resolution[0] * resolution[1] * resolution[2], 3), {}};
@@ -25,7 +25,7 @@ LatticeDefinition unit_lattice(std::array<Index, 3> resolution, LatticeInterpola
 
 }  // namespace
 
-TEST_CASE("lattice: weights add up to 1, inside and far outside") {
+TEST_CASE("lattice: weights sum to 1, inside and far outside") {
   Positions places = 3 * random_positions(20, 1);
   places.row(19) << 1e12, -1e12, 1e300;
   for (const LatticeInterpolation kind : kinds)
@@ -49,7 +49,7 @@ TEST_CASE("lattice: at a point, B-splines weigh neighbours (1, 4, 1) / 6, the ot
   }
 }
 
-TEST_CASE("lattice: influence scales rows, twice where the lattice has weights of its own") {
+TEST_CASE("lattice: influence scales rows, twice if the lattice has point weights") {
   LatticeDefinition lattice = unit_lattice({3, 3, 3}, LatticeInterpolation::bspline);
   const Positions places = random_positions(6, 2);
   const Eigen::MatrixXd plain = lattice_weights(lattice, places);
@@ -83,7 +83,7 @@ TEST_CASE("lattice: the deformation is that of its weights, the same bits for an
     }
 }
 
-TEST_CASE("lattice: bad input is named") {
+TEST_CASE("lattice: invalid input is named") {
   LatticeDefinition lattice = unit_lattice({3, 3, 3}, LatticeInterpolation::bspline);
   const Positions places = random_positions(6, 2);
   CHECK_THROWS_WITH_AS(lattice_weights(lattice, places, Eigen::VectorXd::Ones(5)), doctest::Contains("5 values for 6"),

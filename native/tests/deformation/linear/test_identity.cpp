@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/finite_differences.hpp"
-#include "stiv/deformation/identity.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -19,7 +19,7 @@ TEST_CASE("identity: derivatives and metric") {
     check_metric(*identity, p, random_axis_weights(7, 3, turned), Eigen::VectorXd::Zero(21));
 }
 
-TEST_CASE("identity: what is sparse stays sparse") {
+TEST_CASE("identity: the metric keeps covectors sparse") {
   const auto identity = make_identity(1000);
   const SparseField g{{3, 500}, {Vector3(1, 2, 3), Vector3(4, 5, 6)}};
   const Controls p = Controls::Zero(1000, 3);
@@ -27,7 +27,7 @@ TEST_CASE("identity: what is sparse stays sparse") {
   CHECK(identity->metric({})->apply_inverse(p, g).index == g.index);
 }
 
-TEST_CASE("identity: bad input is named") {
+TEST_CASE("identity: invalid input is named") {
   const auto identity = make_identity(4);
   CHECK_THROWS_WITH_AS(identity->surface(Controls::Zero(5, 3)), doctest::Contains("5 rows"), InputError);
   MetricOptions options;
@@ -42,7 +42,7 @@ TEST_CASE("identity: bad input is named") {
   options.weight_axes[3] *= 2;
   CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("control 3: weight axes"), InputError);
   options.weight_axes.resize(2);
-  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("weight axes for 2 of 4"), InputError);
+  CHECK_THROWS_WITH_AS(identity->metric(options), doctest::Contains("2 weight axes for 4"), InputError);
   CHECK_THROWS_WITH_AS(identity->metric({0.0, {}}), doctest::Contains("smoothness"), InputError);
   CHECK_THROWS_AS(make_identity(-1), InputError);
   CHECK(make_identity(0)->surface(Controls(0, 3)).rows() == 0);

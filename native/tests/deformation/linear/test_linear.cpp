@@ -8,7 +8,7 @@ using namespace stiv::testing;
 
 namespace {
 
-/// Each vertex hangs on the control of its own number (modulo m) and on the three that follow.
+/// Each vertex depends on the control of its own number (modulo m) and the next three.
 WeightMatrix banded_weights(Index n, Index m) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   const Positions values = random_positions(4 * n, 5);
@@ -77,7 +77,7 @@ TEST_CASE("linear: a sparse covector over many controls") {
   CHECK(metric->apply_inverse(p, part).index.size() == 20);
 }
 
-TEST_CASE("linear: controls that move nothing stay put") {
+TEST_CASE("linear: controls without vertices do not move") {
   WeightMatrix matrix(2, 3);
   matrix.insert(0, 0) = 1;
   matrix.insert(1, 2) = 0.5;
@@ -95,7 +95,7 @@ TEST_CASE("linear: everything pinned") {
   CHECK(metric->apply_inverse(Controls::Zero(5, 3), random_field(5, 1, 1)).index.empty());
 }
 
-TEST_CASE("linear: bad input is named") {
+TEST_CASE("linear: invalid input is named") {
   WeightMatrix matrix = banded_weights(6, 4);
   CHECK_THROWS_WITH_AS(make_linear(matrix, Positions::Zero(5, 3)), doctest::Contains("5 rows"), InputError);
   Positions offset = Positions::Zero(6, 3);

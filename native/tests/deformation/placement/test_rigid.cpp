@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "deformation/finite_differences.hpp"
-#include "stiv/deformation/rigid.hpp"
+#include "stiv/deformation/placement.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -21,7 +21,7 @@ const double angles[] = {0, 1e-6, 0.2, 1, std::numbers::pi, 2 * std::numbers::pi
 
 }  // namespace
 
-TEST_CASE("rigid: at rest nothing moves, and distances are kept") {
+TEST_CASE("rigid: the rest surface is exact, and distances are preserved") {
   const Positions rest = random_positions(9, 1);
   const auto rigid = make_rigid(rest);
   CHECK((rigid->surface(rigid_rest_controls(rest)) - rest).norm() < 1e-14);
@@ -66,7 +66,7 @@ TEST_CASE("rigid: points on a line and single points have a finite metric") {
   }
 }
 
-TEST_CASE("rigid: bad input is named") {
+TEST_CASE("rigid: invalid input is named") {
   Positions rest = random_positions(3, 1);
   rest(1, 2) = NAN;
   CHECK_THROWS_WITH_AS(make_rigid(rest), doctest::Contains("vertex 1"), InputError);

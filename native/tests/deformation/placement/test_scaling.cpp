@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/finite_differences.hpp"
-#include "stiv/deformation/scaling.hpp"
+#include "stiv/deformation/placement.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -41,7 +41,7 @@ TEST_CASE("scaling: derivatives and metric") {
     check_metric(*scaling, p, random_axis_weights(2, seed, seed % 2 == 1), 0.1 * diagonal, DampingAxes::world);
 }
 
-TEST_CASE("scaling: bad input is named") {
+TEST_CASE("scaling: invalid input is named") {
   const Positions rest = random_positions(3, 1);
   CHECK_THROWS_WITH_AS(make_scaling(rest, 2 * oblique_axes()), doctest::Contains("not a rotation"), InputError);
   CHECK_THROWS_WITH_AS(make_scaling(rest, -oblique_axes()), doctest::Contains("not a rotation"), InputError);

@@ -8,7 +8,7 @@ using namespace stiv::testing;
 
 namespace {
 
-/// A quad, a triangle beside it, and a chain of two loose edges from the triangle's tip.
+/// A quad, an adjacent triangle, and a chain of two loose edges from the triangle's apex.
 Cage mixed_cage() {
   Cage cage;
   cage.vertex_count = 7;
@@ -32,7 +32,7 @@ std::vector<SubdivisionOptions> all_options() {
 
 }  // namespace
 
-TEST_CASE("subdivision: weights add up to 1 and count as Blender counts") {
+TEST_CASE("subdivision: weights sum to 1, with Blender's number of vertices") {
   for (const SubdivisionOptions& options : all_options()) {
     const WeightMatrix weights = subdivision_weights(mixed_cage(), options);
     const Index cuts = 1 << options.levels, half = cuts / 2;
@@ -42,7 +42,7 @@ TEST_CASE("subdivision: weights add up to 1 and count as Blender counts") {
   }
 }
 
-TEST_CASE("subdivision: Simple keeps vertices, and halves edges") {
+TEST_CASE("subdivision: Simple preserves vertices and halves edges") {
   const WeightMatrix weights = subdivision_weights(mixed_cage(), {1, true, 3, true, BoundarySmoothing::all});
   const Eigen::MatrixXd dense_weights = weights;
   CHECK((dense_weights.topRows(7) - Eigen::MatrixXd::Identity(7, 7)).norm() < 1e-12);
@@ -51,7 +51,7 @@ TEST_CASE("subdivision: Simple keeps vertices, and halves edges") {
     for (Index end = 0; end < 2; ++end) CHECK(dense_weights(7 + edge, cage.edges(edge, end)) == doctest::Approx(0.5));
 }
 
-TEST_CASE("subdivision: a chain of wires is a cubic B-spline, straight at its ends") {
+TEST_CASE("subdivision: a chain of loose edges is a cubic B-spline, linear at its ends") {
   Cage chain;
   chain.vertex_count = 3;
   chain.edges.resize(2, 2);
@@ -75,7 +75,7 @@ TEST_CASE("subdivision: faces are oriented quads over all vertices of faces") {
   CHECK(std::adjacent_find(directed.begin(), directed.end()) == directed.end());
 }
 
-TEST_CASE("subdivision: Loop cuts triangles into triangles, with weights that add up to 1") {
+TEST_CASE("subdivision: Loop's scheme gives triangles, with weights that sum to 1") {
   Cage cage = mixed_cage();
   cage.face_corners = {0, 1, 3, 1, 2, 3, 1, 4, 2};
   cage.face_starts = {0, 3, 6, 9};
@@ -102,7 +102,7 @@ TEST_CASE("subdivision: Loop cuts triangles into triangles, with weights that ad
                        InputError);
 }
 
-TEST_CASE("subdivision: bad cages are named") {
+TEST_CASE("subdivision: invalid cages are named") {
   const SubdivisionOptions options;
   Cage cage = mixed_cage();
   cage.face_corners[5] = 7;

@@ -84,12 +84,12 @@ def with_current_triangulation(assembly: Assembly, flips: Sequence[CurrentTriang
 
 def add_triangles(assembly: Assembly, flips: Sequence[FaceTriangles]) -> Assembly:
     """The assembly with additional triangles."""
-    meshes, recut_faces = list(assembly.meshes), []
+    meshes, flip_faces = list(assembly.meshes), []
     for flip in flips:
         meshes[flip.mesh] = _extend(meshes[flip.mesh], flip)
         place = assembly.vertices(flip.mesh)
-        recut_faces += [np.unique(place[corners]).tolist() for corners in _corners(meshes[flip.mesh], flip)]
-    return _retriangulated(assembly, meshes, recut_faces)
+        flip_faces += [np.unique(place[corners]).tolist() for corners in _corners(meshes[flip.mesh], flip)]
+    return _retriangulated(assembly, meshes, flip_faces)
 
 
 def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
@@ -144,15 +144,13 @@ def _drop_intersecting(flip: FaceTriangles, intersecting: Collection[Element], a
     )
 
 
-def _retriangulated(
-    assembly: Assembly, meshes: Sequence[VisibleMesh], recut_faces: Sequence[Sequence[int]]
-) -> Assembly:
+def _retriangulated(assembly: Assembly, meshes: Sequence[VisibleMesh], flip_faces: Sequence[Sequence[int]]) -> Assembly:
     old = assembly.surface
     triangles = assembly.renumbered_triangles(meshes)
     ignored = [(int(a), int(b)) for a, b in old.ignored]
     surface = stiv.Surface(
         triangles, old.vertex_count, old.loose_edges, old.vertex_body, old.bodies, ignored,
-        [*old.recut_faces, *recut_faces],
+        [*old.flip_faces, *flip_faces],
     )  # fmt: skip
     return replace(assembly, meshes=tuple(meshes), surface=surface)
 

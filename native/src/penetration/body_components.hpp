@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "stiv/surface.hpp"
+
+namespace stiv {
+
+/// The triangles of a body, ascending, divided by whether their connected component is closed.
+struct BodyComponents {
+  std::vector<Index> closed;  ///< each edge has as many triangles in one direction as in the other
+  std::vector<Index> open;
+};
+
+BodyComponents body_components(const Surface& surface, Index body);
+
+}  // namespace stiv

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "repair/contraction_strategies.hpp"
+
+namespace stiv {
+
+/// Shrinks connected components uniformly toward their means, smaller ones first, until each intersects no other. If no
+/// factor achieves that, it takes the one with the fewest pairs. Intersections within a component remain.
+/// @param options uses max_steps, for each component, and storage
+Contracted shrink_components(const CagedSurface& caged, const Movable& movable, const ContractionOptions& options,
+                             const Controls& start, Execution& execution);
+
+}  // namespace stiv
