@@ -6,14 +6,10 @@
 #include <pybind11/stl.h>
 
 #include "module.hpp"
-#include "stiv/deformation/arap.hpp"
-#include "stiv/deformation/composition.hpp"
-#include "stiv/deformation/concatenation.hpp"
-#include "stiv/deformation/identity.hpp"
-#include "stiv/deformation/laplacian.hpp"
+#include "stiv/deformation/combination.hpp"
+#include "stiv/deformation/handles.hpp"
 #include "stiv/deformation/lattice.hpp"
-#include "stiv/deformation/rigid.hpp"
-#include "stiv/deformation/scaling.hpp"
+#include "stiv/deformation/placement.hpp"
 #include "stiv/deformation/subdivision.hpp"
 #include "stiv/error.hpp"
 

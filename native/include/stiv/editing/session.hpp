@@ -74,7 +74,7 @@ class EditSession {
   const Positions& surface() const;  ///< f(accepted), (N, 3)
   double separation() const;         ///< h in force
   /// Of the accepted surface; builds a tree at the first call.
-  std::optional<NearestTriangles> least_distance(bool within = false);
+  std::optional<NearestTriangles> least_distance(DistancePairs pairs = DistancePairs::between_bodies);
   const Surface& topology() const;
 
  private:
