@@ -19,7 +19,7 @@ struct CagedSurface {
 };
 
 /// A surface that is its own cage: all vertices are controls.
-CagedSurface without_cage(std::shared_ptr<const Surface> surface);
+CagedSurface without_cage(const std::shared_ptr<const Surface>& surface);
 
 /// The factors of a contraction that depend on the shape at the start.
 struct ContractionSystem {
