@@ -125,7 +125,7 @@ def test_empty_cage() -> None:
         (stiv.Cage.of_faces([(0, 1, 2, 1)]), "face 0: vertex 1 is a corner twice"),
         (stiv.Cage(3, [0, 1, 3], [0, 3]), "corners, row 2: index 3"),
         (stiv.Cage(3, [0, 1, 2], [0, 4]), "face_starts"),
-        (stiv.Cage(3, [0, 1, 2], [1, 3]), "first corners of the faces"),
+        (stiv.Cage(3, [0, 1, 2], [1, 3]), "starts of the faces"),
         (stiv.Cage.of_faces([(0, 1, 2)], edges=[(0, 1), (1, 2)]), "face 0: its edge between vertices 2 and 0"),
         (stiv.Cage.of_faces([(0, 1, 2)], edges=[(0, 1), (1, 2), (2, 2)]), "edge 2: both ends"),
         (stiv.Cage.of_faces([(0, 1, 2)], vertex_crease=[0, 2, 0]), "vertex 1: crease"),
