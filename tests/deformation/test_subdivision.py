@@ -130,7 +130,7 @@ def test_empty_cage() -> None:
         (stiv.Cage.of_faces([(0, 1, 2)], edges=[(0, 1), (1, 2), (2, 2)]), "edge 2: both ends"),
         (stiv.Cage.of_faces([(0, 1, 2)], vertex_crease=[0, 2, 0]), "vertex 1: crease"),
         (stiv.Cage.of_faces([(0, 1, 2)], vertex_crease=[0, 2]), "2 creases for 3"),
-        (stiv.Cage.of_faces([(0, 1, 2)], edge_crease=[0, 0, 0]), "give the edges too"),
+        (stiv.Cage.of_faces([(0, 1, 2)], edge_crease=[0, 0, 0]), "`edges` is required"),
     ],
 )
 def test_bad_cages_are_named(cage: stiv.Cage, message: str) -> None:
