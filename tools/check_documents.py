@@ -19,7 +19,6 @@ WORDS = 25  # in a sentence
 SOURCES = (".cpp", ".hpp", ".py", ".md")
 CODE = (".cpp", ".hpp", ".py", ".pyi", ".js", ".sh", ".cmake", ".toml", ".yml", "CMakeLists.txt", "Makefile", ".ci/run")
 BETWEEN = r"(?:[\s_\"#/*]+)"  # between the words of a name, or of a comment or text that continues on the next line
-PENDING = ("native/",)  # folders that are not rewritten yet: only --code lists their words
 EXEMPT = ("tools/check_documents.py", "tests/packaging/test_documents.py")  # they quote the words
 REFERENCE = re.compile(r"(mathematics|experiments)\.md\)?,\s*(?://+\s*)?(?:\"([^\"]+)\"|Eq\. (\d))")
 
@@ -165,11 +164,6 @@ def words_in_code(names: list[str]) -> list[tuple[Path, Finding]]:
     return found
 
 
-def in_pending(path: Path) -> bool:
-    """Tell whether a file is in a folder that is not rewritten yet."""
-    return path.relative_to(ROOT).as_posix().startswith(PENDING)
-
-
 def main(arguments: list[str]) -> int:
     """Check everything, or list the words in code; the exit code."""
     if arguments[:1] == ["--code"]:
@@ -177,7 +171,7 @@ def main(arguments: list[str]) -> int:
     else:
         rules = dialect(DIALECT.read_text(encoding="utf-8"), "documents")
         findings = [(path, finding) for path in files(".md") for finding in of_document(path, rules)]
-        findings += [found for found in words_in_code([""]) if not in_pending(found[0])]
+        findings += words_in_code([""])
         for path in files(*SOURCES):
             text = path.read_text(encoding="utf-8")
             findings += [(path, finding) for finding in broken_references(text, ROOT / "docs")]

@@ -48,7 +48,7 @@ TEST_CASE("surface: which bodies meet") {
   CHECK_FALSE(surface.bodies_meet(0, 3));
 }
 
-TEST_CASE("surface: vertices of one flip face are told, whichever faces each of them has besides") {
+TEST_CASE("surface: vertices of one flip face are found, whatever other faces they have") {
   SurfaceDefinition definition = two_triangles();
   definition.flip_faces = {{0, 1, 2}, {2, 1, 5, 3}};
   const Surface surface(definition);

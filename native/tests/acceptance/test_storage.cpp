@@ -83,7 +83,7 @@ TEST_CASE("as_stored: idempotent bit for bit in any frame at any magnitude") {
   CHECK(plain_trips_that_change > 1000);
 }
 
-TEST_CASE("as_stored: differs from what is read back by rounding of doubles alone") {
+TEST_CASE("as_stored: differs from values read back only by rounding of doubles") {
   Sampler sample(5);
   for (int round = 0; round < 1000; ++round) {
     const StorageFrame frame{0, 20, sample.frame()};

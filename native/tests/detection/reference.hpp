@@ -73,8 +73,8 @@ struct Answer {
   Real least = std::numeric_limits<Real>::infinity();  ///< least distance sampled
 };
 
-/// First time within `threshold` by bisection that leaves out intervals in which the speed bound rules it out; what is
-/// found is a true contact, and nothing is missed that lasts longer than `resolution`.
+/// First time within `threshold` by bisection that skips intervals in which the speed bound rules it out; the
+/// time is a true contact, and nothing is missed that lasts longer than `resolution`.
 inline void search(EventKind kind, const PairMotion& motion, Real threshold, Real speed, Real t0, Real t1,
                    Real resolution, Answer& answer) {
   if (answer.time <= t0) return;

@@ -70,7 +70,7 @@ TEST_CASE("detector: a loose vertex that falls through a face is one event") {
   }
 }
 
-TEST_CASE("detector: trees and grid find what brute force finds, bit by bit, for any number of threads") {
+TEST_CASE("detector: trees and grid find exactly the events of brute force, for any number of threads") {
   for (const unsigned seed : {1U, 2U, 3U})
     for (const double separation : {0.0, 0.01}) {
       const MovingScene scene = stirred_sheets(12, 3, 0.08, seed);
@@ -209,7 +209,7 @@ TEST_CASE("detector: empty surfaces and bad input") {
   CHECK_THROWS_WITH_AS(detector.find(scene.start, scene.end, {}, execution), doctest::Contains("vertex 2"), InputError);
 }
 
-TEST_CASE("detector: a motion that brings too many pairs near each other is told, a part of it is not") {
+TEST_CASE("detector: a motion with too many close pairs is reported, a fraction of it is not") {
   MovingScene scene = stirred_sheets(45, 1, 0, 10);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> far(-10, 10);

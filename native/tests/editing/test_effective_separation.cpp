@@ -16,7 +16,7 @@ double unit32(float x) { return std::nextafter(x, std::numeric_limits<float>::in
 
 }  // namespace
 
-TEST_CASE("separation: automatic is 1e-4 of the diagonal, raised to what single precision holds") {
+TEST_CASE("separation: automatic is 1e-4 of the diagonal, but not below single precision") {
   CHECK(effective_separation(0, {10, 5}, 1e-6) == doctest::Approx(1e-3));
   CHECK(effective_separation(0, {10, 5}, 2e-3) == 2e-3);
 }
@@ -40,7 +40,7 @@ TEST_CASE("separation: one that cannot be kept is refused with the least possibl
   CHECK_THROWS_AS(effective_separation(std::nan(""), {10, 5}, 1e-6), InputError);
 }
 
-TEST_CASE("separation: only what may move counts for the extent") {
+TEST_CASE("separation: only movable vertices count for the extent") {
   SurfaceDefinition definition;
   definition.vertex_count = 4;
   definition.vertex_body = {0, 0, 1, 1};

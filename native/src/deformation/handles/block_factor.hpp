@@ -29,7 +29,7 @@ class BlockPattern {
   std::vector<std::size_t> factor_starts_;  // of the columns of L, without diagonal
 };
 
-/// L D L' of such a matrix: nine times fewer indices are read than by SparseFactor. [Davis, Direct Methods, 4.8]
+/// L D L' of a block matrix: reads nine times fewer indices than SparseFactor. [Davis, Direct Methods, 4.8]
 class BlockFactor {
  public:
   using Block = Eigen::Matrix3d;

@@ -9,7 +9,7 @@ namespace stiv {
 
 namespace {
 
-/// Radians. The next fit goes on from this one, and turns shrink as positions settle.
+/// Radians. The next fit continues from this one, and turns shrink as positions settle.
 constexpr double settled_turn = 1e-3;
 
 using Edge = SymmetricMatrix::InnerIterator;

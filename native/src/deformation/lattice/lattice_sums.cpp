@@ -15,7 +15,7 @@
 
 namespace stiv {
 
-/// What the sums read and write. Points are x, y, z, 0.
+/// Input and output of the sums. Points are x, y, z, 0.
 struct LatticeProduct {
   const Index* starts;
   const double* weights;

@@ -14,7 +14,7 @@
 
 namespace stiv {
 
-/// What the product reads and writes. Rows of `controls` are x, y, z, 0.
+/// Input and output of the product. Rows of `controls` are x, y, z, 0.
 struct WeightedSums {
   const Index* starts;  ///< of the entries of each row
   const Index* columns;

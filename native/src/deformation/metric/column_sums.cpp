@@ -14,14 +14,14 @@
 
 namespace stiv {
 
-/// What the sums read and write.
+/// Input and output of the sums.
 struct ColumnSums {
   const double* matrix;  ///< columns of `rows` numbers each, a multiple of tile_rows
   std::size_t rows;
   const Index* columns;
   const double* values;  ///< (count, 3)
   std::size_t count;
-  double* sums;  ///< (rows, 3), columns one after the other
+  double* sums;  ///< (rows, 3), by columns
 };
 
 constexpr std::size_t tile_rows = 32;  // four vectors of the widest target; a multiple of those of all others

@@ -15,7 +15,7 @@ using SymmetricMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 using ColumnBlock = Eigen::Matrix<double, Eigen::Dynamic, 16, Eigen::RowMajor>;
 
 /// L D L' of a symmetric positive definite matrix. The factor does not fit into the processor's cache, so all right
-/// sides take part in one pass over it: three cost as much as one, sixteen twice as much. Each column's result has the
+/// sides share one pass over it: three cost as much as one, sixteen twice as much. Each column's result has the
 /// same bits in whatever company it is solved for.
 class SparseFactor {
  public:

@@ -13,7 +13,7 @@ namespace {
 /// Times are reported so much too early, "to account for error in the root finding and response computation". [P4.1]
 constexpr double retreat = 0.01;
 /// Roots count where the primitives are within this fraction above the threshold, besides rounding: within the distance
-/// at which the conservative phase reports, so that no broad phase skips such a pair.
+/// at which the conservative phase reports, so that no broad phase skips these pairs.
 constexpr double tolerance = 1e-3;
 
 using Moving = Bernstein<1, Vector3>;

@@ -99,7 +99,7 @@ TEST_CASE("arap: a rigid motion of all handles is one of the mesh") {
   });
 }
 
-TEST_CASE("arap: what came before does not matter") {
+TEST_CASE("arap: earlier surfaces do not matter") {
   const HandleDefinition definition = sheet_with_handles(6, false, EdgeWeights::cotangent);
   const auto one = make_arap(definition), other = make_arap(definition);
   const Controls p = moved_handles(definition, 0.5);
@@ -107,7 +107,7 @@ TEST_CASE("arap: what came before does not matter") {
   CHECK(one->surface(p) == other->surface(p));
 }
 
-TEST_CASE("arap: rows of the surface are near it, and do not depend on what came before") {
+TEST_CASE("arap: rows of the surface are near it, and do not depend on earlier surfaces") {
   for_all_kinds([](const HandleDefinition& definition) {
     const auto one = make_arap(definition), other = make_arap(definition);
     const Controls p = moved_handles(definition, 0.7);

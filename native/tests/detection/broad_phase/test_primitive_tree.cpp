@@ -109,7 +109,7 @@ TEST_CASE("primitive tree: built again once neighbours are apart, which leaves a
   const std::int64_t fresh = visited(kept.tree.tree()), stale = visited(*kept.unchanged);
   MESSAGE(fresh << " pairs of nodes instead of " << stale << " for " << count << " triangles");
   CHECK(10 * fresh < stale);
-  // To sort so many, which is what building is, takes about as many comparisons of one number each as this; a pair of
+  // Building sorts the faces, which takes about this many comparisons of one number each; a pair of
   // nodes is up to 64 comparisons of boxes.
   CHECK(stale - fresh > 1.0 * count * std::log2(count) / 8);
 }
