@@ -62,7 +62,7 @@ def here(archive: Path) -> None:
     bpy.ops.extensions.package_install_files(filepath=str(archive), repo=REPOSITORY, enable_on_install=True)
     name = f"bl_ext.{REPOSITORY}.{IDENTIFIER}"
     enabled = name in bpy.context.preferences.addons
-    problem = sys.modules[f"{name}.availability"].problem() if enabled else "it was not enabled"
+    problem = sys.modules[f"{name}.native_module"].problem() if enabled else "it was not enabled"
     if problem:
         print(f"{archive}, installed into Blender {bpy.app.version_string}: {problem}", file=sys.stderr)
     sys.stdout.flush()
