@@ -19,7 +19,7 @@ namespace stiv::bindings {
 
 namespace {
 
-/// Python knows no const: what it holds has no method that changes it.
+/// Python has no const, but the objects that it holds have no methods that change them.
 std::shared_ptr<Deformation> shared(const std::shared_ptr<const Deformation>& deformation) {
   return std::const_pointer_cast<Deformation>(deformation);
 }

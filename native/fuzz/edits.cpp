@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Consecutive edits, drags and settling of a small scene: every accepted state is free by the exact test of
-// each pair, every step to it by a detection that keeps nothing, and a call that fails or is cancelled leaves no trace.
+// Consecutive edits, drags and settling of a small scene: every accepted state passes the exact test of each pair,
+// every step to it passes a detection without caches, and a call that fails or is cancelled changes nothing.
 #include <algorithm>
 
 #include "editing/small_scenes.hpp"
@@ -17,7 +17,7 @@ using fuzz::corners;
 
 namespace {
 
-/// May the two triangles interfere at all? As the surface says: bodies that do not meet are not tested.
+/// May the two triangles interfere? Pairs of bodies that the surface excludes are not tested.
 bool tested(const Surface& surface, const Corners& a, const Corners& b) {
   return surface.bodies_meet(surface.body_of(a[0]), surface.body_of(b[0]));
 }
@@ -31,7 +31,7 @@ bool is_free(const Surface& surface, const Positions& q) {
   return true;
 }
 
-/// Fewer controls than vertices: each vertex takes a little of two of them.
+/// Fewer controls than vertices: each vertex is a weighted mean of two of them.
 std::shared_ptr<const Deformation> blended(fuzz::Input& input, const Positions& rest, Index controls) {
   std::vector<Index> starts{0}, columns;
   std::vector<double> values;
@@ -50,14 +50,14 @@ tests::Scene scene_of(fuzz::Input& input) {
       return tests::two_sheets(1 + input.below(3));
     case 1:
       return tests::plate_over_wall(1 + input.below(2));
-    case 2: {  // both sheets by a few controls of weights at random
+    case 2: {  // a few controls with random weights drive both sheets
       tests::Scene scene = tests::two_sheets(1 + input.below(2));
       const Index count = 2 + input.below(4);
       scene.deformation = blended(input, scene.controls, count);
       scene.controls = Controls::Zero(count, 3);
       return scene;
     }
-    default: {  // any mesh at all, degenerate faces and loose edges included
+    default: {  // any mesh, degenerate faces and loose edges included
       tests::Scene scene;
       scene.surface = fuzz::small_surface(input);
       scene.deformation = make_identity(scene.surface->vertex_count());

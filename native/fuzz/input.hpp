@@ -26,7 +26,7 @@ class Input {
     return first;
   }
 
-  /// A whole number in [0, count).
+  /// An integer in [0, count).
   Index below(Index count) { return byte() % count; }
 
   /// A coordinate: usually on a grid of sixteenths, where parallel, coplanar and touching primitives are frequent;

@@ -63,7 +63,7 @@ void check_bodies(const SurfaceDefinition& definition) {
   }
 }
 
-/// Calls `work(smaller, larger)` for the ends of each side of a face and each loose edge, the same ones many times.
+/// Calls `work(smaller, larger)` for the ends of each side of a face and each loose edge, with repetitions.
 template <class Work>
 void for_each_side(const SurfaceDefinition& definition, const Work& work) {
   const auto side = [&](Index a, Index b) {
@@ -74,7 +74,7 @@ void for_each_side(const SurfaceDefinition& definition, const Work& work) {
   for (const auto& edge : definition.loose_edges.rowwise()) side(edge[0], edge[1]);
 }
 
-/// Sorted. Few sides begin at a vertex, so that they are counted into place and sorted vertex by vertex.
+/// The edges, sorted. A counting sort by first vertex leaves few ends to sort for each vertex.
 Edges unique_edges(const SurfaceDefinition& definition) {
   std::vector<std::size_t> start(static_cast<std::size_t>(definition.vertex_count) + 1, 0);
   for_each_side(definition, [&](Index a, Index) { ++start[a]; });
@@ -110,7 +110,7 @@ std::vector<unsigned char> meeting_bodies(const SurfaceDefinition& definition) {
   return meets;
 }
 
-/// Neighbours of all vertices in compressed rows.
+/// Neighbors of all vertices in compressed rows.
 void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, std::vector<Index>& neighbours) {
   start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
   for (Index edge = 0; edge < edges.rows(); ++edge)
@@ -119,7 +119,7 @@ void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, 
   neighbours.resize(static_cast<std::size_t>(2 * edges.rows()));
   std::vector<Index> cursor(start.begin(), start.end() - 1);
   const auto add = [&](Index from, Index to) { neighbours[cursor[from]++] = to; };
-  // Edges come sorted, so the smaller neighbours of a vertex must be entered before its larger ones.
+  // Edges are sorted, so the smaller neighbors of a vertex must be entered before its larger ones.
   for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 1), edges(edge, 0));
   for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
 }
@@ -140,7 +140,7 @@ std::vector<std::vector<Index>> flip_faces_of_vertices(const SurfaceDefinition& 
   return faces;
 }
 
-/// Name of the body of `vertex`, and the place of `vertex` among the vertices of that body.
+/// Name of the body of `vertex`, and the position of `vertex` among that body's vertices.
 std::pair<std::string, Index> place_in_body(const SurfaceDefinition& definition, Index vertex) {
   const Index body = definition.vertex_body[vertex];
   const auto begin = definition.vertex_body.begin();

@@ -20,7 +20,7 @@ namespace {
 /// The processors that this process may use; 0 if unknown.
 int allowed_processors() {
 #if defined(__linux__)
-  // hardware_concurrency counts the whole machine, also in a container or under a job scheduler.
+  // hardware_concurrency counts the whole machine, even in a container or under a job scheduler.
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
 #endif

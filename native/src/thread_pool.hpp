@@ -12,7 +12,7 @@ namespace stiv {
 
 /// The default number of threads: one for each processor that this process may use, at most the environment variable
 /// STIV_THREADS. Processes that share a machine, such as the workers of a batch, set it.
-/// @throws InputError if STIV_THREADS is not a whole number from 1 up
+/// @throws InputError if STIV_THREADS is not a positive integer
 int usable_processors();
 
 /// Threads that help the calling thread, started once and asleep between loops: starting them takes longer than many

@@ -11,7 +11,7 @@ using namespace stiv;
 
 namespace {
 
-/// The variable as long as this lives, then what it was.
+/// Sets the variable for its lifetime, then restores it.
 class Setting {
  public:
   explicit Setting(const char* value) {

@@ -9,7 +9,7 @@ namespace {
 
 const double* data_of(const PositionsView& view) { return view.data(); }
 
-/// The sum over all numbers as a reader sees them that goes from row to row without a gap, each weighted by its place.
+/// The sum of all numbers, each weighted by its position, in the order of a reader that assumes contiguous rows.
 double weighted_sum(const PositionsView& view) {
   double sum = 0;
   for (Index k = 0; k < 3 * view.rows(); ++k) sum += (k + 1) * view.data()[k];

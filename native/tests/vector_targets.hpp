@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// Results of `work()` with each of the vector targets that this machine has, from the least on.
+/// Results of `work()` with each of the vector targets that this machine has, in ascending order.
 template <class Work>
 auto for_each_vector_target(const Work& work) {
   std::vector<decltype(work())> results;

@@ -110,8 +110,9 @@ class ScopedTimer {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Round to nearest, denormals kept, for the length of a scope in this thread: another add-on may have set otherwise,
-/// and every error bound of this library assumes the default. Each public entry and each worker thread holds one.
+/// Round to nearest, denormals kept, for the length of a scope in this thread: another add-on may have changed these
+/// settings, and every error bound of this library assumes the default. Each public entry and each worker thread holds
+/// one.
 class FloatingPointScope {
  public:
   FloatingPointScope();

@@ -63,7 +63,7 @@ class Surface {
     return !flip_faces_.empty() && in_one_flip_face(vertices.data(), count);
   }
 
-  /// Neighbours of a vertex along edges, ascending.
+  /// Neighbors of a vertex along edges, ascending.
   const Index* neighbours_begin(Index vertex) const { return neighbours_.data() + neighbour_start_[vertex]; }
   const Index* neighbours_end(Index vertex) const {
     return neighbours_.data() + neighbour_start_[static_cast<std::size_t>(vertex) + 1];

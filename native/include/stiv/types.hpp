@@ -26,7 +26,7 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using PositionsView = Eigen::Ref<const Positions, 0, Eigen::OuterStride<3>>;
 
 /// The controls p of a deformation, (m, 3). The deformation defines the meaning of a row: a cage vertex, a lattice
-/// point, or for a rigid motion two rows, centre and rotation vector.
+/// point, or for a rigid motion two rows, center and rotation vector.
 using Controls = Positions;
 
 /// A view of controls, or of consecutive rows of them.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double unit = 0x1p-53;  // half a unit in the last place of 1
 
-/// Coordinates rounded to single precision. Volatile because GCC 12 at -O2 vectorises the conversions and leaves one
+/// Coordinates rounded to single precision. Volatile because GCC 12 at -O2 vectorizes the conversions and leaves one
 /// coordinate of three unrounded.
 Vector3 in_single_precision(const Vector3& point) {
   Vector3 rounded;

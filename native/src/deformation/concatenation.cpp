@@ -14,7 +14,7 @@ namespace stiv {
 
 namespace {
 
-/// For each row of the whole, its component and its row in the component; component -1 if it is in none.
+/// For each row of the whole, its component and its row in that component; component -1 if it is in none.
 struct Places {
   std::vector<Index> component, row;
 };
@@ -89,7 +89,7 @@ void append(SparseField& whole, const SparseField& added, Index first) {
   whole.value.insert(whole.value.end(), added.value.begin(), added.value.end());
 }
 
-/// A view: J and the metric are evaluated at the same controls for each of thousands of contacts.
+/// A view, not a copy: J and the metric are evaluated at the same controls for thousands of contacts.
 ControlsView rows_of_component(const ControlsView& p, const std::vector<Index>& starts, std::size_t component) {
   return p.middleRows(starts[component], starts[component + 1] - starts[component]);
 }

@@ -17,7 +17,7 @@ inline FourWeights bspline_weights(double t) {
   return {u * u * u / 6, (t * t * (3 * t - 6) + 4) / 6, (t * (t * (3 - 3 * t) + 3) + 1) / 6, t * t * t / 6};
 }
 
-/// Cardinal spline: interpolates the middle points; tangents are `tension` times the difference of the neighbours.
+/// Cardinal spline: interpolates the middle points; tangents are `tension` times the difference of the neighbors.
 inline FourWeights cardinal_weights(double t, double tension) {
   const double c = tension;
   return {-c * t * (t * (t - 2) + 1), t * t * ((2 - c) * t + c - 3) + 1, t * (t * ((c - 2) * t + 3 - 2 * c) + c),

@@ -91,7 +91,7 @@ void CandidateCache::add_last_search(const Execution& execution) {
   if (search_.has_close_pairs()) replace(united(pairs_, search_.take_close_pairs(execution), execution));
 }
 
-/// Only this changes the content, so that an interruption before leaves it unchanged.
+/// The only change of the content: an interruption before it leaves the cache unchanged.
 void CandidateCache::replace(ClosePairs pairs) {
   const Surface& surface = search_.surface();
   std::vector<unsigned char> listed(static_cast<std::size_t>(surface.vertex_count()), 0);

@@ -11,7 +11,7 @@ namespace stiv {
 
 /// Candidates that full searches of a detector found close together: a small fraction of all pairs. Rounds of an edit
 /// test them first, and search all pairs only if none of these interferes. Calls may come in any order: each first adds
-/// the close pairs of the last search. The content depends on the searched steps alone, neither on the broad phase nor
+/// the close pairs of the last search. The content depends only on the searched steps, neither on the broad phase nor
 /// on the number of threads. (mathematics.md, "The loop")
 class CandidateCache {
  public:

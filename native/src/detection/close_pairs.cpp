@@ -28,7 +28,7 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
                   std::vector<Candidate>& close) {
   // A broad phase may skip pairs whose boxes are apart, depending on its frame. The result must not depend on it.
   const double box_separation = 1.1 * separation;
-  // A tighter bound of rounding than any source uses, so that no source can have skipped a close pair.
+  // This bound on rounding is tighter than that of any source, so no source can have skipped a close pair.
   const NearbySteps same_step{motion, separation, 0, 0x1p-44};
   CandidateBlock all, near;
   PairFlags apart;

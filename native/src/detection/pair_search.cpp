@@ -21,7 +21,7 @@ void lower(std::atomic<double>& minimum, double value) {
   }
 }
 
-/// Sort key of an event, by kind and vertices; smaller to move than the event.
+/// Sort key of an event, by kind and vertices; cheaper to move than the event.
 struct EventOrder {
   std::array<std::uint64_t, 3> key;
   const Event* event;

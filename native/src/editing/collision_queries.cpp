@@ -123,7 +123,7 @@ bool CollisionQueries::is_intersection_free(const Positions& from, const Positio
 }
 
 bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution) {
-  // The largest separation keeps the cached boxes of vertices at rest valid; no pair has to keep any.
+  // The largest separation keeps the cached boxes of vertices at rest valid; no pair has to keep that distance.
   Proximity touching;
   touching.separation = context_.proximity().separation;
   touching.by_bodies = &no_separations_;

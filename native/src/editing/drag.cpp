@@ -17,7 +17,8 @@ constexpr int max_pulls_of_drag = 12;
 constexpr double shortest_stride = 0.25;           // in pull distances
 constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round of a pull; below it no further pull
 
-/// The accepted controls, moved as the goal moved since it was followed; the goal itself if it was reached then.
+/// The accepted controls, plus the motion of the goal since it was last followed; the goal itself if it was reached
+/// then.
 Controls incremented(const EditCall& call, const Controls& followed, const Controls& goal) {
   if (call.accepted.controls == call.context.stored(followed)) return goal;
   return moved_alike(call.accepted.controls, followed, goal, call.context.rotation_rows());
@@ -37,7 +38,7 @@ double longest_displacement(const Positions& from, const Positions& to) {
   return (to - from).rowwise().norm().maxCoeff();
 }
 
-// A stride that took several calls is halved for the next one, any other is doubled.
+// A stride that took several calls is halved for the next one; any other is doubled.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   for (bool arrives = false; !arrives;) {
     const double way = longest_displacement(drag.followed.surface, aim.surface);
@@ -55,7 +56,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
         run_sub_edits_by_rotation_steps(call, {increment, aim.surface, false});
     } catch (const Interrupted&) {
       if (call.report.path.size() > accepted_before)
-        drag.followed = std::move(next);  // else the next call begins with its rest
+        drag.followed = std::move(next);  // else the next call begins with the rest of the stride
       drag.stride_took_several_calls = true;
       throw;
     }

@@ -13,8 +13,8 @@ namespace stiv {
 /// The increments of a drag so far.
 struct DragProgress {
   State followed;  ///< the goal whose increments were applied: the last one, unless the time budget ended its call
-  /// Furthest that a vertex moves in an increment of a call with a time budget. It adapts, so that each call accepts
-  /// something.
+  /// Largest displacement of a vertex in an increment of a call with a time budget. It adapts so that each call accepts
+  /// a step.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_several_calls = false;
 };
@@ -23,18 +23,18 @@ struct DragProgress {
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag);
 
 struct PullLimits {
-  double distance = std::numeric_limits<double>::infinity();  ///< furthest that a pull moves a vertex of the goal
+  double distance = std::numeric_limits<double>::infinity();  ///< largest motion of the goal in a pull
   int pulls = 12;                                             ///< the most pulls
   std::int64_t rounds =
       std::numeric_limits<std::int64_t>::max();  ///< no pull begins after this many rounds of the call
 };
 
 /// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
-/// returns from deep inside a wall takes the shape off it, and pulls put it back.
+/// returns from deep inside a wall lifts the shape off the wall, and pulls move it back.
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim);
 
-/// Pulls until the energy no longer falls enough for the rounds that it takes. Each is one sub-edit that accepts only
-/// what lowers the energy.
+/// Pulls until the energy no longer falls enough for the rounds that it takes. Each pull is one sub-edit that accepts
+/// only a state with lower energy.
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits);
 
 /// The longest displacement of a vertex between two surfaces.

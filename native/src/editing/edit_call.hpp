@@ -24,7 +24,7 @@ struct RoundProgress {
   Controls p;  ///< next candidate, before it is rounded
   bool accumulates = true;
   int round = 0;
-  bool cache_is_pruned = false;                 ///< to the step to this goal
+  bool cache_is_pruned = false;                 ///< for the step to this goal
   std::optional<Events> events = std::nullopt;  ///< of the step to the candidate, if a search has ended
   bool events_are_constrained = false;          ///< their rows are among `constraints`
 
@@ -57,7 +57,7 @@ struct EditCall {
 struct Aim {
   Controls controls;
   Positions surface;  ///< from which the energy is measured: the surface of the final goal
-  bool must_improve;  ///< accept only states of less energy
+  bool must_improve;  ///< accept only states with lower energy
 };
 
 }  // namespace stiv

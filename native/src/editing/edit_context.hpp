@@ -22,7 +22,7 @@ struct State {
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
 double energy(const Positions& a, const Positions& b);
 
-/// The validated input of a session, and what is derived from it once. Immutable.
+/// The validated input of a session, and data derived from it once. Immutable.
 class EditContext {
  public:
   /// @throws InputError for shapes and values that do not fit
@@ -45,7 +45,7 @@ class EditContext {
   const Proximity& round_proximity() const { return round_proximity_; }
   /// The least separation that survives storing.
   double least_separation() const { return least_separation_; }
-  /// Furthest that a pull may move a vertex of the goal; 0: no pulls.
+  /// Largest displacement of a vertex of the goal in a pull; 0: no pulls.
   double pull_distance() const { return options_.pull_limit * diagonal_; }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
@@ -54,7 +54,7 @@ class EditContext {
   void check_controls(const Controls& controls, const char* name) const;
   Controls stored(const Controls& controls) const { return as_stored(controls, options_.storage); }
   Positions surface_at(const Controls& controls, Execution& execution) const;
-  /// Relative to the centre of the start: smaller coordinates round less.
+  /// Relative to the center of the start: smaller coordinates round less.
   Positions centred(const PositionsView& q) const;
 
  private:
@@ -69,7 +69,7 @@ class EditContext {
   double diagonal_ = 0;  ///< of the moving vertices
   double least_separation_ = 0;
   std::optional<BodySeparations> body_separations_;
-  Positions reference_;  ///< the start, centred
+  Positions reference_;  ///< the start, centered
   Proximity proximity_, round_proximity_;
 };
 

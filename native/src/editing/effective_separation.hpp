@@ -24,7 +24,7 @@ double least_separation(const MovingExtent& extent, const Controls& p, const std
                         const std::vector<Index>& rotation_rows);
 
 /// The requested separation, or 1e-4 of the diagonal for 0, raised to the least possible.
-/// @throws InputError if the request is negative, not finite or below the least possible; names that
+/// @throws InputError if the request is negative, not finite or below the least possible, which the message names
 double effective_separation(double asked, const MovingExtent& extent, double least);
 
 /// The separations of all pairs of bodies: `separation`, except for the requested pairs.

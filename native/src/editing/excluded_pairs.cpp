@@ -36,7 +36,7 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
     for (int corner = 0; corner < 3; ++corner) {
       std::vector<Index>& around = around_[triangles(triangle, corner)];
       if (around.empty() || around.back() != triangle)
-        around.push_back(triangle);  // once, also if the triangle is degenerate
+        around.push_back(triangle);  // once, even if the triangle is degenerate
     }
 }
 

@@ -20,7 +20,7 @@ class ExcludedPairs {
 
   bool empty() const { return pairs_.empty(); }
 
-  /// Removes the events that belong to excluded pairs alone.
+  /// Removes the events that belong only to excluded pairs.
   void remove_from(Events& events) const;
 
   /// The pairs, sorted and with the smaller index first, that are not excluded.

@@ -15,10 +15,10 @@ namespace stiv {
 
 namespace {
 
-/// Where even this fraction of the way exceeds the pair limit, the start has too many close pairs, not the motion.
+/// If even this fraction of the way exceeds the pair limit, the start itself has too many close pairs.
 constexpr double smallest_fraction = 0x1p-16;
 
-/// `is_diverging` needs the whole surface of a candidate, so it is asked only this often.
+/// `is_diverging` needs the whole surface of a candidate, so it is called only this often.
 constexpr int rounds_before_giving_up = 6;
 
 /// The rounds to resume, or new ones.
@@ -29,7 +29,7 @@ RoundProgress& progress_toward(EditCall& call, const Controls& goal, Projection 
   return *progress;
 }
 
-/// The fraction whose rounds the time budget ended, among those tried from `fraction` on; else `fraction`.
+/// The fraction whose rounds the time budget interrupted, if it is `fraction` or a later trial; else `fraction`.
 double fraction_to_resume(const EditCall& call, Projection projection, double fraction,
                           const std::function<Controls(double)>& goal_at) {
   const std::optional<RoundProgress>& progress = call.progress;
@@ -70,7 +70,7 @@ bool RoundLoop::candidate() {
   return !is_last && !outcome_.given_up;
 }
 
-/// Finds events on the step to the candidate; false if there are none or the step is too far.
+/// Finds events on the step to the candidate; false if there are none or the step exceeds the pair limit.
 bool RoundLoop::search() {
   if (!progress_.events) {
     std::optional<Events> events = find_events();
@@ -164,7 +164,7 @@ RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Proje
     RoundOutcome outcome = run(PairLimit::respected);
     if (!outcome.too_far) return outcome;
     progress_toward(call, goal_at(fraction / 2), projection);
-    call.execution.checkpoint();  // a call that ends here is resumed with the half
+    call.execution.checkpoint();  // a call that ends here resumes with half the fraction
   }
   return run(PairLimit::ignored);
 }

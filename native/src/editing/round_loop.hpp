@@ -20,13 +20,13 @@ struct RoundOutcome {
   Index patches = 0;
 };
 
-/// The inner loop of an edit: rounds of detection and response, until the step from the accepted state is without
-/// events. Candidates are rounded as they will be stored *before* detection, so that the last round checks the path of
-/// the very state to be accepted. [P3.2, Algorithm 1; mathematics.md, "The loop"]
+/// The inner loop of an edit: rounds of detection and response, until the step from the accepted state has no events.
+/// Candidates are rounded as they will be stored *before* detection, so that the last round checks the path of exactly
+/// the state to be accepted. [P3.2, Algorithm 1; mathematics.md, "The loop"]
 class RoundLoop {
  public:
   /// Resumes the rounds toward this goal, if the time budget ended them.
-  /// @param is_diverging if given, asked about every sixth candidate while constraints accumulate; true ends the rounds
+  /// @param is_diverging if given, called for every sixth candidate while constraints accumulate; true ends the rounds
   RoundLoop(EditCall& call, const Controls& goal, Projection projection, PairLimit pair_limit,
             const StatePredicate& is_diverging);
 

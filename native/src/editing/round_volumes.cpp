@@ -9,13 +9,13 @@ namespace stiv {
 
 namespace {
 
-/// A patch's sum can vanish while contacts in it remain. From this round on few contacts are left, and each becomes a
-/// constraint of its own.
+/// A patch's sum can vanish while contacts in it remain. Few contacts are left after this many rounds, and each becomes
+/// a separate constraint.
 constexpr int rounds_with_patches = 2;
 constexpr std::size_t max_coupled_constraints = 512;
 
-/// Where the metric does not couple controls, constraints touch few of them, so thousands can be solved together and
-/// do not stiffen the controls between them. Each contact is a constraint from the first round on.
+/// Where the metric does not couple controls, constraints touch few of them, so thousands can be solved together and do
+/// not stiffen the controls between them. Then each contact is a separate constraint in every round.
 constexpr std::size_t max_local_constraints = 8192;
 
 bool may_constrain_each_contact(const EditContext& context, int round) {

@@ -19,8 +19,8 @@ struct InterferingStep {
 /// The interference volumes of a round.
 struct RoundVolumes {
   std::vector<Stiv> stivs;    ///< none if no event has a normal
-  Index patches = 0;          ///< also where each contact is a STIV of its own
-  bool each_contact = false;  ///< each contact is a STIV of its own
+  Index patches = 0;          ///< also where each contact is a separate STIV
+  bool each_contact = false;  ///< each contact is a separate STIV
 };
 
 /// The volumes of a step as the options define them. (mathematics.md, "The loop")

@@ -10,7 +10,7 @@ namespace stiv {
 
 namespace {
 
-/// The first answer is linearised where the surfaces met on the way to the goal, which may be far from where it ends.
+/// The first solution is linearized where the surfaces met on the way to the goal, possibly far from the result.
 /// Solving again from there lowers the energy further. An edit does so while it has taken fewer rounds than this.
 constexpr int rounds_of_cheap_edit = 24;
 
@@ -115,13 +115,13 @@ class EditSession::Implementation {
     bool lasts_ = false;
   };
 
-  /// Further sub-edits. The response has settled already: if one of these is blocked, the edit is not.
+  /// Further sub-edits. The response has already settled, so the edit is not blocked even if one of these is.
   void refine(EditCall& call, const Aim& aim) {
     pull_until_settled(call, aim, {.pulls = context_.options().max_sub_edits - 1, .rounds = rounds_of_cheap_edit});
     call.report.blocked = false;
   }
 
-  /// The frame of every call: checks, interruption and the result. A call that is cancelled or throws changes nothing.
+  /// Wraps every call: checks, interruption and the result. A call that is cancelled or throws changes nothing.
   template <class Work>
   EditResult carry_out(const Controls& goal, Execution& execution, FollowedGoal followed, const Work& work) {
     const FloatingPointScope floating_point;
@@ -173,7 +173,7 @@ class EditSession::Implementation {
   std::optional<RoundProgress> progress_;  ///< of a call that the time budget ended
   Controls checked_;                       ///< last restored; a drag that is cancelled goes back to them
   bool is_dragging_ = false;
-  std::optional<LeastDistance> least_distance_;  ///< built at the first question
+  std::optional<LeastDistance> least_distance_;  ///< built at the first query
 };
 
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,

@@ -12,11 +12,11 @@ namespace stiv {
 
 namespace {
 
-constexpr int max_cuts = 256;               // fractions of a motion that is too far for one search
+constexpr int max_cuts = 256;               // fractions of a motion that is too large for one search
 constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
 constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
-/// The goal itself as a candidate, for when no fraction toward the first answer is accepted.
+/// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted.
 RoundOutcome goal_as_outcome(const EditCall& call, const Aim& aim, PairLimit pair_limit) {
   RoundOutcome outcome;
   outcome.candidate.controls = call.context.stored(aim.controls);
@@ -71,9 +71,9 @@ RoundOutcome SubEditLoop::rounds(Projection projection, const StatePredicate& is
   return run_rounds_within_reach(call_, aim_.controls, projection, fraction_, is_diverging);
 }
 
-/// The first answer of an edit. Accumulated constraints were linearised at different candidates and may overshoot
-/// together. If the energy grows though no pinned control pushes, Algorithm 1 is run as well, and the better answer is
-/// taken. Accumulating only raises the energy further, so diverging rounds are given up early, and completed only if
+/// The first solution of an edit. Accumulated constraints were linearized at different candidates and may overshoot
+/// together. If the energy grows though no pinned control pushes, Algorithm 1 is run as well, and the better solution
+/// is used. Accumulating only raises the energy further, so diverging rounds are given up early, and completed only if
 /// Algorithm 1 overshoots too. (mathematics.md, "Guarantee")
 RoundOutcome SubEditLoop::first_answer() {
   const Controls& from = call_.accepted.controls;
@@ -92,9 +92,10 @@ RoundOutcome SubEditLoop::first_answer() {
   return other.clear && energy_of(other.candidate) < energy_of(accumulated.candidate) ? other : accumulated;
 }
 
-/// Accepts a fraction of the step to the outcome or, if there is none at first, of the straight way to the goal.
+/// Accepts a fraction of the step to the outcome. If no fraction of the first step is accepted, tries the straight step
+/// to the goal.
 Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
-  // A first answer that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
+  // A first solution that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
   const bool may_raise_energy = is_first && outcome.clear && !aim_.must_improve;
   const auto is_agreeable = [&](const State& state) { return may_raise_energy || energy_of(state) < energy_before_; };
   Acceptance acceptance = accept_largest_fraction(call_, outcome, is_agreeable);

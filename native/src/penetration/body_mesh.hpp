@@ -16,7 +16,7 @@ struct BodyMesh {
   std::vector<Index> triangles;               ///< of the surface, ascending
   std::vector<std::array<Index, 3>> corners;  ///< of each triangle, as positions in `vertices`
   std::vector<Index> seeds;                   ///< one vertex of each connected component
-  std::vector<std::array<Index, 2>> walk;     ///< edges (from, to) of a spanning forest, from the seeds on
+  std::vector<std::array<Index, 2>> walk;     ///< edges (from, to) of a spanning forest, starting at the seeds
 };
 
 /// @param triangles of the surface, ascending
@@ -35,7 +35,7 @@ class PlacedBody {
   Triangle triangle(Index triangle) const;
   const Eigen::AlignedBox3d& box() const { return box_; }
 
-  /// The normal of a triangle, of twice its area in length.
+  /// The normal of a triangle; its length is twice the area.
   Vector3 area_vector(Index triangle) const;
 
   /// The volume of a closed body, negative if it faces inward.

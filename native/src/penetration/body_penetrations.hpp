@@ -23,7 +23,7 @@ class BodyPenetrations {
   };
 
   /// @param excluded pairs of triangles that may intersect; their components are measured
-  /// @param start (N, 3) positions that define areas, and the side to which closed components face
+  /// @param start (N, 3) positions that define areas, and the orientation of closed components
   /// @param rounding largest displacement of a vertex by rounding
   BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& excluded, const Positions& start,
                    double rounding);

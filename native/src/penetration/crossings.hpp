@@ -44,7 +44,7 @@ class Crossings {
   /// The increase of the winding number w of the other body along an edge of a side's body.
   int winding_increase(std::size_t side, Index from, Index to) const;
 
-  /// The mean of w along an edge, given w at its beginning.
+  /// The mean of w along an edge, given w at its first vertex.
   double mean_along(std::size_t side, Index from, Index to, int at_beginning) const;
 
  private:

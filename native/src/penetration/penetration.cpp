@@ -28,7 +28,7 @@ Vector3 point_at(const Triangle& t, const Eigen::Vector2d& weights) {
   return t[0] + weights[0] * (t[1] - t[0]) + weights[1] * (t[2] - t[0]);
 }
 
-/// The fraction of the first triangle that its cut sweeps if the second moves by `rounding`; it grows as the angle
+/// The fraction of the first triangle that its cut sweeps if the second moves by `rounding`. It grows as the angle
 /// between the triangles decreases.
 double swept_fraction(const Crossings& crossings, const Cut& cut, double rounding) {
   const Triangle triangle = crossings.body(0).triangle(cut.triangles[0]);

@@ -12,7 +12,7 @@ namespace {
 constexpr int region_rings[] = {2, 4, 8, 16, 32};
 constexpr int passes_of_region = 4;  // contraction moves the intersections
 
-/// Contracts the marked vertices from `state` on.
+/// Contracts the marked vertices, starting at `state`.
 void contract_further(const CagedSurface& caged, const Marks& vertices, const Movable& movable,
                       const ContractionOptions& options, Contracted& state, Execution& execution) {
   ContractionResult result = contract(caged, state.positions, controls_of(vertices, movable), options, execution);

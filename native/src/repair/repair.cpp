@@ -157,7 +157,7 @@ class Repair {
     result_.contracted = strategy;
   }
 
-  /// Repeats the expansion from the best repair: it meets contacts in another order and may come closer.
+  /// Repeats the expansion from the best repair: contacts occur in another order, and the result may be closer.
   void refine() {
     for (int round = 0; round < refinement_rounds && !is_good(); ++round) {
       const double before = result_.deviation;
@@ -173,7 +173,7 @@ class Repair {
     result_.refusal = reason;
   }
 
-  /// Accepts the best repair if its deviation is small enough and the exact test of everything confirms it.
+  /// Accepts the best repair if its deviation is small enough and the exact test of the whole surface confirms it.
   void conclude() {
     if (!best_found_) return refuse(RepairRefusal::not_freed);
     if (!execution_.budget_used_up()) refine();

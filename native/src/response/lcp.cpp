@@ -44,9 +44,9 @@ double sweep(const Eigen::MatrixXd& B, const Eigen::VectorXd& diagonal, Eigen::V
   return largest_change;
 }
 
-/// Moves toward the solution of the active rows as equations until a multiplier is zero. Sweeps alone need hundreds of
-/// passes if rows are nearly dependent. Both lower the same energy, so together they converge. Does nothing if the rows
-/// are dependent. [Silcowitz, Niebe, Erleben 2010]
+/// Moves toward the solution of the active rows, taken as equations, until a multiplier reaches zero. Sweeps alone need
+/// hundreds of passes if rows are nearly dependent. Both lower the same energy, so together they converge. Does nothing
+/// if the rows are dependent. [Silcowitz, Niebe, Erleben 2010]
 void solve_active(const Eigen::MatrixXd& B, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   constexpr double least_pivot = 1e-10;  // relative to the largest
   std::vector<Eigen::Index> active;

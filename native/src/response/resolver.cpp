@@ -13,7 +13,7 @@ namespace stiv {
 
 namespace {
 
-/// Squared length of a row in the metric J'J relative to that of the volume's gradient, which bounds it. Below this
+/// Squared length of a row in the metric J'J, relative to its upper bound, that of the volume's gradient. Below this
 /// fraction a row is rounding: free controls move all corners of the contacts equally, or none.
 constexpr double least_squared_length = 1e-24;
 

@@ -16,7 +16,7 @@ namespace stiv {
 
 /// A row and the tile that it is multiplied with.
 struct TileProduct {
-  const double* const* lines;  ///< of each entry of the row: where the tile has that control, (3, width)
+  const double* const* lines;  ///< for each entry, its control's rows of the tile, (3, width)
   const double* values;        ///< (entries, 3)
   std::size_t entries;
   double* products;  ///< (width)
@@ -29,7 +29,7 @@ struct TileProduct {
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// Four vectors of products stay in registers while the entries go by.
+/// Keeps four vectors of products in registers, and loops over the entries.
 HWY_INLINE void multiply_lanes(const TileProduct& p, std::size_t lane) {
   constexpr std::size_t width = StepTile::width;
   const Doubles d;

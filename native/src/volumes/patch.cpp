@@ -33,7 +33,7 @@ void join_neighbours(const Surface& surface, const std::vector<Region>& regions,
   for (Index k = 0; k < static_cast<Index>(regions.size()); ++k) {
     const Index vertex = regions[k].vertex;
     for (const Index* other = surface.neighbours_begin(vertex); other != surface.neighbours_end(vertex); ++other) {
-      if (*other >= vertex) break;  // each pair once: neighbours ascend
+      if (*other >= vertex) break;  // each pair once: neighbors ascend
       const Index neighbour = place[at(*other)];
       if (neighbour >= 0 && !regions[k].rigid && !regions[neighbour].rigid) partition.join(k, neighbour);
     }

@@ -11,8 +11,8 @@ namespace stiv {
 
 namespace {
 
-/// A normal is usable if the two sides approach each other along it. Below this cosine they slide, and the sign of
-/// n . Drho is rounding. (mathematics.md, "Regions")
+/// A normal is usable if the two sides approach each other along it. At a smaller cosine they slide, and the sign of n
+/// . Drho is rounding. (mathematics.md, "Regions")
 constexpr double least_cosine = 1e-8;
 
 template <class Field>
@@ -22,8 +22,8 @@ bool normal_is_usable(const Event& event, const Field& displacement) {
 }
 
 /// A contact within this weight of a vertex or edge of its face, or of an end of its edge, is a contact with that
-/// vertex or edge, whose normal is arbitrary inside a flat wall. So is the normal of edges below this sine. Both would
-/// push a box along the wall that it lies on.
+/// vertex or edge, whose normal is arbitrary inside a flat wall. So is the normal of edges whose sine is below this.
+/// Both would push a box along the wall that it lies on.
 constexpr double least_weight = 1e-6;
 constexpr double least_sine = 1e-3;
 

@@ -11,7 +11,7 @@ namespace stiv {
 namespace {
 
 /// Least violation of a region, as a fraction of its target. If a pair slides on before the end of the step, its frozen
-/// plane (n, w) may no longer be violated. Without this bound the region would cancel its neighbours, and V could
+/// plane (n, w) may no longer be violated. Without this bound the region would cancel its neighbors, and V could
 /// vanish while events remain. (mathematics.md, Eq. 2)
 constexpr double least_violation = 1e-3;
 

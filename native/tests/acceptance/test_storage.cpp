@@ -59,7 +59,7 @@ Controls read_back(const Controls& p, const Eigen::Matrix4d& frame) {
   return back;
 }
 
-/// Positions in the world whose coordinates, there or in the frame, differ in size by as much as 14 orders.
+/// Positions in the world whose coordinates, there or in the frame, differ by up to 14 orders of magnitude.
 Controls points_of_any_size(const Eigen::Matrix4d& frame, Sampler& sample) {
   Controls p(20, 3);
   for (Index k = 0; k < p.size(); ++k) p.data()[k] = sample.any_size();

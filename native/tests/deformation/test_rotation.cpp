@@ -23,7 +23,7 @@ TEST_CASE("rotation: equals Eigen's angle and axis") {
 }
 
 TEST_CASE("rotation: the left Jacobian is the integral of rotations") {
-  // J_l(v) = integral of exp(s [v]x) for s in [0, 1]; by Gauss-Legendre with 5 points on 64 pieces.
+  // J_l(v) = integral of exp(s [v]x) for s in [0, 1]; by Gauss-Legendre with 5 points on each of 64 intervals.
   const double node[] = {0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640, -0.9061798459386640};
   const double weight[] = {128.0 / 225, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891, 0.2369268850561891};
   const Vector3 axis = Vector3(0.3, 1, 2).normalized();

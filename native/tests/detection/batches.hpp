@@ -53,8 +53,8 @@ struct FilterCounts {
   std::size_t apart = 0, all = 0;
 };
 
-/// Checks that pairs of all sorts which a filter calls apart keep the separation, and that every vector target says the
-/// same.
+/// Checks that all kinds of pairs that a filter flags keep the separation, and that every vector target gives the same
+/// result.
 template <class Find>
 FilterCounts check_filter(const Find& find, unsigned seed) {
   MotionMaker make(seed);

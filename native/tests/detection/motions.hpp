@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// Motions of four vertices of one awkward sort, made from random numbers.
+/// Random motions of four vertices, of one kind that is hard to test.
 class MotionMaker {
  public:
   explicit MotionMaker(unsigned seed) : random_(seed) {}
@@ -50,7 +50,7 @@ class MotionMaker {
     motion.end[3] = motion.end[1] + number(0, 1) * (motion.end[2] - motion.end[1]) + 1e-9 * point();
   }
 
-  /// The whole end turned by an angle, so that speeds on the far side exceed that of the contact by much.
+  /// The whole end turned by an angle, so that the far side is much faster than the contact.
   void rotate(PairMotion& motion) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(number(0, 1.5), point().normalized()).toRotationMatrix();
     for (std::size_t k = 1; k < 4; ++k) motion.end[k] = turn * motion.start[k];

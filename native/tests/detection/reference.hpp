@@ -21,8 +21,8 @@ inline Real to_segment(const Point& p, const Point& a, const Point& b) {
   return (a + s * along - p).norm();
 }
 
-/// Distance of two primitives by another way than the library's: the interior is found by projecting on an
-/// orthonormal frame, all of the boundary is always measured, and arithmetic is extended.
+/// Distance of two primitives by a method independent of the library's: it projects the interior on an orthonormal
+/// frame, always measures the whole boundary, and uses extended arithmetic.
 inline Real distance(EventKind kind, const Points& x) {
   const bool face = kind == EventKind::vertex_face;
   const Point u = face ? Point(x[2] - x[1]) : Point(x[1] - x[0]);
@@ -55,7 +55,7 @@ inline Points at(const PairMotion& motion, Real t) {
   return x;
 }
 
-/// Largest speed of any point of one side against any of the other.
+/// Largest speed of any point of one side relative to any point of the other.
 inline Real speed_bound(EventKind kind, const PairMotion& motion) {
   const auto first = static_cast<std::size_t>(first_side_size(kind));
   Real speed = 0;
@@ -73,8 +73,8 @@ struct Answer {
   Real least = std::numeric_limits<Real>::infinity();  ///< least distance sampled
 };
 
-/// First time within `threshold` by bisection that skips intervals in which the speed bound rules it out; the
-/// time is a true contact, and nothing is missed that lasts longer than `resolution`.
+/// First time within `threshold` by bisection, without intervals that the speed bound rules out. Every result is a true
+/// contact, and no contact that lasts longer than `resolution` is missed.
 inline void search(EventKind kind, const PairMotion& motion, Real threshold, Real speed, Real t0, Real t1,
                    Real resolution, Answer& answer) {
   if (answer.time <= t0) return;

@@ -15,7 +15,7 @@ struct MovingScene {
   Positions start, end;
 };
 
-/// A height field of `size` x `size` vertices, appended as a body of its own.
+/// A height field of `size` x `size` vertices, appended as a separate body.
 inline void add_sheet(SurfaceDefinition& definition, std::vector<Vector3>& points, Index size, double height,
                       double roughness, std::mt19937& random) {
   const Index base = definition.vertex_count;
@@ -37,7 +37,7 @@ inline void add_sheet(SurfaceDefinition& definition, std::vector<Vector3>& point
   definition.vertex_body.resize(static_cast<std::size_t>(definition.vertex_count), body);
 }
 
-/// Sheets above each other that are stirred, so that they meet each other and themselves.
+/// Stacked sheets that are stirred, so that they collide with each other and with themselves.
 inline MovingScene stirred_sheets(Index size, int sheets, double stir, unsigned seed) {
   std::mt19937 random(seed);
   SurfaceDefinition definition;

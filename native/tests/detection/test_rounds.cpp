@@ -44,7 +44,7 @@ Events expected(const MovingScene& scene, const Positions& start, const Position
   return found_by(detector, start, end, 1);
 }
 
-/// Ends of rounds of an edit: back towards the start, aside by more or less, carried along, and with other parts
+/// Ends of rounds of an edit: back toward the start, more or less to the side, moved along, and with other vertices
 /// moving.
 std::vector<Positions> ends_of_rounds(const MovingScene& scene, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
@@ -94,7 +94,7 @@ TEST_CASE("rounds: a detector with cached pairs finds exactly the events of one 
     compare_rounds(scene, seed);
     scene.end.topRows(81) = scene.start.topRows(81);  // one sheet rests
     compare_rounds(scene, seed);
-    scene.end.bottomRows(162).rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.9);  // the others fall on it and through
+    scene.end.bottomRows(162).rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.9);  // the others fall through it
     compare_rounds(scene, seed);
   }
 }
@@ -140,7 +140,7 @@ TEST_CASE("rounds: the pairs of several searches stay cached, each once, until a
   for (const Positions& end : ends) {
     of_searches.push_back(found_by(trees.detector, scene.start, end, 1));
     found_by(grid.detector, scene.start, end, 2);
-    for (std::size_t k = 0; k < of_searches.size(); ++k) {  // nothing is lost, and nothing comes twice
+    for (std::size_t k = 0; k < of_searches.size(); ++k) {  // no pair is lost or repeated
       CHECK(same_bits(trees.cached(scene.start, ends[k]), of_searches[k]));
       CHECK(same_bits(grid.cached(scene.start, ends[k]), of_searches[k]));
     }
@@ -232,7 +232,7 @@ TEST_CASE("rounds: what was cancelled at any point leaves no trace") {
       } catch (const Interrupted&) {
         ++cancelled;
       }
-      end(cancelled, 2) += 0.01;  // the same step but for one vertex
+      end(cancelled, 2) += 0.01;  // the same step except for one vertex
       Detector fresh(scene.surface);
       CHECK(same_bits(found_by(detector, start, end, 1), found_by(fresh, start, end, 1)));
     }

@@ -10,14 +10,14 @@
 
 namespace stiv::tests {
 
-/// A surface with a deformation and the controls at which it stands.
+/// A surface with a deformation and its current controls.
 struct Scene {
   std::shared_ptr<const Surface> surface;
   std::shared_ptr<const Deformation> deformation;
   Controls controls;
 };
 
-/// Appends a flat n x n grid of the given size, centred at `centre`, to positions and triangles.
+/// Appends a flat n x n grid of the given size, centered at `centre`, to positions and triangles.
 inline void append_sheet(Positions& q, Triangles& triangles, Index cells, double size, const Vector3& centre) {
   const Index first = static_cast<Index>(q.rows()), side = cells + 1;
   q.conservativeResize(first + side * side, 3);
@@ -59,7 +59,7 @@ inline Scene two_sheets(Index cells = 6) {
   return scene;
 }
 
-/// A rigid plate 0.5 above a fixed one; controls (2, 3): centre and rotation vector.
+/// A rigid plate 0.5 above a fixed one; controls (2, 3): center and rotation vector.
 inline Scene plate_over_wall(Index cells = 3) {
   Scene scene;
   Positions q(0, 3);

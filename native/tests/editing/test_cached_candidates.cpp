@@ -23,10 +23,10 @@ Controls pressed(const EditSession& session) {
   return moved(session.controls(), upper_sheet, Vector3(0.3 * stride, 0, -stride));
 }
 
-/// The upper sheet pressed through the lower one aside, where some of the pairs are others.
+/// The upper sheet pressed through the lower one to the side, where some pairs differ.
 Controls elsewhere(const Controls& from) { return moved(from, upper_sheet, Vector3(0.25, 0.15, -0.6)); }
 
-/// A session whose sheets have met and been pressed on a few times.
+/// A session whose sheets touch and have been pressed together a few times.
 EditSession pressing(const Scene& scene, const EditOptions& options = {}) {
   EditSession session = session_of(scene, options);
   edit(session, moved(scene.controls, upper_sheet, Vector3(0, 0, -0.51)));

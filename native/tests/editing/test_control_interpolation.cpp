@@ -45,7 +45,7 @@ TEST_CASE("goal: a rotation is interpolated about one axis") {
     const Controls to = placement(Vector3::Random(), 2 * Vector3::Random());
     const Controls half = interpolate(from, to, 0.5, {1});
     const Eigen::Matrix3d start = matrix(from.row(1)), middle = matrix(half.row(1)), end = matrix(to.row(1));
-    CHECK((middle * start.transpose() * middle - end).norm() < 1e-12);  // the same turn twice
+    CHECK((middle * start.transpose() * middle - end).norm() < 1e-12);  // the same rotation twice
     const double cosine = ((end * start.transpose()).trace() - 1) / 2;
     CHECK(std::cos(largest_rotation(from, to, {1})) == doctest::Approx(cosine));
     CHECK(std::cos(largest_rotation(from, half, {1})) == doctest::Approx(std::sqrt((1 + cosine) / 2)));

@@ -46,7 +46,7 @@ TEST_CASE("session: a way too far to be looked at in one piece is gone in parts,
   CHECK(back.status == EditStatus::reached);
   const EditResult down = edit(session, moved(scene.controls, upper, Vector3(0.1, 0.2, -1)));
   CHECK(is_free(scene, down.surface));
-  CHECK(down.energy < 0.2 * 0.5 * upper * (0.01 + 0.04 + 1));  // of staying; measured: 0.175
+  CHECK(down.energy < 0.2 * 0.5 * upper * (0.01 + 0.04 + 1));  // relative to no motion; measured: 0.175
   CHECK(down.counters.candidate_pairs < (1 << 18) * (down.counters.detections + 1));
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("session: a sheet pushed fully through another in one edit ends on its
   CHECK(result.status == EditStatus::corrected);
   CHECK(is_free(scene, result.surface));
   CHECK(result.patches >= 1);
-  CHECK(result.energy < 0.2 * 0.5 * upper_sheet * 0.25);  // of staying at the contact; measured: 0.174
+  CHECK(result.energy < 0.2 * 0.5 * upper_sheet * 0.25);  // relative to staying at the contact; measured: 0.174
   CHECK(result.surface.topRows(upper_sheet).col(2).mean() < 0.3);
   CHECK(result.surface.bottomRows(result.surface.rows() - upper_sheet).col(2).minCoeff() < -0.1);
 }
@@ -106,7 +106,7 @@ TEST_CASE("session: everything pinned is blocked at the contact and names the bo
   CHECK(result.status == EditStatus::blocked);
   CHECK(result.blocking == std::vector<Index>{0, 1});
   CHECK(is_free(scene, result.surface));
-  CHECK(result.surface(0, 2) < 0.01);  // it came as far as the contact
+  CHECK(result.surface(0, 2) < 0.01);  // it reached the contact
   CHECK(result.surface(0, 2) > 0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions on threads of their own. Under the thread sanitizer this tells whether anything is shared.
+// Sessions on threads of their own. The thread sanitizer then reports any data that they share.
 #include <doctest/doctest.h>
 
 #include <array>

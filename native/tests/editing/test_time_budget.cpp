@@ -9,7 +9,7 @@ using namespace stiv::tests;
 
 namespace {
 
-/// Drags to a goal until it ends by itself; how often anything was accepted on the way, and in how many calls.
+/// Drags to a goal in calls without time, until one accepts a state or ends by itself.
 struct HurriedDrag {
   EditResult result;
   int calls = 0;
@@ -35,7 +35,7 @@ TEST_CASE("session: a drag whose time ended continues with its increment, and ac
   unhurried.drag(first, execution);
   hurried.drag(first, execution);
   REQUIRE(hurried.controls() == unhurried.controls());
-  // Beside the goal by now, so that the increment is another way than the one to the goal.
+  // Now beside the goal, so the increment differs from the motion to the goal.
   const Controls second = moved(scene.controls, upper_sheet, Vector3(0.05, 0.02, -0.7));
   const HurriedDrag drag = drag_hurried(hurried, second);
   CHECK(drag.calls > 1);

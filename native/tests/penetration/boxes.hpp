@@ -78,7 +78,7 @@ inline Polygon behind(const Polygon& polygon, const Polygon& plane) {
   return kept;
 }
 
-/// The part of a polygon in a convex body.
+/// The intersection of a polygon and a convex body.
 inline Polygon inside(Polygon polygon, const std::vector<Polygon>& faces) {
   for (const Polygon& face : faces)
     if (polygon.size() > 2) polygon = behind(polygon, face);

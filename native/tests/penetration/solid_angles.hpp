@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// The winding number of triangles, (F, 3), around a point off them: the sum of their solid angles [van Oosterom,
+/// The winding number of triangles, (F, 3), around a point not on them: the sum of their solid angles [van Oosterom,
 /// Strackee 1983] over 4 pi.
 inline double winding_by_solid_angles(const Triangles& triangles, const Positions& q, const Vector3& point) {
   double sum = 0;

@@ -50,7 +50,7 @@ Points on_grid(Random& random) {
   return p;
 }
 
-/// The last point in the plane of the others but for rounding, and up to two units in the last place from there.
+/// The last point in the plane of the others up to rounding, moved by up to two units in the last place.
 Points rounded_into_plane(Random& random) {
   Points p{random_point(random), random_point(random), random_point(random), {}};
   const double s = random_number(random), t = random_number(random);
@@ -88,7 +88,7 @@ Points near_degenerate(int sort, Random& random) {
   return near_line(random);
 }
 
-/// Exponents between which all coordinates lie, as frexp counts.
+/// The least and largest exponents of all coordinates, as in frexp.
 std::pair<int, int> exponents_of(const Points& points) {
   int low = 4000, high = -4000;
   for (const Vector3& point : points)
@@ -102,7 +102,7 @@ std::pair<int, int> exponents_of(const Points& points) {
   return {low, high};
 }
 
-/// Scaled by a power of two, without rounding: anywhere in the range of coordinates, at its ends too.
+/// Scaled by a power of two, without rounding: anywhere in the range of coordinates, including its ends.
 void scale_within_range(Points& points, Random& random) {
   const auto [low, high] = exponents_of(points);
   const int least = least_exponent + 1 - low, most = greatest_exponent - high;

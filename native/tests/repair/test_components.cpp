@@ -12,7 +12,7 @@ using namespace stiv::tests;
 
 namespace {
 
-/// A triangle and two tetrahedra, one body each; which of their triangles meet, each test says.
+/// A triangle and two tetrahedra, one body each; each test specifies which of their triangles intersect.
 std::shared_ptr<const Surface> three_bodies() {
   SurfaceDefinition definition;
   definition.vertex_count = 11;

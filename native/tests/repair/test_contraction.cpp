@@ -16,7 +16,7 @@ using namespace stiv::tests;
 
 namespace {
 
-/// A dented sheet of which all angles are between 3 and 177 degrees: no weight is cut off but those of obtuse angles.
+/// A dented sheet whose angles are all between 3 and 177 degrees: only the weights of obtuse angles are clamped.
 Scene dented_sheet() {
   Scene scene = two_sheets(4);
   for (Index row = 0; row < scene.controls.rows(); ++row)
@@ -24,13 +24,13 @@ Scene dented_sheet() {
   return scene;
 }
 
-/// The cotangent of the corner at a, by its angle.
+/// The cotangent of the corner at a, computed from its angle.
 double cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double angle = std::acos((b - a).normalized().dot((c - a).normalized()));
   return std::max(1e-3, 1 / std::tan(angle));
 }
 
-/// One step as a dense least-squares problem of stacked equations, solved by an orthogonal factorisation. Areas are
+/// One step as a dense least-squares problem of stacked equations, solved by an orthogonal factorization. Areas are
 /// those at the start, so the vertices' weights are 1.
 Positions dense_step(const Scene& scene, double smoothing) {
   const Index count = scene.surface->vertex_count();

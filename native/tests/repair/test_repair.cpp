@@ -33,7 +33,7 @@ void check_unchanged(const Scene& scene, const RepairResult& result) {
   CHECK_FALSE(result.pairs.empty());
 }
 
-/// Two equal sheets in one place, bodies of their own.
+/// Two coincident sheets, each a separate body.
 Scene coincident_sheets() {
   Scene scene;
   Triangles triangles(0, 3);
@@ -188,7 +188,7 @@ TEST_CASE("expansion toward any target stays free of intersections") {
   CHECK(result.status == EditStatus::corrected);
   CHECK(pairs_at(scene, result.surface).empty());
   CHECK(result.path.back() == result.controls);
-  CHECK(result.energy < 0.03 * 0.5 * (scene.controls - target).squaredNorm());  // of staying; measured: 0.0202
+  CHECK(result.energy < 0.03 * 0.5 * (scene.controls - target).squaredNorm());  // fraction measured: 0.0202
   CHECK_THROWS_AS(expand(spike_through_sheet().surface, spike_through_sheet().controls, target, {}, execution),
                   InputError);
 }

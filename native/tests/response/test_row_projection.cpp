@@ -78,7 +78,7 @@ TEST_CASE("row projection: sets that switch between matrix and rows, and drop so
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(count);
   ConstraintSet set;
   const Controls from = Controls::Random(count, 3);
-  for (const int more : {5, 95, 3}) {  // 3 * 8 multiplications a row: by rows from 25 rows on
+  for (const int more : {5, 95, 3}) {  // 3 * 8 multiplications per row: by rows if there are at least 25
     std::vector<ControlConstraint> added;
     for (int r = 0; r < more; ++r) added.push_back(random_constraint(random, count, 4, weights));
     set.add(added);

@@ -10,7 +10,7 @@ using namespace stiv;
 
 namespace {
 
-/// A strip of triangles 0-1-2, 1-2-3, ...: vertices i and j are neighbours when |i - j| <= 2.
+/// A strip of triangles 0-1-2, 1-2-3, ...: vertices i and j are neighbors when |i - j| <= 2.
 Surface strip(Index vertices) {
   SurfaceDefinition definition;
   definition.vertex_count = vertices;

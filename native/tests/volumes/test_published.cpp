@@ -11,7 +11,7 @@ using namespace stiv;
 
 namespace {
 
-/// A moving pair of primitives; the paper's narrow phase finds its contact for any end.
+/// A moving pair of primitives. The paper's narrow phase finds its contact for any end positions.
 struct MovingPair {
   EventKind kind = EventKind::vertex_face;
   Proximity proximity;
@@ -49,7 +49,8 @@ struct MovingPair {
   }
 };
 
-/// A contact that small changes leave what it is: inside of both primitives, met at an angle, and not at the start.
+/// Do small changes leave the kind of contact as it is? It must be inside both primitives, at an angle, and not at the
+/// start.
 bool is_steady(const MovingPair& pair, const Event& event) {
   const Vector3 relative = weighted_sum(event, Positions(pair.end - pair.start));
   if (event.time < 0.1 || event.normal.dot(relative) > -0.2 * relative.norm()) return false;
@@ -138,7 +139,7 @@ TEST_CASE("published volumes: a vertex that falls onto a face has (1 - t) of its
 TEST_CASE("published volumes: each side counts its own motion against the normal") {
   const Fall fall(-2, 2);  // they meet at 1/5
   const std::vector<Stiv> stivs = fall.volumes(ConstraintKind::per_patch);
-  REQUIRE(stivs.size() == 2);  // by neighbouring vertices alone, the two sides are two patches
+  REQUIRE(stivs.size() == 2);  // joined only by neighboring vertices, the two sides are two patches
   CHECK(stivs[0].volume == doctest::Approx(0.5 * 0.8 * -3));
   CHECK(stivs[1].volume == doctest::Approx(2 * 0.8 * -2));  // in the region of vertex 1, the heaviest
   REQUIRE(stivs[1].gradient.index == std::vector<Index>{1, 2, 3});
@@ -149,7 +150,7 @@ TEST_CASE("published volumes: each side counts its own motion against the normal
 }
 
 TEST_CASE("published volumes: a vertex that moves away counts too, as in the paper") {
-  const Fall fall(-2, -1);  // the face flees down, slower than the vertex falls
+  const Fall fall(-2, -1);  // the face moves down, more slowly than the vertex
   const std::vector<Stiv> stivs = fall.volumes(ConstraintKind::single);
   REQUIRE(stivs.size() == 1);
   const double remaining = 1 - fall.event.time;
@@ -179,5 +180,5 @@ TEST_CASE("published volumes: with the time in the gradient, a vertex that falls
   REQUIRE(stivs.size() == 1);
   REQUIRE(stivs[0].gradient.index == std::vector<Index>{0, 1, 2, 3});
   CHECK(stivs[0].gradient.value[0].isApprox(Vector3(0, 0, 0.5)));
-  CHECK(stivs[0].gradient.value[1].isApprox(Vector3(0, 0, -0.25 * 0.5 * 0.5)));  // the face could flee: t w A
+  CHECK(stivs[0].gradient.value[1].isApprox(Vector3(0, 0, -0.25 * 0.5 * 0.5)));  // the face could move away: t w A
 }

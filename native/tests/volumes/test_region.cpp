@@ -26,7 +26,7 @@ Surface points(Index count, Mobility mobility = Mobility::deformable) {
   return Surface(definition);
 }
 
-/// Regions of events in which vertex 0 falls on a face whose corners stand still.
+/// Regions of events in which vertex 0 falls on a face whose corners are at rest.
 std::vector<Region> regions_of(const Events& events, double fall = 1) {
   Positions start(4, 3);
   start << 0.4, 0.3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0;

@@ -12,7 +12,7 @@ namespace stiv {
 
 /// True if two triangles intersect apart from the hull of their shared vertices (nothing, a vertex, an edge). Shared
 /// vertices have equal indices; two triangles that share three always intersect. Touching, coplanar overlap, coincident
-/// vertices of different index and neighbours folded flat onto each other are intersections. A triangle without area is
+/// vertices of different index and neighbors folded flat onto each other are intersections. A triangle without area is
 /// a segment or a point. Exact for coordinates in the range of coordinate_range.hpp.
 /// @param first, second corners, rows of q
 bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q);

@@ -34,7 +34,7 @@ class HandleDeformation : public Deformation {
   virtual std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const = 0;
 };
 
-/// Laplacian editing [Sorkine et al. 2004; App. B, Eq. 4]: q minimises |L (q - rest)|^2 + sum pull_k |q_h(k) - p_k|^2.
+/// Laplacian editing [Sorkine et al. 2004; App. B, Eq. 4]: q minimizes |L (q - rest)|^2 + sum pull_k |q_h(k) - p_k|^2.
 /// Each row of the Laplacian L is divided by its diagonal. Hard handles and fixed vertices are constraints instead.
 /// Linear in the controls. The factor is computed once. Up to 256 MB, the weights of all handles are stored too, so
 /// that products with J are cheap; beyond that, each is a solve. At the rest controls, q is `rest` bit for bit.
@@ -42,13 +42,13 @@ class HandleDeformation : public Deformation {
 ///         a position or pull not finite, a pull not positive
 std::shared_ptr<const HandleDeformation> make_laplacian(const HandleDefinition& definition);
 
-/// As-rigid-as-possible editing [Sorkine and Alexa 2007]: q minimises
+/// As-rigid-as-possible editing [Sorkine and Alexa 2007]: q minimizes
 ///   1/4 sum_i sum_j w_ij |(q_i - q_j) - R_i (rest_i - rest_j)|^2 + 1/2 sum_k pull_k |q_h(k) - p_k|^2
 /// over positions and one rotation R_i for each vertex. Hard handles and fixed vertices are constraints instead. Not
 /// linear in the controls.
 /// The minimum is computed from the rest positions, so that it depends on the controls alone. Local and global steps
 /// alternate until a step moves no vertex by more than 1e-11 of the mesh's size, at most 300 times. J is the exact
-/// derivative at the minimum, and the last linearisation is cached. The metric neglects the change of rotations.
+/// derivative at the minimum, and the last linearization is cached. The metric neglects the change of rotations.
 /// @throws InputError as make_laplacian
 std::shared_ptr<const HandleDeformation> make_arap(const HandleDefinition& definition);
 

@@ -33,7 +33,7 @@ struct LatticePlacement {
   Controls points;            ///< (u v w, 3) rest positions of the points, in the world
 };
 
-/// q = vertices + W (p - points), with the lattice's points in the world as controls. As make_linear with
+/// q = vertices + W (p - points), with the lattice's points in the world as controls. Like make_linear with
 /// lattice_weights, but products use the weights along each axis.
 /// @throws InputError as lattice_weights, and if sizes do not match
 std::shared_ptr<const LinearDeformation> make_lattice(const LatticeDefinition& lattice, const LatticePlacement& placed);

@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// Norm minimised by the response step.
+/// Norm minimized by the response step.
 enum class MetricKind {
   energy,   ///< J'J, damped: the least motion of the surface
   controls  ///< the least motion of the controls [P3.2, Algorithm 1]

@@ -46,7 +46,7 @@ class Detector {
   Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
   /// The same, or nothing if the step has more close pairs than bounded time and memory allow: then search a shorter
-  /// step. The answer depends on the step alone. Only `BroadPhase::bvh` has a limit. If too many primitives overlap at
+  /// step. The result depends only on the step. Only `BroadPhase::bvh` has a limit. If too many primitives overlap at
   /// the start, every step exceeds it.
   std::optional<Events> find_within_pair_limit(const PositionsView& start, const PositionsView& end,
                                                Proximity proximity, Execution& execution);

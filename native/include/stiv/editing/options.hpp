@@ -35,7 +35,7 @@ struct EditOptions {
   Eigen::VectorXd weights;
   std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
   /// Pairs of triangles that may intersect. No other pair ever does, and the number of these that do never grows.
-  /// Events that belong to such pairs alone are ignored. The common volume of two closed bodies, and the area of an
+  /// Events that belong only to these pairs are ignored. The common volume of two closed bodies, and the area of an
   /// open body inside a closed one, never exceed those of the start. (mathematics.md, "Excluded pairs")
   IndexPairs excluded;
   ConstraintKind constraints = ConstraintKind::per_patch;

@@ -51,7 +51,7 @@ class EditSession {
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
 
-  /// One edit from the accepted controls toward `goal`, (m, 3). Refines its first answer while that is cheap.
+  /// One edit from the accepted controls toward `goal`, (m, 3). Refines its first solution while that is cheap.
   EditResult edit(const Controls& goal, Execution& execution);
 
   /// One mouse move of a drag: applies the increment since the last goal, then pulls toward the absolute goal.
@@ -67,7 +67,7 @@ class EditSession {
   void restore(const Controls& controls) { restore(controls, controls); }
 
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
-  /// As stiv::is_step_free, with the trees of the session. For sessions without excluded pairs.
+  /// Like stiv::is_step_free, but with the trees of the session. For sessions without excluded pairs.
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution);
 
   const Controls& controls() const;  ///< accepted, (m, 3)

@@ -44,7 +44,8 @@ struct RepairResult {
   Index fewest_pairs = 0;  ///< number of intersecting pairs after the best contraction
   Index steps = 0;         ///< steps of contraction, of all strategies
   double deviation = 0;    ///< root mean square distance of the best repaired surface from the input, over the vertices
-                           ///< that may move, in diagonals of their bounding box; also set if refused as too far
+                           ///< that may move, in diagonals of their bounding box; also set if the repair is refused
+                           ///< because of it
   std::string contracted;  ///< the best strategy: name of a body, "all", "shrunk components", "components", "regions"
   Counters counters;
   Timings timings;

@@ -15,7 +15,7 @@ struct LcpOptions {
 
 /// Solves 0 <= x, B x + b >= 0, x' (B x + b) = 0 for symmetric positive semi-definite B, (n, n), by projected
 /// Gauss-Seidel with subspace minimization on the active rows [Silcowitz, Niebe, Erleben 2010]. Rows without a positive
-/// diagonal have x = 0. If there is no solution, since constraints contradict each other, it returns the last iterate.
+/// diagonal have x = 0. If there is no solution because constraints contradict each other, it returns the last iterate.
 /// [P3.3; Cottle, Pang, Stone 1992, 5.3]
 /// @param start first guess, (n) or shorter; missing and negative values count as 0
 /// @throws Interrupted by options.execution

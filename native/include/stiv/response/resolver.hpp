@@ -22,7 +22,7 @@ struct ControlConstraint {
   double bound = 0;
 };
 
-/// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
+/// Linearizes STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
 /// (mathematics.md, Eq. 5)
 /// @param metric_at controls at which the metric is evaluated, the same for all constraints solved together
 /// @param execution threads and cancellation; null: one thread

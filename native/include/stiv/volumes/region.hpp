@@ -28,7 +28,7 @@ struct Region {
 std::vector<Region> earliest_regions(const Surface& surface, const Events& events, const Positions& start,
                                      const Positions& end);
 
-/// A region for each event, on its first side alone; events of rigid bodies as above. For local metrics, where each
+/// A region for each event, on its first side only; events of rigid bodies as above. For local metrics, where each
 /// contact can be resolved by itself (Metric::is_local). Not sorted by vertex.
 std::vector<Region> contact_regions(const Surface& surface, const Events& events, const Positions& start,
                                     const Positions& end);

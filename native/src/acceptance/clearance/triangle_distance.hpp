@@ -13,7 +13,7 @@ NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std:
                                    const PositionsView& q);
 
 /// A fast lower bound of their distance, with a margin for rounding: from planes orthogonal to the line through the
-/// centres and parallel to each triangle.
+/// centers and parallel to each triangle.
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                const PositionsView& q);
 

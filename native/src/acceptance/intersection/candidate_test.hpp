@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// Tests candidate pairs and reports those that intersect. Neighbours are tested one by one, other pairs in blocks that
+/// Tests candidate pairs and reports those that intersect. Neighbors are tested one by one, other pairs in blocks that
 /// pass a filter first.
 class CandidateTest {
  public:

@@ -6,9 +6,9 @@
 namespace stiv {
 
 /// Fast proofs that two triangles do not intersect, in floating point with rounding bounds. True is certain; false is
-/// inconclusive. They decide nearly all pairs, also of flat surfaces, where exact determinants are expensive.
+/// inconclusive. They decide nearly all pairs, even on flat surfaces, where exact determinants are expensive.
 
-/// Tries planes orthogonal to the line through the centres, and planes through an edge along an axis.
+/// Tries planes orthogonal to the line through the centers, and planes through an edge along an axis.
 bool separated_by_plane(const Triangle& a, const Triangle& b);
 
 /// True: (corner, a0, a1) and (corner, b0, b1) share only the corner.

@@ -28,7 +28,7 @@ struct TrianglePairs {
 using TriangleFlags = std::array<unsigned char, TrianglePairs::capacity>;
 
 /// 1 for each pair that one of these planes strictly separates, rounding included: orthogonal to the line through the
-/// centres, parallel to a triangle, or orthogonal to a triangle through an edge of it. 1 is certain; 0 is inconclusive.
+/// centers, parallel to a triangle, or orthogonal to a triangle through an edge of it. 1 is certain; 0 is inconclusive.
 void find_separated(const TrianglePairs& pairs, const PackedPoints& points, TriangleFlags& separated);
 
 }  // namespace stiv

@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-// Each of the six products in a determinant of two differences and an exact direction has at most seven roundings.
-// 32 u times a bound of their magnitudes covers that and the rounding of the bound itself.
+// Each of the six products in a determinant of two differences and an exact direction has at most seven roundings. 32 u
+// times a bound on their magnitudes covers that and the rounding of the bound itself.
 constexpr double rounding = 32 * 0x1p-53;
 // More than the error of a determinant by underflow.
 constexpr double underflow = 0x1p-960;
@@ -44,7 +44,7 @@ HWY_INLINE Point points_of(const Index* vertices, const PackedPoint* points) {
   return load_points(rows);
 }
 
-/// For as many stars as there are lanes, starting with `first`.
+/// Processes one star in each lane, starting with `first`.
 HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPoint* points) {
   const Doubles d;
   const Point centre = points_of(stars.vertices.data() + first, points);
@@ -64,7 +64,7 @@ HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPo
   for (std::size_t k = 0; k < stars.triangles; ++k) {
     free = hn::And(free, hn::Gt(turns.turn(edges[k], edges[k + 1]), turns.error(edges[k], edges[k + 1])));
     const Lanes turn = turns.turn(edges[0], edges[k + 1]), error = turns.error(edges[0], edges[k + 1]);
-    // Does triangle k hold the first edge, on which it neither begins nor ends?
+    // Does triangle k contain the first edge, other than as a side of its own?
     const bool on_it = k == 0 || (stars.closed && k + 1 == stars.triangles);
     if (!on_it) free = hn::AndNot(hn::AndNot(hn::Lt(turn, hn::Neg(error)), before), free);
     before = hn::Not(hn::Gt(turn, error));
@@ -89,7 +89,7 @@ HWY_AFTER_NAMESPACE();
 namespace stiv {
 
 std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points) {
-  StarBlock whole = stars;  // lanes that nobody asked for repeat the last one
+  StarBlock whole = stars;  // unused lanes repeat the last star
   for (std::size_t k = stars.count; k < StarBlock::capacity; ++k) {
     whole.vertices[k] = stars.vertices[stars.count - 1];
     whole.links[k] = stars.links[stars.count - 1];

@@ -38,7 +38,7 @@ struct LinkEdgeTable {
   }
 };
 
-/// Orders link edges so that each begins at the end of the one before. Returns false if they are not a single chain
+/// Orders link edges so that each begins where the previous one ends. Returns false if they are not a single chain
 /// without repeated vertices.
 bool chain(std::span<LinkEdge> edges) {
   for (std::size_t k = 0; k < edges.size(); ++k)
@@ -58,7 +58,7 @@ bool chain(std::span<LinkEdge> edges) {
   return true;
 }
 
-/// A single triangle has no pair of neighbours. Stars of very many triangles are left to the tests of pairs.
+/// A single triangle has no pair of neighbors. Stars with very many triangles are left to the pair tests.
 bool is_provable(std::span<LinkEdge> edges) {
   return edges.size() > 1 && edges.size() <= StarBlock::most_triangles && chain(edges);
 }

@@ -14,7 +14,7 @@ namespace stiv {
 /// edges. A star is free if, seen along some direction, all its triangles face that direction and turn around the
 /// vertex at most once. (mathematics.md, "Stars")
 ///
-/// On a smooth surface every star is free, so that no pair of neighbours needs a test.
+/// On a smooth surface every star is free, so no pair of neighbors needs a test.
 class Stars {
  public:
   /// @param triangles (F, 3) corners, which may repeat

@@ -22,7 +22,7 @@ struct Corners {
   }
 };
 
-/// Shared corners of two triangles and corners of one alone, each once.
+/// Corners that two triangles share, and corners of only one of them, each once.
 struct Sharing {
   Corners both, first_only, second_only;
 

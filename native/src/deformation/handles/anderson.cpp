@@ -9,13 +9,13 @@ namespace stiv {
 namespace {
 
 constexpr std::size_t window = 10;
-constexpr double damping = 1e-13;  // of the mean of the squares: residuals that say the same twice
+constexpr double damping = 1e-13;  // relative to the mean of the diagonal, for nearly dependent residuals
 
 double dot(const Positions& a, const Positions& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace
 
-/// The differences of the last few points, and their products.
+/// Appends to the last few differences and to their products.
 void AndersonAcceleration::add(Difference difference) {
   differences_.push_back(std::move(difference));
   if (differences_.size() > window) {

@@ -7,15 +7,15 @@
 
 namespace stiv {
 
-/// Anderson acceleration of a fixed-point iteration x = g(x): the next point from the last few points and their images,
-/// such that the residuals g(x) - x, taken as linear, cancel best. [Anderson 1965; for local and global steps: Peng et
-/// al. 2018]
+/// Anderson acceleration of a fixed-point iteration x = g(x). The next point combines the last few points and their
+/// images so that the residual g(x) - x, assumed to be linear, is least. [Anderson 1965; for local and global steps:
+/// Peng et al. 2018]
 class AndersonAcceleration {
  public:
-  /// The next point after x, of which g is the image.
+  /// The point that follows x, whose image is g.
   Positions next(const Positions& x, const Positions& g);
 
-  /// Forget all points: they led astray.
+  /// Forgets all points, after an extrapolation that failed.
   void restart() { *this = {}; }
 
  private:
@@ -25,7 +25,7 @@ class AndersonAcceleration {
   void add(Difference difference);
 
   std::deque<Difference> differences_;
-  Eigen::MatrixXd products_;  // of the residuals' differences
+  Eigen::MatrixXd products_;  // inner products of the differences of residuals
   Positions last_residual_, last_image_;
   bool has_last_ = false;
 };

@@ -18,10 +18,10 @@ namespace stiv {
 namespace {
 
 constexpr int most_steps = 300;
-constexpr double least_motion = 1e-11;    // of the mesh's size: a step that moves less is the last
-constexpr double rough_motion = 1e-6;     // the same where contacts are found and linearised
-constexpr double least_residual = 1e-10;  // of the first one, in solving for J
-constexpr double slack = 1e-12;           // by which rounding may raise an energy
+constexpr double least_motion = 1e-11;    // of the mesh's size: a shorter step is the last
+constexpr double rough_motion = 1e-6;     // the same while rounds find and linearize contacts
+constexpr double least_residual = 1e-10;  // relative to the first one, when solving for J
+constexpr double slack = 1e-12;           // relative increase of an energy that rounding may cause
 
 /// Displacements near a minimum, and the rotations there.
 struct Shape {
@@ -38,7 +38,7 @@ struct Descent {
   int step = 0;
 };
 
-/// The minimum for some controls as the surface needs it, or the approximation on the way to it that rounds need.
+/// The minimum for some controls: exact for the surface, approximate for rounds.
 struct Minimum {
   Controls p;
   Shape rough;
@@ -46,7 +46,7 @@ struct Minimum {
   bool is_exact = false;
 };
 
-/// An entry for each two free vertices that are in one cell.
+/// An entry for each pair of free vertices in one cell.
 SymmetricMatrix pattern_within_two_rings(const SymmetricMatrix& stiffness, const HandlePartition& partition) {
   const SymmetricMatrix within = stiffness.cwiseAbs() * stiffness.cwiseAbs();
   std::vector<Eigen::Triplet<double, Index>> entries;
@@ -87,7 +87,7 @@ class Arap final : public HandleDeformation {
     return rows_of(positions(minimum(p, false)->rough, p), vertices);
   }
 
-  /// J'g = M'(g + C H^-1 g): the transpose of the below.
+  /// J'g = M'(g + C H^-1 g), the transpose of J below.
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
     const auto state = minimum(p, false);
     Positions covector = Positions::Zero(vertex_count(), 3);
@@ -95,8 +95,8 @@ class Arap final : public HandleDeformation {
     return pulled_through(state->rough, solve_hessian(state->rough, covector), g);
   }
 
-  /// Many at once, as the contacts of a round: by a factor of H, which all of them share. A contact's covector is one
-  /// column, sixteen of them a pass.
+  /// Many covectors, such as the contacts of a round, share a factor of H. Each contact's covector is one column, and
+  /// each pass solves for sixteen columns.
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                          const Execution& execution) const override {
     const auto state = minimum(p, false);
@@ -114,7 +114,7 @@ class Arap final : public HandleDeformation {
     return pulled;
   }
 
-  /// J d = M d + H^-1 C M d: the global step with frozen rotations, and how the rotations answer it.
+  /// J d = M d + H^-1 C M d: the global step with frozen rotations, and the response of the rotations.
   Positions push_forward(const Controls& p, const Controls& d) const override {
     check_control_rows(d, control_count());
     const auto state = minimum(p, false);
@@ -131,7 +131,7 @@ class Arap final : public HandleDeformation {
   std::vector<Index> support(Index control) const override { return map_.support(control); }
 
  private:
-  /// J'g with y = H^-1 g: A S y of soft handles, as J = H^-1 S'A; M'(g + C y) of hard ones.
+  /// J'g with y = H^-1 g: A S y for soft handles, since J = H^-1 S'A; M'(g + C y) for hard ones.
   SparseField pulled_through(const Shape& shape, const Positions& y, const SparseField& g) const {
     if (pull_.size() == 0) {
       Positions covector = cells_.load_change(shape.fits, y);
@@ -161,8 +161,8 @@ class Arap final : public HandleDeformation {
     return sum;
   }
 
-  /// Rounds ask for J where they have just asked for rows of the surface, and then for all of it: the last minimum is
-  /// stored.
+  /// The last minimum is cached: rounds evaluate some rows of the surface, then J and the whole surface at the same
+  /// controls.
   std::shared_ptr<const Minimum> minimum(const ControlsView& p, bool exact) const {
     std::shared_ptr<const Minimum> last = last_minimum();
     const bool is_known = last && last->p == p;
@@ -201,14 +201,14 @@ class Arap final : public HandleDeformation {
     return {{start, cells_.fit(start)}, start, start};
   }
 
-  /// Local and global steps until one moves less than `least` of the mesh's size. A descent that is taken further has
-  /// the bits of one that was not interrupted.
+  /// Repeats local and global steps until one moves less than `least` times the mesh's size. A descent that is
+  /// continued later has the same bits as an uninterrupted one.
   void descend(Descent& descent, const Controls& d, double least) const {
     if (d.isZero(0)) return;
     auto& [shape, start, plain, acceleration, before, step] = descent;
     for (; step < most_steps; ++step) {
       double now = energy(shape.u, shape.fits, d);
-      if (now > before * (1 + slack)) {  // led astray: the global step itself never raises it
+      if (now > before * (1 + slack)) {  // the extrapolation failed: a global step never raises the energy
         acceleration.restart();
         shape.u = plain;
         shape.fits = cells_.fit(shape.u, shape.fits);
@@ -223,9 +223,9 @@ class Arap final : public HandleDeformation {
     }
   }
 
-  /// H^-1 r of the free vertices, H = K - C the Hessian of the energy with its rotations: conjugate gradients with the
-  /// factor of K. (K z = r is known, so K is never multiplied with.) It ends early where H is not positive: at a
-  /// saddle.
+  /// H^-1 r for the free vertices by conjugate gradients, preconditioned with the factor of K. H = K - C is the Hessian
+  /// of the energy, rotations included. (K z = r is known, so no product with K is computed.) Ends early at a saddle,
+  /// where H is not positive definite.
   Positions solve_hessian(const Shape& shape, const Positions& right) const {
     Positions y = Positions::Zero(vertex_count(), 3), residual = freed(right);
     Positions z = map_.solve(residual), direction = z, pushed = residual;
@@ -252,11 +252,11 @@ class Arap final : public HandleDeformation {
     return *pattern_;
   }
 
-  /// H = K + S'A S - C of the free vertices, factored; nothing at a saddle.
+  /// The factor of H = K + S'A S - C for the free vertices; nothing at a saddle.
   std::unique_ptr<const BlockFactor> factor_hessian(const Shape& shape) const {
     const std::vector<Index>& place = map_.partition().place;
     const BlockPattern& pattern = hessian_pattern();
-    std::vector<Eigen::Matrix3d> blocks(pattern.entries() + 1, Eigen::Matrix3d::Zero());  // one for the rest
+    std::vector<Eigen::Matrix3d> blocks(pattern.entries() + 1, Eigen::Matrix3d::Zero());  // last: ignored
     const auto block_at = [&](Index row, Index column) -> Eigen::Matrix3d& {
       const Index i = place[at(row)], j = place[at(column)];
       return blocks[i >= 0 && j >= 0 ? pattern.slot(i, j) : pattern.entries()];
@@ -286,7 +286,7 @@ class Arap final : public HandleDeformation {
     return values;
   }
 
-  /// The rows of the vertices that are solved for; 0 elsewhere.
+  /// The rows of the free vertices; 0 elsewhere.
   Positions freed(const Positions& values) const {
     Positions result = Positions::Zero(values.rows(), 3);
     for (const Index vertex : map_.partition().free) result.row(vertex) = values.row(vertex);

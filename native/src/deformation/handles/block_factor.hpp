@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// Order of elimination and pattern of the factor for symmetric matrices of 3 x 3 blocks that share their pattern.
+/// Elimination order and factor pattern for symmetric matrices of 3 x 3 blocks with the same pattern.
 class BlockPattern {
  public:
   /// @param pattern (n, n), symmetric: an entry for each block
@@ -29,7 +29,8 @@ class BlockPattern {
   std::vector<std::size_t> factor_starts_;  // of the columns of L, without diagonal
 };
 
-/// L D L' of a block matrix: reads nine times fewer indices than SparseFactor. [Davis, Direct Methods, 4.8]
+/// The factorization L D L' of a matrix of 3 x 3 blocks. It reads one index where SparseFactor reads nine. [Davis,
+/// Direct Methods, 4.8]
 class BlockFactor {
  public:
   using Block = Eigen::Matrix3d;

@@ -31,7 +31,7 @@ std::vector<Vector3> directions_of(const SparseField& field) {
   return {Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
 }
 
-/// A field with a row for each of `count`, all zero.
+/// A zero field with the rows 0 to `count` - 1.
 SparseField whole_field(Index count) {
   SparseField field;
   for (Index k = 0; k < count; ++k) field.index.push_back(k);
@@ -114,7 +114,7 @@ void HandleMap::build_full_map() {
   }
 }
 
-/// Adjacent handles drive few rows, those along the boundary of the patch. M'g = D' K^-1 g reads these rows alone, so
+/// Adjacent handles drive few rows, those along the boundary of the patch. M'g = D' K^-1 g reads only these rows, so
 /// with their columns of K^-1 cached, a contact costs a few products.
 void HandleMap::cache_columns(const std::vector<Index>& driven) {
   constexpr Index width = ColumnBlock::ColsAtCompileTime;

@@ -17,12 +17,12 @@ struct HandleMapLimits {
   double entries = 256e6 / sizeof(double);  ///< stored entries of M, or of columns of K^-1
   double products = 3e10;                   ///< multiplications to compute M'M exactly
   Index probes = 128;                       ///< rank of the approximation of M'M otherwise; a multiple of 16
-  double negligible = 1e-4;   ///< bound of dropped entries of a large M, relative to their column's largest
+  double negligible = 1e-4;   ///< bound on dropped entries of a large M, relative to their column's largest
   double density = 1.0 / 16;  ///< largest fraction of entries of M that a truncated M stores
 };
 
 /// The linear map u = M d from displacements d, (m, 3), of the handles to displacements u, (n, 3), of the vertices. u
-/// minimises u'Ku + sum pull_k |u_h(k) - d_k|^2, with u = 0 at fixed vertices. M is the same for x, y and z. A small M
+/// minimizes u'Ku + sum pull_k |u_h(k) - d_k|^2, with u = 0 at fixed vertices. M is the same for x, y and z. A small M
 /// is stored. For a larger one, the columns of K^-1 that M'g reads are cached if they are small enough. All other
 /// products are solves.
 class HandleMap {
@@ -43,8 +43,8 @@ class HandleMap {
   Positions follow(const Controls& d) const;          ///< M d
   SparseField pull_back(const SparseField& g) const;  ///< M'g, a row for every control
 
-  /// M'g for each covector. A contact's covector has one direction at all of its vertices, so that it needs one column
-  /// of a solve, and several covectors share a pass over the factor. (mathematics.md, "Laplacian editing")
+  /// M'g for each covector. A contact's covector has one direction at all of its vertices. So it needs one column of a
+  /// solve, and several covectors share a pass over the factor. (mathematics.md, "Laplacian editing")
   std::vector<SparseField> pull_back_all(const std::vector<SparseField>& g, const Execution& execution) const;
 
   /// Solves (K + pulls) u = rhs for the free vertices; u = 0 elsewhere. Reads the rows of free vertices of rhs, (n, 3).

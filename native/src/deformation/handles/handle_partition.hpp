@@ -8,7 +8,7 @@
 
 namespace stiv {
 
-/// The mesh of a definition, whose elements it checks.
+/// Checks the elements of a definition and returns its mesh.
 /// @throws InputError: see make_laplacian
 Surface checked_mesh(const HandleDefinition& definition);
 

@@ -11,7 +11,7 @@ namespace {
 using Triplets = std::vector<Eigen::Triplet<double, Index>>;
 
 /// Bounds of edge weights, so that the Laplacian stays definite: obtuse triangles can make the sum of an edge's
-/// cotangents zero or negative, slivers make it arbitrarily large.
+/// cotangents zero or negative, and slivers can make it arbitrarily large.
 constexpr double least_weight = 1e-3;
 constexpr double most_cotangent = 1e3;
 

@@ -9,12 +9,12 @@ namespace stiv {
 
 namespace {
 
-/// Radians. The next fit continues from this one, and turns shrink as positions settle.
+/// In radians. Each fit starts from the previous one, and the turns shrink as the positions converge.
 constexpr double settled_turn = 1e-3;
 
 using Edge = SymmetricMatrix::InnerIterator;
 
-/// The edge from its neighbour to a vertex.
+/// The edge from its neighbor to a vertex.
 Vector3 across(const Positions& q, Index vertex, const Edge& edge) {
   return (q.row(vertex) - q.row(edge.row())).transpose();
 }

@@ -17,20 +17,21 @@ class RigidCells {
 
   /// The local step: the rotation of each cell from rest to positions rest + u.
   std::vector<RotationFit> fit(const Positions& u) const;
-  /// The same from the rotations at positions nearby, to about the square of the turns between them.
+  /// The same, starting from the rotations at nearby positions. The error is about the square of the turns between
+  /// them.
   std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby) const;
 
   /// 1/4 sum_i sum_j w_ij |(u_i - u_j) - (R_i - 1)(rest_i - rest_j)|^2.
   double energy(const Positions& u, const std::vector<RotationFit>& fits) const;
 
-  /// The right side of the global step: minus the gradient of the energy at u = 0 with these rotations.
+  /// The right-hand side of the global step: minus the gradient of the energy at u = 0 with these rotations.
   Positions load(const std::vector<RotationFit>& fits) const;
 
-  /// How the load answers a change du of the positions, by way of the rotations; symmetric in du.
+  /// The change of the load that a change du of the positions causes through the rotations; a symmetric linear map.
   Positions load_change(const std::vector<RotationFit>& fits, const Positions& du) const;
 
-  /// Calls visit(row, column, block) with the blocks of that as a matrix, several for each pair of vertices, to be
-  /// added up: C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij, the torque on cell i.
+  /// Calls visit(row, column, block) with the blocks of that map's matrix C. The blocks of each pair of vertices add
+  /// up. C = 1/2 sum_i T_i' response_i T_i with T_i du = sum_j w_ij rest_ij x R_i' du_ij, the torque on cell i.
   void visit_load_blocks(const std::vector<RotationFit>& fits,
                          const std::function<void(Index, Index, const Eigen::Matrix3d&)>& visit) const;
 

@@ -29,13 +29,13 @@ bool invert_definite(const Eigen::Matrix3d& matrix, double margin, Eigen::Matrix
   return true;
 }
 
-/// The rotation by about |w| about w, to the third order, rational in w.
+/// A rotation about w by |w| to third order, rational in w.
 Eigen::Matrix3d rotation_by(const Vector3& w) {
   const Eigen::Matrix3d half = cross_matrix(w / 2);
   return Eigen::Matrix3d::Identity() + 2 / (1 + w.squaredNorm() / 4) * (half + half * half);
 }
 
-/// Takes away what rounding adds to a product of rotations.
+/// Removes rounding errors from a product of rotations.
 Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& rotation) {
   return rotation * (3 * Eigen::Matrix3d::Identity() - rotation.transpose() * rotation) / 2;
 }

@@ -5,8 +5,8 @@
 
 namespace stiv {
 
-/// The rotation R nearest to a matrix A, and how it answers: a change dA turns it by dR = R [w]x,
-/// w = response (X - X')_axial, X = R' dA. Directions in which A does not tell the rotation have no response.
+/// The rotation R nearest to a matrix A, and its derivative: a change dA turns it by dR = R [w]x, w = response (X -
+/// X')_axial, X = R' dA. The response is 0 in directions in which A does not determine the rotation.
 struct RotationFit {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d response = Eigen::Matrix3d::Zero();
@@ -14,9 +14,9 @@ struct RotationFit {
 
 RotationFit fit_rotation(const Eigen::Matrix3d& matrix);
 
-/// The same to rounding, by Newton's method from a rotation near it: a tenth of the time of singular values, which
-/// remain where the method does not converge. Its last step is the first of at most `settled_turn` radians; the error
-/// that remains is of the order of its square.
+/// The same up to rounding, by Newton's method from a nearby rotation: ten times as fast as singular values, which are
+/// used only where the method does not converge. It ends after the first step of at most `settled_turn` radians. The
+/// remaining error is of the order of that step's square.
 RotationFit fit_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& guess, double settled_turn = 1e-7);
 
 /// (S - S')_axial: the vector v with [v]x = S - S'.

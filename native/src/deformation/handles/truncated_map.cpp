@@ -15,7 +15,7 @@ constexpr Index width = ColumnBlock::ColsAtCompileTime;
 
 using Triplets = std::vector<Eigen::Triplet<double, Index>>;
 
-/// Controls that drive something, those of neighbouring handles side by side.
+/// Controls with entries in `drive`, ordered so that neighboring handles are close to each other.
 std::vector<Index> driving_controls(const SparseFactor& factor, const SymmetricMatrix& drive) {
   std::vector<std::pair<Index, Index>> places;
   for (Index control = 0; control < drive.cols(); ++control)
@@ -48,7 +48,7 @@ void add_columns(DecayingSolver& solver, const SymmetricMatrix& drive, const Han
         entries.emplace_back(partition.free[at(row.row)], controls[lane], value);
 }
 
-/// Vertices that are hard handles follow theirs.
+/// Hard handles follow their controls.
 Triplets held_entries(const HandlePartition& partition) {
   Triplets entries;
   for (std::size_t vertex = 0; vertex < partition.control.size(); ++vertex)

@@ -11,9 +11,8 @@
 namespace stiv {
 
 /// M, (n, m), of a handle map without the entries below `negligible` times the largest of their column. Handles that
-/// are scattered over a mesh move their neighbourhood alone, so few entries remain. Nothing if more than `limit`
-/// remain.
-/// @param drive (free, m): what a displacement of each handle adds to the right side of the factor's equations
+/// are scattered over a mesh move only their neighborhoods, so few entries remain. Nothing if more than `limit` remain.
+/// @param drive (free, m): each handle's contribution to the right-hand side of the factor's equations
 std::optional<WeightMatrix> truncated_map(const SparseFactor& factor, const SymmetricMatrix& drive,
                                           const HandlePartition& partition, double negligible, double limit);
 

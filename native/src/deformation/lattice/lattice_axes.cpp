@@ -30,7 +30,7 @@ FourWeights interpolate(LatticeInterpolation interpolation, double t) {
 AxisWeights axis_weights(const LatticeAxis& axis, double coordinate) {
   if (axis.count == 1) return {-1, {0, 1, 0, 0}};
   const double u = (coordinate - axis.first) / axis.spacing, cell = std::floor(u);
-  // From two cells outside on, all four points are the outermost one: clamp before the conversion to an integer.
+  // Two or more cells outside, all four points are the outermost one: clamp before the conversion to an integer.
   const auto base = static_cast<Index>(std::clamp(cell, -3.0, axis.count + 1.0));
   return {base - 1, interpolate(axis.interpolation, u - cell)};
 }

@@ -30,7 +30,7 @@ AxisWeights axis_weights(const LatticeAxis& axis, double coordinate);
 /// @throws InputError if points along an axis coincide
 std::array<LatticeAxis, 3> lattice_axes(const LatticeDefinition& lattice);
 
-/// The factors of the rows of lattice_weights, whose arguments they share; already checked.
+/// The factors of the rows of lattice_weights, for the same arguments, which are already checked.
 Eigen::VectorXd lattice_factors(const LatticeDefinition& lattice, const Positions& rest_vertices,
                                 const Eigen::VectorXd& influence);
 

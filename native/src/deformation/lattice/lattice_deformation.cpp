@@ -10,7 +10,7 @@ namespace stiv {
 
 namespace {
 
-/// As the linear deformation `linear`, but products use the weights along each axis.
+/// Equals the linear deformation `linear`, but products use the weights along each axis.
 class Lattice final : public LinearDeformation {
  public:
   Lattice(std::shared_ptr<const LinearDeformation> linear, LatticeSums sums)

@@ -111,7 +111,7 @@ Positions LatticeSums::sum(const Controls& p, std::span<const Index> vertices, c
   return sum(p, vertices.data(), static_cast<Index>(vertices.size()), execution);
 }
 
-/// Of `count` vertices: those of `vertices`, or, where it is null, all.
+/// Sums at `count` vertices: those of `vertices`, or all if it is null.
 Positions LatticeSums::sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const {
   constexpr Index rows_per_chunk = 2048;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> points(static_cast<Index>(points_.size()), 4);

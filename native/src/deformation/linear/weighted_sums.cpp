@@ -40,7 +40,7 @@ HWY_INLINE Some with_entry(const WeightedSums& s, Index entry, std::size_t axis,
   return hn::Add(sum, hn::Mul(hn::Set(d, s.weights[entry]), hn::LoadU(d, control)));
 }
 
-/// Four sums side by side: an addition need not wait for the one before.
+/// Four independent sums, so that no addition waits for the previous one.
 HWY_INLINE void add_row(const WeightedSums& s, Index place, std::size_t axis) {
   const Coordinates d;
   const Index row = s.rows == nullptr ? place : s.rows[place];
@@ -73,7 +73,7 @@ namespace stiv {
 
 namespace {
 
-/// Of `count` rows: those of `rows`, or, where it is null, all.
+/// Sums of `count` rows: those of `rows`, or all if it is null.
 Positions sums_of(const WeightMatrix& matrix, const Index* rows, Index count, const Controls& x,
                   const Execution& execution) {
   constexpr Index rows_per_chunk = 1024;

@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// M x, (rows, 3). The order of additions depends on the rows alone and none is fused: same bits for any vector width
+/// M x, (rows, 3). The order of additions depends only on the rows, and none is fused: same bits for any vector width
 /// and number of threads.
 Positions weighted_sums(const WeightMatrix& matrix, const Controls& x, const Execution& execution);
 

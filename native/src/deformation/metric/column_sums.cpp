@@ -21,7 +21,7 @@ struct ColumnSums {
   const Index* columns;
   const double* values;  ///< (count, 3)
   std::size_t count;
-  double* sums;  ///< (rows, 3), by columns
+  double* sums;  ///< (rows, 3), column by column
 };
 
 constexpr std::size_t tile_rows = 32;  // four vectors of the widest target; a multiple of those of all others
@@ -33,7 +33,7 @@ constexpr std::size_t tile_rows = 32;  // four vectors of the widest target; a m
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// Sums of some rows along the three axes stay in registers while all columns go by.
+/// Keeps the sums of a tile of rows along the three axes in registers, and loops over all columns.
 HWY_INLINE void add_tile(const ColumnSums& s, std::size_t row) {
   const Doubles d;
   const std::size_t lanes = hn::Lanes(d);

@@ -9,7 +9,7 @@ namespace stiv {
 
 namespace {
 
-/// M^-1 = W: what is sparse stays sparse.
+/// M^-1 = W, so a step is as sparse as its covector.
 class ControlMetric final : public Metric {
  public:
   ControlMetric(Eigen::VectorXd weights, bool local) : weights_(std::move(weights)), local_(local) {}

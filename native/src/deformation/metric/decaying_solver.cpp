@@ -7,7 +7,7 @@ namespace stiv {
 
 namespace {
 
-/// Rows that border a subtree are negligible from a smaller size on, because a solution can grow from them.
+/// Rows that border a subtree have a smaller bound, because a solution can grow from them.
 constexpr double border_fraction = 0.25;
 
 }  // namespace
@@ -57,7 +57,7 @@ DecayingSolver::Row DecayingSolver::solve_path() {
   return largest;
 }
 
-/// Is a row large on which the subtrees below a column depend?
+/// Do the subtrees below a column depend on a row that is not negligible?
 bool DecayingSolver::borders_something(Index column) const {
   if (is_large_[at(column)] != 0) return true;
   for (SymmetricMatrix::InnerIterator entry(factor_.lower(), column); entry; ++entry)

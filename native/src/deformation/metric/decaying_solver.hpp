@@ -14,16 +14,16 @@ struct BlockRow {
   Eigen::Array<double, 1, ColumnBlock::ColsAtCompileTime> values;
 };
 
-/// Solves for sparse right sides whose solutions decay away from them, without the rows where nothing is left. The
-/// solution in a subtree of the elimination tree depends on its right side and on the rows that border it. A subtree
-/// without a right side is skipped where all of these rows are negligible, so little of L is read.
+/// Solves for sparse right-hand sides whose solutions decay away from them, and leaves out negligible rows. The
+/// solution in a subtree of the elimination tree depends on its right-hand side and on the rows that border it. A
+/// subtree with a zero right-hand side is skipped if all of these rows are negligible, so little of L is read.
 class DecayingSolver {
  public:
   /// @param negligible relative to the largest entry of a column of the solution
   DecayingSolver(const SparseFactor& factor, double negligible);
 
   /// The rows of the solutions with entries that are not negligible; the other entries of these rows are 0.
-  /// @param right rows of sixteen right sides that are close to each other; equal rows are summed
+  /// @param right rows of sixteen right-hand sides that are close to each other; repeated rows add up
   std::vector<BlockRow> solve(const std::vector<BlockRow>& right);
 
  private:
@@ -44,7 +44,7 @@ class DecayingSolver {
   // Per call; zero between calls:
   std::vector<Row> x_;
   std::vector<unsigned char> on_path_, is_large_, visits_children_;
-  std::vector<Index> path_;    ///< ancestors of the right sides' rows, ascending
+  std::vector<Index> path_;    ///< ancestors of the rows of the right-hand sides, ascending
   std::vector<Index> solved_;  ///< columns that were not skipped
 };
 

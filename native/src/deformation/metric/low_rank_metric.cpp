@@ -37,7 +37,7 @@ struct Spectrum {
   Eigen::VectorXd values;   ///< (r)
 };
 
-/// Columns divided by the roots of `squares`, without those of the smallest.
+/// Columns divided by the square roots of `squares`, without the columns of the smallest ones.
 Eigen::MatrixXd normalised(const Eigen::MatrixXd& columns, const Eigen::VectorXd& squares) {
   const double least = least_eigenvalue * std::max(squares.maxCoeff(), 0.0);
   const auto dropped = (squares.array() <= least).count();  // eigenvalues come in ascending order

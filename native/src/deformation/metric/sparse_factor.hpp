@@ -11,12 +11,12 @@ namespace stiv {
 
 using SymmetricMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
-/// Sixteen right sides at once, one a column.
+/// Sixteen right-hand sides, one in each column.
 using ColumnBlock = Eigen::Matrix<double, Eigen::Dynamic, 16, Eigen::RowMajor>;
 
-/// L D L' of a symmetric positive definite matrix. The factor does not fit into the processor's cache, so all right
-/// sides share one pass over it: three cost as much as one, sixteen twice as much. Each column's result has the
-/// same bits in whatever company it is solved for.
+/// L D L' of a symmetric positive definite matrix. The factor does not fit into the processor's cache, so all
+/// right-hand sides share one pass over it. Three cost as much as one, sixteen twice as much. The bits of a column's
+/// result do not depend on the other columns.
 class SparseFactor {
  public:
   /// @throws InputError that begins with `what` if the matrix cannot be factored
@@ -27,12 +27,12 @@ class SparseFactor {
   Positions solve(const Positions& right) const;
   ColumnBlock solve(const ColumnBlock& right) const;
 
-  /// (size) Marks for solutions of which some rows alone are asked: these rows depend on the marked ones, and on no
-  /// others. They are the ancestors in the elimination tree. [Gilbert 1994; Davis, Direct Methods, 3.2]
+  /// (size) Marks the rows on which the given rows of a solution depend: their ancestors in the elimination tree.
+  /// [Gilbert 1994; Davis, Direct Methods, 3.2]
   std::vector<unsigned char> needed_for(const std::vector<Index>& rows) const;
 
-  /// The solution at the rows that `needed` was made for, with the bits of `solve`. Where right sides are zero nearly
-  /// everywhere too, little of L is read.
+  /// The solution at the rows that `needed` was made for, with the bits of `solve`. If the right-hand sides are zero
+  /// nearly everywhere too, little of L is read.
   Positions solve(const Positions& right, const std::vector<unsigned char>& needed) const;
   ColumnBlock solve(const ColumnBlock& right, const std::vector<unsigned char>& needed) const;
 

@@ -33,7 +33,7 @@ class Scaling final : public Deformation {
     return {{0, 1}, {force, stretch}};
   }
 
-  // The map is linear, so that without an offset it is its own derivative.
+  // The map is linear, so without its offset it is its own derivative.
   Positions push_forward(const Controls&, const Controls& d) const override { return placed(d); }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {

@@ -61,7 +61,7 @@ void check_creases(const std::vector<float>& creases, Index count, const std::st
       throw InputError("cage, " + element + " " + std::to_string(k) + ": crease must be in [0, 1]");
 }
 
-/// Ends in ascending order, then the edge, so that of several edges between two vertices the first sorts first.
+/// Ends in ascending order, then the edge: if several edges join two vertices, the first one sorts first.
 using EdgeKey = std::tuple<Index, Index, Index>;
 
 std::vector<EdgeKey> sorted_edges(const Cage& cage) {

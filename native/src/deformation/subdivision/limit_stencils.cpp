@@ -35,7 +35,7 @@ float crease_sharpness(const std::vector<float>& creases, std::size_t k) {
   return creases.empty() ? 0 : infinite_sharpness * creases[k] * creases[k];
 }
 
-/// Sharpness added to a vertex of exactly two edges: the lesser one of theirs, as in Blender's modifier.
+/// Sharpness added to a vertex of exactly two edges: the smaller of their sharpnesses, as in Blender's modifier.
 std::vector<float> corner_sharpness(const Cage& cage) {
   const auto count = static_cast<std::size_t>(cage.vertex_count);
   std::vector<float> least(count, infinite_sharpness);

@@ -102,7 +102,8 @@ std::vector<SurfaceLocation> surface_locations(const Cage& cage, const Subdivide
   };
   for (Index face = 0; face < face_count(cage); ++face) {
     const Index side = vertices.grid_segments(face), grids = vertices.grid_count(face);
-    // The far row of a sector is the far column of the one before it, except for the centre, which is the first's.
+    // The far row of a sector is the far column of the previous sector, except for the center, which belongs to the
+    // first one.
     const bool sectors = vertices.has_sectors(face);
     const Index rows = sectors ? side : side + 1;
     for (Index grid = 0; grid < grids; ++grid)

@@ -12,7 +12,7 @@ namespace stiv {
 ///
 /// A quad is one grid of (segments + 1)^2 points, x from corner 0 to 1, y from corner 0 to 3. Any other face with n
 /// corners is n grids of (segments/2 + 1)^2 points: grid c has its origin at corner c, x along the edge to the next
-/// corner, y along the edge to the previous one, and the face's centre at the end of both. These grids are the "ptex
+/// corner, y along the edge to the previous one, and the face's center at the end of both. These grids are the "ptex
 /// faces" of OpenSubdiv, in the same order. In Loop's scheme a triangle is one grid of the points with
 /// x + y <= segments, x from corner 0 to 1, y from corner 0 to 2.
 class SubdividedVertices {
@@ -24,7 +24,7 @@ class SubdividedVertices {
   Index count() const { return face_first_.back(); }
   Index segments() const { return segments_; }
 
-  bool has_sectors(Index face) const;            ///< a grid for each corner, around a centre
+  bool has_sectors(Index face) const;            ///< a grid for each corner, around a center
   Index grid_count(Index face) const;            ///< 1, or one for each corner
   Index grid_segments(Index face) const;         ///< along each side of a grid
   Index last_in_row(Index face, Index y) const;  ///< largest x of a grid's row

@@ -42,8 +42,8 @@ void append_grid(const SubdividedVertices& vertices, Index face, Index grid, std
                        vertices.grid_point(face, grid, x + 1, y + 1), vertices.grid_point(face, grid, x, y + 1)});
 }
 
-/// A triangle's small triangles: row by row, those that stand on the row, and between them those that hang from the
-/// next.
+/// A triangle's small triangles, row by row: those with an edge in this row, and between them those with an edge in the
+/// next row.
 void append_triangles(const SubdividedVertices& vertices, Index face, std::vector<std::array<Index, 3>>& triangles) {
   const auto point = [&](Index x, Index y) { return vertices.grid_point(face, 0, x, y); };
   for (Index y = 0; y < vertices.segments(); ++y)

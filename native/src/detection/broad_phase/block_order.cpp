@@ -13,8 +13,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// The first half is as large a power of two times `run` as fits, so that the halves of all sizes end where nodes of
-/// the tree end.
+/// The first half is the largest power of two times `run` that fits, so halves of all sizes end where nodes of the tree
+/// end.
 void order_spatially(std::span<NumberedPoint> items, std::size_t run) {
   if (items.size() <= run) return;
   std::size_t half = run;
@@ -44,7 +44,7 @@ std::vector<Index> by_group(std::size_t count, const std::vector<Index>& groups)
   return items;
 }
 
-/// Boxes of each group in spatial order, one group after the other, each filled up to whole blocks.
+/// Primitives of each group in spatial order, group by group. Each group is padded to whole blocks.
 std::vector<Index> order_in_groups(const Points& centres, const std::vector<Index>& groups, std::size_t block) {
   const auto group = [&](Index item) { return groups.empty() ? 0 : groups[item]; };
   std::vector<Index> items = by_group(centres.size(), groups);

@@ -7,7 +7,7 @@
 
 namespace stiv {
 
-/// Indices of primitives with the given centres (finite), ordered so that runs of `block`, 2 `block`, 4 `block` and so
+/// Indices of primitives with the given centers (finite), ordered so that runs of `block`, 2 `block`, 4 `block` and so
 /// on are close together in space. Each block holds primitives of one group (`groups` empty: a single group) and is
 /// padded with -1.
 std::vector<Index> block_order(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups,

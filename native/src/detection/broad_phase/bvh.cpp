@@ -11,7 +11,7 @@ namespace stiv {
 
 namespace {
 
-/// Tasks from the pair of roots on, level by level.
+/// Tasks, starting with the pair of roots, level by level.
 class TaskList {
  public:
   TaskList(const Bvh& a, const Bvh& b, const GroupTable& groups) : a_(a), b_(b), groups_(groups) {}

@@ -34,7 +34,7 @@ struct PairBuffer {
   std::vector<Index> first, second;
   std::size_t count = 0;
 
-  /// Above this number of pairs, `full(*this)` is called now and then. It may remove pairs or raise the limit, and
+  /// Above this number of pairs, `full(*this)` is called from time to time. It may remove pairs or raise the limit, and
   /// returns whether to continue.
   std::size_t limit = std::numeric_limits<std::size_t>::max();
   std::function<bool(PairBuffer&)> full;
@@ -57,10 +57,10 @@ class Bvh {
  public:
   static constexpr Index width = 8;
 
-  /// Builds over the centres of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
+  /// Builds over the centers of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
-  /// Builds over finite points and is without boxes until the first refit.
+  /// Builds over finite points; the boxes come with the first refit.
   explicit Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups = {},
                const CornerRows& corners = {});
 
@@ -74,7 +74,7 @@ class Bvh {
   template <class BoxOf>
   void refit(const BoxOf& box_of, const Execution& execution);
 
-  /// The same for some primitives, each listed at least once; the cost is theirs alone.
+  /// The same for some primitives, each listed at least once. The cost does not depend on the others.
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
@@ -89,8 +89,8 @@ class Bvh {
 
   /// About this many tasks, always the same ones for the same trees. Together they cover all pairs (i of this tree, j
   /// of `other`) with overlapping boxes of which one is active. Pairs of groups that are not tested are skipped; if
-  /// both trees know their corners, so are pairs that share one. Within one tree each unordered pair comes once, and i
-  /// != j.
+  /// both trees know their corners, so are pairs that share one. Within one tree, each unordered pair is reported once,
+  /// with i != j.
   std::vector<Task> tasks(const Bvh& other, const GroupTable& groups, std::size_t about = 256) const;
 
   /// Appends the pairs of one task, in an order that depends on the trees alone.
@@ -134,7 +134,7 @@ class Bvh {
   std::vector<Index> touched_, parents_;  // work space of refit_some
 };
 
-/// Centres of boxes, zero where one is infinite.
+/// Centers of boxes, zero where one is infinite.
 std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>
@@ -167,7 +167,7 @@ void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
 
 template <class BoxOf>
 void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
-  // Neighbours in the list mostly share a block, and refitting one twice is harmless.
+  // Consecutive primitives mostly share a block, and refitting a block twice is harmless.
   touched_.clear();
   for (const Index primitive : primitives) {
     const Index block = places_[primitive] / width;

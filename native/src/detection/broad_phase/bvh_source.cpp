@@ -27,8 +27,8 @@ GroupTable table_of_bodies(const Surface& surface) {
   return all ? GroupTable() : GroupTable(count, std::move(meets));
 }
 
-/// Trees over vertices, edges and faces, built at the first step, and their pairs. Later steps neither refit nor
-/// compare what did not change.
+/// Trees over vertices, edges and faces, built at the first step, and their pairs. Later steps refit and compare only
+/// changed primitives.
 class BvhSource final : public CandidateSource {
  public:
   explicit BvhSource(const Surface& surface)
@@ -142,7 +142,7 @@ class BvhSource final : public CandidateSource {
       near_ += static_cast<std::int64_t>(near.size() - before);
       return few_enough();
     });
-    // In a long session every task meets its largest step once; its memory is released again.
+    // Release the memory: in a long session, every task has a large step at some time.
     if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
   }
 
@@ -201,7 +201,7 @@ class BvhSource final : public CandidateSource {
   PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
   std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
-  bool refitted_ = false;                            // the trees are those of the boxes
+  bool refitted_ = false;                            // the trees match the boxes
   bool collected_ = false;                           // the cached pairs are complete
 };
 

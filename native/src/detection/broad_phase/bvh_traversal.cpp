@@ -80,7 +80,7 @@ HWY_INLINE hn::Vec<Floats> opposed(const Bvh::Node& node, const float* box, std:
   return hn::Add(hn::Load(d, node.planes[plane] + lane), hn::Set(d, box[opposite]));
 }
 
-/// Lanes from `lane` on of a node that may meet a box (see may_meet).
+/// Lanes of a node, starting at `lane`, that may meet a box (see may_meet).
 HWY_INLINE FloatMask meeting_lanes(const Bvh::Node& node, const float* box, std::size_t lane) {
   const Floats d;
   const auto x = hn::Max(opposed(node, box, 0, 3, lane), opposed(node, box, 3, 0, lane));
@@ -153,8 +153,8 @@ void meet_blocks(const Traversal& t, Index block, Index other) {
 
 template <Index size_a, Index size_b>
 void descend(const Traversal& t, const Bvh::Task& root) {
-  // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Left as it is: to clear so
-  // much for each task took longer than some tasks.
+  // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Not initialized: clearing it
+  // for each task would take longer than some tasks.
   std::array<Bvh::Task, 1536> stack;
   std::size_t top = 0;
   stack[top++] = root;

@@ -19,21 +19,21 @@ namespace stiv {
 /// Two primitives that may interfere. VF: vertex and triangle; EE: two edges.
 using Candidate = PrimitivePair;
 
-/// A broad phase: gives candidates in chunks, for threads to share. Chunks and the candidates of a chunk do not depend
-/// on the number of threads. Candidates are relevant (see Relevance) and unique. Pairs whose padded bounds stay apart
-/// (see SweptVertices) may be skipped.
+/// A broad phase: provides candidates in chunks, which threads share. Chunks and the candidates of a chunk do not
+/// depend on the number of threads. Candidates are relevant (see Relevance) and unique. Pairs whose padded bounds stay
+/// apart (see SweptVertices) may be skipped.
 class CandidateSource {
  public:
   /// Takes some candidates of a chunk, and may overwrite them.
   using Sink = std::function<void(std::span<Candidate>)>;
 
   virtual ~CandidateSource() = default;
-  /// @throws InputError as Surface::check_positions, the shape aside
+  /// @throws InputError as Surface::check_positions, except for the shape
   virtual void update(const Step& step, const Execution& execution) = 0;
   /// The step of the last update, for vector code to load.
   virtual const VertexSteps& vertex_steps() const = 0;
-  /// Are the candidates few enough for bounded time and memory? Depends on the step alone. Visits are complete either
-  /// way.
+  /// Are the candidates few enough for bounded time and memory? Depends only on the step. Visits are complete in any
+  /// case.
   virtual bool is_within_pair_limit() const { return true; }
   virtual Index chunk_count(EventKind kind) const = 0;
   virtual void visit(EventKind kind, Index chunk, const Sink& sink) const = 0;

@@ -79,7 +79,7 @@ CellLists::CellLists(const Cells& cells, const std::vector<Bounds>& boxes)
   std::size_t sum = 0;
   for (std::size_t& count : start_) count = sum += count;
   entries_.resize(sum);
-  // From the last to the first, so that each start ends at the first entry of its bucket, and entries are in order.
+  // From last to first: so each start moves back to the first entry of its bucket, and entries are in order.
   for (std::size_t primitive = boxes.size(); primitive-- > 0;)
     for_cells_of(cells, boxes[primitive], [&](const Cell& cell, const Cell& first) {
       entries_[--start_[number_of(cell)]] = {cell, first, static_cast<Index>(primitive), boxes[primitive]};

@@ -26,8 +26,8 @@ struct Cells {
   Cell at(const std::array<float, 3>& point) const;
 };
 
-/// Cells of the mean size of the boxes, or larger by powers of two until these and others that are to be entered reach
-/// no more than eight cells each on average: large boxes among small ones must not fill the memory.
+/// Cells of the mean size of the boxes, or larger by powers of two until all boxes to be entered reach at most eight
+/// cells each on average: large boxes among small ones must not fill the memory.
 Cells fitting_cells(const std::vector<Bounds>& boxes, const std::vector<Bounds>& others = {});
 
 /// One box in one of the cells that it reaches.

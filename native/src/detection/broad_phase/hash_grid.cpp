@@ -37,9 +37,9 @@ class Batches {
   std::vector<Candidate> batch_;
 };
 
-/// Uniform grid of hashed cells. A pair comes from the first cell that both boxes reach.
-/// Source: Teschner, Heidelberger, Müller, Pomeranets, Gross, "Optimized Spatial Hashing for Collision Detection of
-/// Deformable Objects", VMV 2003; there for tetrahedra, with cells of the mean size of an edge.
+/// Uniform grid of hashed cells. A pair is reported by the first cell that both boxes reach. Source: Teschner,
+/// Heidelberger, Müller, Pomeranets, Gross, "Optimized Spatial Hashing for Collision Detection of Deformable Objects",
+/// VMV 2003; there for tetrahedra, with cells of the mean size of an edge.
 class HashGrid final : public CandidateSource {
  public:
   explicit HashGrid(const Surface& surface) : surface_(surface), swept_(surface) {}

@@ -21,7 +21,7 @@ Key key_of(const NumberedPoint& point) {
   return static_cast<Key>(bits ^ inverted) << 32 | static_cast<std::uint32_t>(point.number);
 }
 
-/// All of a point at once, in one register; the number's bits are not looked at.
+/// A whole point in one register; the bits of its number are only copied.
 using Four = Eigen::Array4f;
 Four load(const NumberedPoint& point) {
   Four four;
@@ -54,8 +54,8 @@ Key pivot(std::span<const NumberedPoint> points, std::size_t rank) {
   return keys[2 * place < count ? std::min(place + aside, count / 2) : std::max(place - aside, count / 2)];
 }
 
-/// Moves those before the pivot to the front and returns their number. Nothing is jumped over: what a processor cannot
-/// foresee costs it more than an exchange, if what was just written in one piece is read so.
+/// Moves those before the pivot to the front and returns their number. No branches: a mispredicted branch costs more
+/// than an exchange, provided that each point is written and read in one piece.
 template <std::size_t axis>
 std::size_t partition(std::span<NumberedPoint> points, Key pivot) {
   std::size_t before = 0;
@@ -69,8 +69,8 @@ std::size_t partition(std::span<NumberedPoint> points, Key pivot) {
   return before;
 }
 
-/// Quickselect [Hoare 1961], with pivots of a sample [Floyd and Rivest 1975]; at most 24 passes, then the library's,
-/// which is linear for any order.
+/// Quickselect [Hoare 1961], with pivots from a sample [Floyd and Rivest 1975]. After 24 passes it calls the standard
+/// library, which is linear for any order.
 template <std::size_t axis>
 void select(std::span<NumberedPoint> points, std::size_t rank) {
   constexpr std::size_t few = 16;

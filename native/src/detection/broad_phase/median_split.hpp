@@ -15,7 +15,7 @@ struct alignas(16) NumberedPoint {
 };
 
 /// Moves the first `half` points along the longest axis to the front. Ties are broken by number, so the split depends
-/// on the points alone. The order within both sides depends on the order before.
+/// only on the points. The order within each side depends on the previous order.
 void split_at_median(std::span<NumberedPoint> points, std::size_t half);
 
 }  // namespace stiv

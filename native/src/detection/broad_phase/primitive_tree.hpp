@@ -17,7 +17,7 @@ namespace stiv {
 template <Index size>
 class PrimitiveTree {
  public:
-  /// @param rows (count, size), alive as long as this
+  /// @param rows (count, size), which must outlive this
   PrimitiveTree(const Surface& surface, const Index* rows, Index count)
       : surface_(surface), rows_(rows), count_(count) {}
 
@@ -61,7 +61,7 @@ class PrimitiveTree {
     spread_ = spread(start);
   }
 
-  /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbours stay together.
+  /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbors stay together.
   double spread(const PositionsView& start) const {
     constexpr std::size_t stride = 8;
     const std::vector<Index>& order = tree_->order();
@@ -78,7 +78,7 @@ class PrimitiveTree {
     return sum > 0 ? sum / (blocks * whole.sizes().sum()) : 0;
   }
 
-  /// Has the surface been deformed so much that rebuilding pays?
+  /// Has the surface deformed so much that rebuilding pays off?
   bool is_spoiled(const PositionsView& start) const { return spread(start) > 2 * spread_; }
 
   const Surface& surface_;

@@ -16,7 +16,7 @@ struct Step {
 
 /// The mean displacement of a step if the displacements relative to it are much smaller, else zero. A frame that moves
 /// along makes the boxes of a common motion small; a frame at rest keeps the boxes of vertices at rest unchanged. Any
-/// frame is valid, so the mean of about a thousand evenly picked vertices is enough. Depends on the step alone, to the
+/// frame is valid, so the mean of about a thousand evenly picked vertices is enough. Depends only on the step, to the
 /// last bit. Zero without vertices.
 Vector3 common_motion(const PositionsView& start, const PositionsView& end);
 

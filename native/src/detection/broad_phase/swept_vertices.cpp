@@ -58,12 +58,12 @@ struct SweptVertices::Survey {
 // no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
 double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
 
-/// Vertices whose step is not the one of their box, ascending.
+/// Vertices whose step differs from that of their box, ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
-    constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbours
+    constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbors
     const auto same = [&](Index first, Index number) {
       return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
     };
@@ -139,8 +139,8 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   return box;
 }
 
-/// Is the start that of the vertex's box, and the end, each less its step's common motion, within the slack of the
-/// segment?
+/// Is the start that of the vertex's box, and is the end within the slack of the segment? (Both without the common
+/// motion of their step.)
 bool SweptVertices::near_segment(const Step& step, Index vertex) const {
   if (!same_bits(step.start, start_, vertex, 1)) return false;
   const Vector3 start = start_.row(vertex), end = step.end.row(vertex);

@@ -17,7 +17,7 @@ class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
 
-  /// Whether boxes that contain the step may stay.
+  /// Whether boxes that contain the step may be reused.
   enum class Reuse { allowed, forbidden };
 
   enum class Change {
@@ -53,7 +53,7 @@ class SweptVertices {
   struct Frame {
     Vector3 centre = Vector3::Zero();
     Vector3 motion = Vector3::Zero();  ///< displacement in a step, see common_motion
-    double radius = -1;                ///< bound of the coordinates relative to the centre, at the start and at the end
+    double radius = -1;                ///< bound of the coordinates relative to the center, at the start and at the end
     double separation = 0;
 
     bool operator==(const Frame&) const = default;

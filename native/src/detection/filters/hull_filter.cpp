@@ -44,7 +44,7 @@ HWY_INLINE Span both(Span a, Span b) { return {hn::Min(a.low, b.low), hn::Max(a.
 
 HWY_INLINE Lanes largest_component(Point a) { return max3(hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)); }
 
-/// How far apart the sides' spans are along a direction, on whichever side.
+/// The gap between the sides' spans along a direction, whichever comes first.
 template <EventKind kind>
 HWY_INLINE Lanes gap(Point normal, const PairHulls& hulls) {
   const Span v0 = span_of(normal, hulls, 0), v1 = span_of(normal, hulls, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Directions along which the two sides of a pair may be apart, none of length one. The points are those of the second,
-// third and fourth vertex, seen from the first. Included once for each target; see vector/foreach_target.hpp.
+// Directions along which the two sides of a pair may be apart, not normalized. The points are the second, third and
+// fourth vertex relative to the first. Included once for each target; see vector/foreach_target.hpp.
 #if defined(STIV_PAIR_DIRECTIONS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef STIV_PAIR_DIRECTIONS_INL
 #undef STIV_PAIR_DIRECTIONS_INL
@@ -27,8 +27,8 @@ HWY_INLINE Point between_middles(const Point* x) {
   return kind == EventKind::vertex_face ? x[0] + x[1] + x[2] : x[1] + x[2] - x[0];
 }
 
-/// The part of a direction across an edge, times a factor: separates edges that are parallel, such as those of a flat
-/// mesh, whose common normal vanishes.
+/// The component of a direction orthogonal to an edge, times a factor: separates edges that are parallel, such as those
+/// of a flat mesh, whose common normal vanishes.
 HWY_INLINE Point across(Point edge, Point direction) {
   return dot(edge, edge) * direction - dot(edge, direction) * edge;
 }

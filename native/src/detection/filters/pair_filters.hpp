@@ -31,7 +31,7 @@ using PairFlags = std::array<unsigned char, PairBlock::capacity>;
 
 // Each filter flags the pairs that it proves further apart than `separation` for the whole step.
 
-/// By the planes across the axes. Rounding is not allowed for.
+/// By the planes across the axes. Ignores rounding.
 void find_apart_by_boxes(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, double separation,
                          PairFlags& apart);
 
@@ -40,7 +40,7 @@ void find_apart_by_planes(EventKind kind, const PairBlock& pairs, const VertexSt
                           PairFlags& apart);
 
 /// By the plane across the closest points of the start, beyond all rounding, if one of these lies on the boundary of
-/// its primitive; `find_apart_by_planes` decides the others. Slower, and leaves few close pairs without contact.
+/// its primitive; `find_apart_by_planes` decides the others. Slower, but leaves few close pairs without contact.
 void find_apart_by_closest_points(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices,
                                   double separation, PairFlags& apart);
 
@@ -53,7 +53,7 @@ struct NearbySteps {
   double rounding = 0x1p-43;  ///< bound of the rounding error, relative to the coordinates
 };
 
-/// By directions of the start (the normal, between the centres, across an edge) in which the hulls of both sides stay
+/// By directions of the start (the normal, between the centers, across an edge) in which the hulls of both sides stay
 /// apart in all nearby steps, beyond all rounding. [mathematics.md, "Rounds of one edit"]
 void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
                          PairFlags& apart);

@@ -56,7 +56,7 @@ HWY_INLINE Gaps gaps(Point normal, const Point* x) {
   return gaps_between<kind>(dot(normal, x[0]), dot(normal, x[1]), dot(normal, x[2]));
 }
 
-/// On whichever side, for the whole step.
+/// On either side, for the whole step.
 HWY_INLINE Lanes least_gap(Gaps first, Gaps last) {
   return hn::Max(hn::Min(first.beyond, last.beyond), hn::Min(first.before, last.before));
 }
@@ -77,7 +77,7 @@ HWY_INLINE Lanes rounding_of(const PairStep& step) {
   return hn::Mul(all(0x1p-46), hn::Max(magnitude_of(step.start), magnitude_of(step.end)));
 }
 
-/// Writes 1 or 0 for each pair of a block, as `apart(step, separation)` has it for a pair a lane.
+/// Writes 1 or 0 for each pair of a block, from `apart(step, separation)`, which decides one pair in each lane.
 template <Mask (*apart)(const PairStep&, double)>
 void flag_pairs(const PairBlock& pairs, const VertexStep* vertices, double separation, unsigned char* result) {
   const Doubles d;

@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-/// Along one axis, of which `x` are the coordinates.
+/// Along one axis; `x` are the coordinates along it.
 template <EventKind kind>
 HWY_INLINE Lanes gap_along(Lanes Point::*x, const PairStep& step) {
   const Gaps first = gaps_between<kind>(step.start[0].*x, step.start[1].*x, step.start[2].*x);

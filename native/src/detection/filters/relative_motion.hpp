@@ -31,7 +31,7 @@ struct RelativeMotion {
 
 /// A plane with unit normal n separates the sides by g(t) = min n.(x_i(t) - x_j(t)) over i of the first side and j of
 /// the second. Each term is linear in time, so g is concave: true at both ends of an interval means true within.
-/// Returns the largest time up to 1 to which the plane keeps g >= clearance from `time` on; `time` if it fails there.
+/// Returns the largest time, at most 1, such that g >= clearance from `time` until then; `time` if it fails there.
 template <class Scalar>
 Scalar reach_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
                       const Scalar& clearance);
@@ -46,7 +46,7 @@ bool turning_plane_holds(const RelativeMotion<Scalar>& motion, const VectorOf<Sc
 template <class Scalar>
 Scalar gap_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time);
 
-/// Do the nearest points lie within face, vertex and edges, off all ends and sides?
+/// Do the nearest points lie inside face, vertex and edges, away from all ends and sides?
 template <class Scalar>
 bool within_both(const WitnessOf<Scalar>& nearest) {
   for (const Scalar& weight : nearest.weights)

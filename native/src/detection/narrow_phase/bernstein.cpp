@@ -21,7 +21,7 @@ int sign_changes(const std::array<double, size>& b) {
   return changes;
 }
 
-/// Replaces b by its part over the lower half and returns the part over the upper half. [de Casteljau]
+/// Replaces b by its restriction to the lower half and returns the restriction to the upper half. [de Casteljau]
 template <std::size_t size>
 std::array<double, size> split(std::array<double, size>& b) {
   std::array<double, size> upper;
@@ -40,7 +40,7 @@ double value(std::array<double, size> b, double t) {
 }
 
 /// The root between two ends of different sign, by false position that halves the weight of an end that stays
-/// [Illinois], and by halves where that is slow.
+/// [Illinois], and by bisection if that is slow.
 template <std::size_t size>
 double bracketed_root(const std::array<double, size>& b) {
   double low = 0, high = 1, at_low = b.front(), at_high = b.back();

@@ -8,9 +8,9 @@ namespace stiv {
 
 namespace {
 
-/// Steps from which on an advance counts as slow: most end before.
+/// An advance of at least this many steps is slow; most end sooner.
 constexpr int slow = 2;
-/// The advance ends within this fraction above the threshold: times are early by as much, relative to the approach.
+/// The advance ends within this fraction above the threshold, so times are early by this fraction of the approach.
 constexpr double tolerance = 1e-3;
 
 /// The edge, if any, within which exactly one of the nearest points lies.
@@ -26,9 +26,9 @@ VectorOf<Scalar> edge_of(EventKind kind, const WitnessOf<Scalar>& nearest, const
   return VectorOf<Scalar>::Zero();
 }
 
-/// Of the nearest points. The difference of two points that nearly coincide is noise. Within both primitives, the
-/// normal of the face or of both edges takes its place; within an edge, what it has along the edge is taken away, which
-/// its far ends would turn into distance.
+/// The direction between the nearest points. If they nearly coincide, their difference is noise. Inside both
+/// primitives, the normal of the face or of both edges replaces it. Inside an edge, its component along the edge is
+/// removed, because the far ends of the edge would turn it into distance.
 template <class Scalar>
 VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& time) {
   if (!(nearest.distance > 0)) return VectorOf<Scalar>::Zero();
@@ -51,8 +51,8 @@ VectorOf<Scalar> relative_step(const RelativeMotion<Scalar>& motion, const Witne
   return w[1] * motion.step[1] + w[2] * motion.step[2] + w[3] * motion.step[3];
 }
 
-/// When the pair would be within `threshold` (or, if never, nearest) if the nearest points stayed where they are on
-/// their primitives; the end of the step if they part.
+/// When the pair would reach `threshold` (or, if never, its least distance) if the nearest points stayed in place on
+/// their primitives; the end of the step if they move apart.
 template <class Scalar>
 Scalar predicted_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& witness, const Scalar& threshold,
                       const Scalar& time) {
@@ -66,7 +66,8 @@ Scalar predicted_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scal
   return std::min<Scalar>(1.0, time + wait);
 }
 
-/// How far a plane with the direction of the nearest points at a later time, or one that turns towards it, leads.
+/// The time until which a plane separates the pair. Its normal is the direction of the nearest points at a later time,
+/// or turns toward it.
 template <class Scalar>
 Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
                       const Scalar& trial, const Scalar& clearance) {
@@ -77,7 +78,7 @@ Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scala
   return reach_of_plane(motion, later_normal, trial, clearance);
 }
 
-/// The same from the fall of the distance over the last step: right where the nearest points run along their
+/// The same by extrapolating the distance from the last step: accurate where the nearest points slide along their
 /// primitives.
 template <class Scalar>
 Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scalar& time_before,
@@ -87,8 +88,8 @@ Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scala
   return std::min<Scalar>(1.0, time + (distance - threshold) * (time - time_before) / fall);
 }
 
-/// The time to which planes show the pair apart, from `time` on. `expected`: when it is expected within the threshold.
-/// Takes the trials that it makes off `budget`.
+/// The time until which planes separate the pair, starting at `time`. `expected`: when it is expected to reach the
+/// threshold. Subtracts its trials from `budget`.
 template <class Scalar>
 Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
                  const Scalar& time, const Scalar& expected, int& budget) {
@@ -103,7 +104,7 @@ Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& 
   return reached;
 }
 
-/// Directions besides that of the nearest points, which rounding spoils for pairs that are all but degenerate.
+/// Tries directions other than that of the nearest points, which rounding spoils for nearly degenerate pairs.
 template <class Scalar>
 Scalar reach_of_other_planes(const RelativeMotion<Scalar>& motion, const Scalar& time, const Scalar& clearance) {
   const VectorOf<Scalar> normal = geometric_normal(motion, time);
@@ -126,7 +127,7 @@ bool approaches(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& w
   return witness.separation.dot(relative_step(motion, witness)) < 0;
 }
 
-/// Near enough to end: within rounding of the threshold, or within the tolerance and still approaching.
+/// Close enough to stop: within rounding of the threshold, or within the tolerance and still approaching.
 template <class Scalar>
 bool arrived(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold) {
   if (nearest.distance <= threshold + 8 * motion.rounding) return true;
@@ -135,9 +136,9 @@ bool arrived(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& near
 
 }  // namespace
 
-// A plane through the nearest points leads at least as far as the step of additive CCD, (distance - threshold) over
-// the sum of speeds, and for pairs that slide past each other much further; so planes are all that is used. The safety
-// of the result rests on the planes alone: a poor direction costs steps, never correctness.
+// A plane through the nearest points advances at least as far as a step of additive CCD, (distance - threshold) over
+// the sum of speeds, and much further for pairs that slide past each other. So only planes are used. Safety depends
+// only on the planes: a poor direction costs steps, never correctness.
 template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
                                         const Scalar& time, double latest) {

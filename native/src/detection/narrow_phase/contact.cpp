@@ -5,8 +5,8 @@ namespace stiv {
 
 namespace {
 
-/// Unit direction of contact. Where the nearest points (all but) coincide, their difference is noise: then the normal
-/// of the face or of both edges, or else the last plane that separated the pair.
+/// Unit direction of contact. If the nearest points (nearly) coincide, their difference is noise: then the normal of
+/// the face or of both edges, or else the last plane that separated the pair.
 Vector3 contact_direction(const RelativeMotion<double>& motion, const Approach<double>& approach) {
   const Witness& nearest = approach.witness;
   constexpr double noise = 1024;
@@ -27,8 +27,8 @@ Contact contact_of(const RelativeMotion<double>& motion, const Approach<double>&
   for (std::size_t k = 1; k < 4; ++k) relative += contact.weights[k] * motion.step[k];
   const double approach_speed = -contact.normal.dot(relative);
   if (approach_speed > 0) return contact;
-  // From a touching start nothing tells the sides apart but the motion. Elsewhere the sides are known, and a pair that
-  // parts at the time where the search gave up has no direction to be pushed in.
+  // If the pair touches at the start, only the motion distinguishes the sides. Otherwise the sides are known, and a
+  // pair that moves apart at the time where the search gave up gets no direction.
   const bool touched_at_start = approach.last_normal.isZero(0) && start_distance <= 4 * motion.rounding;
   if (touched_at_start)
     contact.normal = approach_speed < 0 ? Vector3(-contact.normal) : Vector3(-relative.stableNormalized());

@@ -68,9 +68,9 @@ void try_ends(Search<Scalar>& search) {
 
 }  // namespace
 
-// The foot in the plane where it falls within the triangle, else the nearest of the sides that it lies beyond. Where
-// the triangle is so thin that the foot cannot be trusted, foot and sides are all measured: any point of the triangle
-// bounds the distance from above.
+// The foot in the plane if it is inside the triangle, else the nearest of the sides that it lies beyond. If the
+// triangle is too thin to trust the foot, the foot and all sides are measured: any point of the triangle bounds the
+// distance from above.
 template <class Scalar>
 WitnessOf<Scalar> point_triangle(const Quadruple<Scalar>& x) {
   const Vector<Scalar> u = x[2] - x[1], v = x[3] - x[1], p = x[0] - x[1];
@@ -112,7 +112,7 @@ WitnessOf<Scalar> segment_segment(const Quadruple<Scalar>& x) {
       u = clamped(u);
       s = clamped<Scalar>((ab * u - ar) / aa);
     } else if (s > 0 && s < 1) {
-      u = (aa * br - ab * ar) / determinant;  // the perpendicular itself, straight from the determinant
+      u = (aa * br - ab * ar) / determinant;  // the perpendicular itself, directly from the determinant
       u = clamped(u);
     }
     search.try_weights(1 - s, s, u - 1, -u);

@@ -87,20 +87,20 @@ struct Precision<double> {
   /// Bound of the rounding error of a projected gap, over the pair's largest coordinate: 128 u.
   static constexpr double gap = 0x1p-46;
   /// Below this multiple of `gap`, the direction between closest points is uncertain by more than their distance over
-  /// the pair's size: about the root of u.
+  /// the pair's size: about the square root of u.
   static constexpr double noise = 0x1p24;
   /// Steps of one advancement. Contacts take 2 to 6; those that touch without crossing take a fixed fraction of the
   /// wait at each.
   static constexpr int most_steps = 256;
-  /// Trials of a longer step in each step. A plane may have to turn in hundreds of parts of a step in which a triangle
-  /// turns by much beside another: each part holds as long as (angle)^2 times the size stays below the gap.
+  /// Trials of a longer step in each step. If a triangle turns by a large angle beside another, a plane may have to
+  /// turn in hundreds of parts of the step: each is valid as long as (angle)^2 times the size stays below the gap.
   static constexpr int most_trials = 12;
   static constexpr int trials_in_all = 1024;
 };
 
 template <>
 struct Precision<DoubleDouble> {
-  /// No operation errs by more than 16 u^2, u = 2^-53, so that 2^-102 takes the place of u.
+  /// No operation errs by more than 16 u^2, u = 2^-53, so 2^-102 replaces u.
   static constexpr double gap = 0x1p-95;
   static constexpr double noise = 0x1p48;
   static constexpr int most_steps = 24;

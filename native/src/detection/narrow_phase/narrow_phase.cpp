@@ -10,8 +10,8 @@ namespace stiv {
 
 namespace {
 
-/// Do the sides clearly go through each other where the advance ended? They do if, a moment later, the nearest points
-/// lie within both and beyond each other by more than rounding.
+/// Do the sides clearly pass through each other where the advance ended? They do if, a moment later, the nearest points
+/// lie inside both primitives, and past each other by more than rounding.
 bool crosses(const RelativeMotion<double>& motion, const Approach<double>& approach) {
   const Vector3& normal = approach.last_normal;
   Vector3 relative = Vector3::Zero();
@@ -75,7 +75,7 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
   const RelativeMotion<double> relative(kind, motion);
   if (relative.rests()) return std::nullopt;
   const Witness at_start = witness(kind, relative.start);
-  const double largest = std::min(proximity.separation, at_start.distance);  // whatever the pair keeps
+  const double largest = std::min(proximity.separation, at_start.distance);  // bounds any threshold
   std::optional<Contact> contact;
   if (proximity.is_apart(at_start.distance)) {
     contact = contact_within(largest, relative, motion, at_start, latest);

@@ -32,7 +32,8 @@ PairTest::PairTest(const Surface& surface, const VertexSteps& vertices, const Pr
                    NarrowPhase narrow_phase)
     : surface_(surface), vertices_(vertices), proximity_(proximity), narrow_phase_(narrow_phase) {}
 
-/// Those that `find(kind, block, vertices, separation, flags)` does not flag, moved to the front.
+/// Moves the candidates to the front that `find(kind, block, vertices, separation, flags)` does not flag, and returns
+/// them.
 template <class Find>
 std::span<Candidate> PairTest::without(EventKind kind, std::span<Candidate> candidates, double separation,
                                        const Find& find) const {

@@ -10,15 +10,16 @@ namespace stiv {
 
 namespace {
 
-/// Times are reported so much too early, "to account for error in the root finding and response computation". [P4.1]
+/// Times are reported early by this fraction of a step, "to account for error in the root finding and response
+/// computation". [P4.1]
 constexpr double retreat = 0.01;
-/// Roots count where the primitives are within this fraction above the threshold, besides rounding: within the distance
-/// at which the conservative phase reports, so that no broad phase skips these pairs.
+/// A root counts if the primitives are within this fraction above the threshold, apart from rounding. The conservative
+/// phase reports at the same distance, so no broad phase skips a reported pair.
 constexpr double tolerance = 1e-3;
 
 using Moving = Bernstein<1, Vector3>;
 
-/// The cubic, and the normal of the face or of both edges that it is made with.
+/// The cubic, and the normal of the face or of both edges in it.
 struct Coplanarity {
   Bernstein<3> volume;
   Bernstein<2, Vector3> normal;
@@ -56,7 +57,7 @@ Bernstein<6> distance_polynomial(const Coplanarity& coplanarity, double separati
   return result;
 }
 
-/// Motion within a common plane leaves nothing but rounding, which has no roots.
+/// Motion within a common plane leaves only rounding errors, whose roots mean nothing.
 bool vanishes(const Bernstein<3>& volume, const RelativeMotion<double>& motion) {
   const double size = motion.rounding / Precision<double>::gap;
   for (const double coefficient : volume)

@@ -10,7 +10,7 @@ using namespace stiv;
 
 namespace {
 
-/// Small triangles here and there, in turn of three bodies.
+/// Small triangles at random places, assigned to three bodies in turn.
 struct Scattering {
   std::shared_ptr<const Surface> surface;
   Positions q;
@@ -40,7 +40,7 @@ struct Scattering {
 };
 
 /// Distance of two triangles by alternating projections onto convex sets: sampled barycentric coordinates, refined.
-/// Coarse, but independent: never less than the true distance, and near to it.
+/// Coarse, but independent: never less than the true distance, and close to it.
 double sampled_distance(const Scattering& scene, Index first, Index second) {
   const auto corner = [&](Index triangle, int k) -> Vector3 {
     return scene.q.row(scene.surface->triangles()(triangle, k));

@@ -57,7 +57,7 @@ TEST_CASE("intersections: triangulations of a flip face are tested against all b
   definition.vertex_count = 7;
   definition.triangles.resize(5, 3);
   definition.triangles << 0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3, 4, 5, 6;
-  Positions q(7, 3);  // a flat square in both cuts, and a triangle that stands in its corner beside one diagonal
+  Positions q(7, 3);  // a flat square, triangulated both ways, and a triangle in its corner beside one diagonal
   q << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.6, 0.2, -1, 0.6, 0.2, 1, 0.7, 0.25, 1;
   CHECK(find(std::make_shared<const Surface>(definition), q, 1).size() > 2);
   definition.flip_faces = {{0, 1, 2, 3}};

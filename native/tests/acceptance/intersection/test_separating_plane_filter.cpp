@@ -11,7 +11,7 @@ using namespace stiv;
 
 namespace {
 
-/// Pairs of triangles of their own corners, six rows a pair.
+/// Pairs of triangles without shared corners, six rows for each pair.
 struct Batch {
   Positions q;
   TrianglePairs pairs;
@@ -46,7 +46,7 @@ TEST_CASE("separating plane filter: separated pairs do not intersect, and all ve
   int apart = 0, meeting = 0;
   for (int round = 0; round < 200; ++round) {
     Positions q = random_corners(random, 2 + round % 4, round % 2 == 0);
-    if (round % 3 == 0) q.col(2) = 0.3 * q.col(0) - 0.7 * q.col(1);  // coplanar but for rounding
+    if (round % 3 == 0) q.col(2) = 0.3 * q.col(0) - 0.7 * q.col(1);  // coplanar up to rounding
     if (round % 5 == 0) q *= round % 2 ? 1e-7 : 1e7;
     const Batch batch(q);
     const auto results = for_each_vector_target([&] { return separated(batch); });
@@ -64,7 +64,7 @@ TEST_CASE("separating plane filter: separated pairs do not intersect, and all ve
 
 TEST_CASE("separating plane filter: each kind of plane is tried") {
   Positions q(18, 3);
-  q << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5,    // across the line between the centres
+  q << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5,    // across the line between the centers
       0, 0, 0, 9, 0, 0, 0, 9, 0, 1, 1, 0.1, 8, 0, 4, 8, -9, 4,  // above the first
       0, 0, 0, 4, 0, 0, 0, 4, 0, 3, 3, 0, 6, -4, 0, 9, 3, 0;    // in one plane, over an edge
   CHECK(separated(Batch(q)) == std::vector<unsigned char>{1, 1, 1});

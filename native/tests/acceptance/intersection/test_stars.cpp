@@ -23,7 +23,7 @@ CornerRows fan(Index count, bool closed) {
   return triangles;
 }
 
-/// The centre, and `count` points around it that turn by `turn` in all, rising by `rise` each.
+/// The center, and `count` points around it that turn by `turn` in total, each `rise` higher than the last.
 Positions around(Index count, double turn, double rise = 0) {
   Positions q = Positions::Zero(count + 1, 3);
   for (Index k = 0; k < count; ++k) {
@@ -53,7 +53,7 @@ std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, con
   return stars.find_free(pack_points(q, execution), moved, execution);
 }
 
-/// The star of vertex 0, by whatever vector target.
+/// The star of vertex 0, with any vector target.
 bool proven(const CornerRows& triangles, const Positions& q) {
   const Stars stars(triangles, static_cast<Index>(q.rows()));
   const auto results = for_each_vector_target([&] { return find_free(stars, q, {})[0]; });
@@ -81,10 +81,10 @@ TEST_CASE("stars: flat and raised fans are proven free, closed or open, at any s
 }
 
 TEST_CASE("stars: fans that turn more than once are not proven") {
-  CHECK_FALSE(proven(fan(12, true), around(12, 2)));           // twice around, on itself
-  CHECK_FALSE(proven(fan(12, false), around(12, 1.3)));        // flat, over its beginning
-  CHECK_FALSE(proven(fan(12, false), around(12, 1.3, 0.1)));   // above its beginning: free, but not by this proof
-  CHECK_FALSE(proven(fan(13, false), around(13, 13.0 / 12)));  // ends just where it begins, in another vertex
+  CHECK_FALSE(proven(fan(12, true), around(12, 2)));           // twice around, covers itself
+  CHECK_FALSE(proven(fan(12, false), around(12, 1.3)));        // flat, covers its own start
+  CHECK_FALSE(proven(fan(12, false), around(12, 1.3, 0.1)));   // above its own start: free, but not provably
+  CHECK_FALSE(proven(fan(13, false), around(13, 13.0 / 12)));  // ends exactly where it starts, at another vertex
 }
 
 TEST_CASE("stars: flat folds, degenerate triangles and several fans are not proven") {
@@ -97,13 +97,13 @@ TEST_CASE("stars: flat folds, degenerate triangles and several fans are not prov
   q = around(6, 1);
   CHECK_FALSE(proven({{0, 1, 2}, {0, 3, 4}}, q));             // two fans
   CHECK_FALSE(proven({{0, 1, 2}, {0, 2, 3}, {0, 2, 4}}, q));  // three triangles at an edge
-  CHECK_FALSE(proven({{0, 1, 2}, {0, 3, 2}}, q));             // turned against each other
+  CHECK_FALSE(proven({{0, 1, 2}, {0, 3, 2}}, q));             // with opposite orientations
   CHECK_FALSE(proven({{0, 1, 2}, {0, 2, 1}}, q));             // both sides of one
   CHECK_FALSE(proven({{0, 1, 2}, {0, 1, 2}}, q));             // twice the same
   CHECK_FALSE(proven({{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {0, 4, 5}, {0, 5, 6}, {0, 6, 4}}, q));  // two closed fans
   CHECK_FALSE(proven({{0, 0, 1}}, q));
   CHECK_FALSE(proven({{1, 2, 3}}, q));
-  CHECK_FALSE(proven(fan(64, true), around(64, 1)));  // more than the proof takes
+  CHECK_FALSE(proven(fan(64, true), around(64, 1)));  // more than the proof accepts
 }
 
 TEST_CASE("stars: proven stars have no intersecting pair") {
@@ -116,7 +116,7 @@ TEST_CASE("stars: proven stars have no intersecting pair") {
     Positions q(count + 1, 3);
     for (Index row = 0; row <= count; ++row)
       for (Index axis = 0; axis < 3; ++axis) q(row, axis) = std::uniform_int_distribution(-reach, reach)(random);
-    if (random() % 3 == 0) q.col(2) *= 0.25;  // flatter, so that more is free
+    if (random() % 3 == 0) q.col(2) *= 0.25;  // flatter: more stars are free
     const CornerRows triangles = shuffled(fan(count, closed), random);
     const bool meets = any_pair_intersects(triangles, q);
     if (proven(triangles, q)) {
@@ -136,7 +136,7 @@ TEST_CASE("stars: only stars with a moved vertex are tested") {
   CHECK(all == std::vector<unsigned char>(7, 1));
   CHECK(find_free(stars, q, std::vector<unsigned char>(7, 0)) == std::vector<unsigned char>(7, 0));
   std::vector<unsigned char> moved(7, 0);
-  moved[1] = 1;  // its own star, the centre's and those of both neighbours
+  moved[1] = 1;  // its own star, the center's and those of both neighbors
   CHECK(find_free(stars, q, moved) == std::vector<unsigned char>{1, 1, 1, 0, 0, 0, 1});
 }
 

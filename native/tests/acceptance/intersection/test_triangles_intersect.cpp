@@ -16,7 +16,7 @@ Positions points(std::initializer_list<Vector3> rows) {
   return q;
 }
 
-/// The answer must not depend on the order of triangles and corners, nor on scale, nor on a shift by whole numbers.
+/// The answer must not depend on the order of triangles and corners, on scale, or on a shift by integers.
 bool intersect(Corners first, Corners second, const Positions& q) {
   const bool answer = triangles_intersect(first, second, q);
   for (int turn = 0; turn < 3; ++turn) {

@@ -19,7 +19,8 @@ void for_all_kinds(const std::function<void(const HandleDefinition&)>& check) {
       check(sheet_with_handles(6, hard, weights));
 }
 
-/// J d against differences, and J' as the transpose of J. A surface is known to about 1e-9, so differences to 1e-5.
+/// J d against differences, and J' as the transpose of J. A surface is accurate to about 1e-9, so differences are
+/// accurate to 1e-5.
 void check_linearisation(const Deformation& deformation, const Controls& p) {
   constexpr double step = 1e-4;
   for (unsigned seed = 1; seed < 4; ++seed) {

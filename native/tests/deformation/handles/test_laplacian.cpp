@@ -15,7 +15,7 @@ void for_all_kinds(const std::function<void(const HandleDefinition&)>& check) {
       check(sheet_with_handles(6, hard, weights));
 }
 
-/// Every vertex of a mesh, and one between each two consecutive ones.
+/// Every vertex of a mesh, and one between each pair of consecutive ones.
 std::shared_ptr<const LinearDeformation> refinement(Index count) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   for (Index row = 0; row < 2 * count - 1; ++row) {

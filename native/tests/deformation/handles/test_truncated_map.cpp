@@ -30,7 +30,7 @@ HandleMap map_of(const HandleDefinition& definition, const HandleMapLimits& limi
   return {definition, checked_mesh(definition), stiffness_of(definition), limits};
 }
 
-/// Limits too low for M in full and for the part of K^-1 that M'g reads.
+/// Limits too low for M in full and for the columns of K^-1 that M'g reads.
 HandleMapLimits truncating(const HandleDefinition& definition) {
   HandleMapLimits limits;
   const auto free = static_cast<double>(definition.rest.rows()) - 2 * side;

@@ -12,7 +12,7 @@ namespace {
 const LatticeInterpolation kinds[] = {LatticeInterpolation::linear, LatticeInterpolation::cardinal,
                                       LatticeInterpolation::catmull_rom, LatticeInterpolation::bspline};
 
-/// Points of spacing 1 from the origin.
+/// Points at a spacing of 1, starting at the origin.
 LatticeDefinition unit_lattice(std::array<Index, 3> resolution, LatticeInterpolation kind) {
   LatticeDefinition lattice{
       resolution, {kind, kind, kind}, Positions(resolution[0] * resolution[1] * resolution[2], 3), {}};

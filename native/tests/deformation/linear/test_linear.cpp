@@ -8,7 +8,7 @@ using namespace stiv::testing;
 
 namespace {
 
-/// Each vertex depends on the control of its own number (modulo m) and the next three.
+/// Each vertex depends on the control with the same index (modulo m) and the next three.
 WeightMatrix banded_weights(Index n, Index m) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   const Positions values = random_positions(4 * n, 5);

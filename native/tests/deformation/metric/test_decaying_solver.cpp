@@ -38,7 +38,7 @@ TEST_CASE("decaying solver: what it leaves out is negligible, and the rest is th
   for (const double negligible : {1e-2, 1e-5}) {
     DecayingSolver solver(factor, negligible);
     std::size_t rows_of_all = 0;
-    for (const Index corner : {0, 500, size - 3 * side}) {  // a solver is used again
+    for (const Index corner : {0, 500, size - 3 * side}) {  // the solver is reused
       std::vector<BlockRow> right;
       Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(size, 16), found = expected;
       for (const Index row : {corner, corner + 1, corner + side, corner}) {

@@ -22,7 +22,7 @@ std::vector<Bounds> boxes_of_sizes(int count, double smallest, double largest, u
   return boxes;
 }
 
-/// Pairs that meet in the first cell that they have in common, each as often as it is found.
+/// Pairs that meet in the first cell that they have in common, each repeated as often as it is found.
 std::multiset<std::pair<Index, Index>> pairs_by_cell(const std::vector<Bounds>& boxes) {
   const CellLists lists(fitting_cells(boxes), boxes);
   std::multiset<std::pair<Index, Index>> pairs;
@@ -59,7 +59,7 @@ TEST_CASE("cell lists: one box over all others does not fill the memory") {
   CHECK(entries <= 8 * boxes.size());
 }
 
-// Found by fuzzing: a vertex of no face moved far past faces without extent, and filled the memory.
+// Found by fuzzing: a loose vertex that moved far past faces without extent filled the memory.
 TEST_CASE("cell lists: boxes that are entered besides those that the cells fit do not fill the memory either") {
   const std::vector<Bounds> faces = boxes_of_sizes(10, 1e-9, 2e-9, 6), vertices = boxes_of_sizes(1, 1, 1, 7);
   const CellLists lists(fitting_cells(faces, vertices), vertices);

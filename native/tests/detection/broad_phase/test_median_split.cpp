@@ -15,7 +15,7 @@ namespace {
 
 using Points = std::vector<NumberedPoint>;
 
-/// Along x, which is longest.
+/// Along x, the longest axis.
 Points points_with(std::size_t count, const auto& x) {
   Points points;
   for (std::size_t k = 0; k < count; ++k) points.push_back({{x(k), 0.1F * x(k), 0}, static_cast<Index>(k)});

@@ -24,7 +24,7 @@ std::shared_ptr<const Surface> loose_triangles() {
   return std::make_shared<const Surface>(definition);
 }
 
-/// Triangle k in cell `cells[k]`, reaching into the neighbouring ones.
+/// Triangle k in cell `cells[k]`, which extends into the neighboring cells.
 Positions placed(const std::vector<Index>& cells) {
   Positions q(3 * count, 3);
   for (Index face = 0; face < count; ++face) {
@@ -71,7 +71,7 @@ std::vector<std::pair<Index, Index>> pairs(const Bvh& tree) {
   return found;
 }
 
-/// A tree that rests at `first`, and then is brought to `second`.
+/// A tree that is built at `first` and then updated to `second`.
 struct Kept {
   Kept(const Positions& first, const Positions& second)
       : surface(loose_triangles()), swept(*surface), tree(*surface, surface->triangles().data(), count) {
@@ -84,7 +84,7 @@ struct Kept {
 
   void update(const Positions& q) {
     Positions end = q;
-    for (Index row = 0; row < end.rows(); row += 2) end(row, 2) += 1e-3;  // what rests is not looked at
+    for (Index row = 0; row < end.rows(); row += 2) end(row, 2) += 1e-3;  // vertices at rest are ignored
     const Step step{q, end, {0.01, 0.5}};
     swept.update(step, Execution(1), SweptVertices::Reuse::forbidden);
     tree.update(step, swept, SweptVertices::Change::all, Execution(1));
@@ -97,7 +97,7 @@ struct Kept {
   std::shared_ptr<const Surface> surface;
   SweptVertices swept;
   PrimitiveTree<3> tree;
-  std::optional<Bvh> before, unchanged;  // its tree at first, and that one refitted instead
+  std::optional<Bvh> before, unchanged;  // its first tree, and a copy of that refitted instead
 };
 
 }  // namespace
@@ -109,15 +109,15 @@ TEST_CASE("primitive tree: built again once neighbours are apart, which leaves a
   const std::int64_t fresh = visited(kept.tree.tree()), stale = visited(*kept.unchanged);
   MESSAGE(fresh << " pairs of nodes instead of " << stale << " for " << count << " triangles");
   CHECK(10 * fresh < stale);
-  // Building sorts the faces, which takes about this many comparisons of one number each; a pair of
-  // nodes is up to 64 comparisons of boxes.
+  // Building a tree is a sort, which takes about this many comparisons of single numbers. A pair of nodes takes up to
+  // 64 comparisons of boxes.
   CHECK(stale - fresh > 1.0 * count * std::log2(count) / 8);
 }
 
 TEST_CASE("primitive tree: kept while neighbours stay together, however far they go") {
   const Positions rest = placed(in_order());
   Positions bent = rest;
-  for (Index row = 0; row < bent.rows(); ++row) {  // wound up about an axis, and grown
+  for (Index row = 0; row < bent.rows(); ++row) {  // twisted about an axis, and enlarged
     const double angle = 0.2 * rest(row, 2);
     bent.row(row) << 7 * (std::cos(angle) * rest(row, 0) - std::sin(angle) * rest(row, 1)),
         7 * (std::sin(angle) * rest(row, 0) + std::cos(angle) * rest(row, 1)), 9 * rest(row, 2) + 100;

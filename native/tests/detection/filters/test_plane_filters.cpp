@@ -26,7 +26,7 @@ Batch scaled(const Batch& batch, double scale) {
   return Batch(motions);
 }
 
-/// Motions that leave the pair as it is: all four vertices go the same way, by a power of two, so that nothing rounds.
+/// Motions of the pair as a whole: all four vertices move by the same power of two, so nothing is rounded.
 Batch carried(MotionMaker& make, std::size_t count) {
   std::vector<PairMotion> motions;
   for (std::size_t k = 0; k < count; ++k) {
@@ -44,7 +44,7 @@ double distance_at_start(EventKind kind, const PairMotion& motion) {
   return static_cast<double>(reference::distance(kind, reference::at(motion, 0)));
 }
 
-/// How far the sides lie apart along an axis for the whole step, by their corners.
+/// The gap between the sides along an axis during the whole step, computed from their corners.
 double gap_along(EventKind kind, const PairMotion& motion, Index axis) {
   const std::size_t others = kind == EventKind::vertex_face ? 1 : 2;
   double beyond = never, before = never;

@@ -9,7 +9,7 @@ using namespace stiv;
 
 namespace {
 
-/// Weights of a point of each primitive, and a separation that belongs to them.
+/// The weights describe a point of each primitive, and the separation matches them.
 void check_consistent(EventKind kind, const std::array<Vector3, 4>& x, const Witness& found) {
   const auto first = static_cast<std::size_t>(first_side_size(kind));
   double sums[2] = {0, 0};

@@ -9,7 +9,7 @@ using namespace stiv;
 
 namespace {
 
-/// Numbers of 53 bits whose sums and products the 113 bits of the reference hold, or nearly.
+/// Numbers of 53 bits whose sums and products fit into the 113 bits of the reference, or nearly.
 #ifdef __SIZEOF_FLOAT128__
 using Wide = __float128;
 #else

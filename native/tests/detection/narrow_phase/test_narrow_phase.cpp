@@ -88,7 +88,7 @@ TEST_CASE("narrow phase: the distance at the reference determines the clearance 
   CHECK(from(1, 0.2)->clearance.threshold == doctest::Approx(0.1));
   CHECK(from(0.15, 0.2)->time == doctest::Approx(1 / 3.0).epsilon(1e-2));
   CHECK(from(0.1, 0.2)->time == 0);   // as near as it may
-  CHECK(from(0.05, 0.2)->time == 0);  // nearer: it comes no nearer
+  CHECK(from(0.05, 0.2)->time == 0);  // nearer: it may not come nearer
   motion.end[0][2] = 0.1;
   CHECK_FALSE(from(0.05, 0.2));  // but may part
   motion.end[0][2] = 0.11;
@@ -176,8 +176,8 @@ TEST_CASE("narrow phase: the normal points from the second to the first side, ag
   CHECK(seen > 100);
 }
 
-// Of an edit in which two sheets slide over each other: reported at 0.1 and 0.2 without a direction, which ended the
-// edit there, because the planes tried turned too far at once and the steps ran out.
+// From an edit in which two sheets slide over each other. It was reported at 0.1 and 0.2 without a direction, which
+// ended the edit: the planes turned too far at once, and the steps ran out.
 TEST_CASE("narrow phase: a triangle that turns by much just beside a vertex is followed all the way") {
   const double separation = 0.000143614;
   PairMotion apart;  // never nearer than 1.96 separations

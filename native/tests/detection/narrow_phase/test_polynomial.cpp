@@ -29,7 +29,7 @@ TEST_CASE("polynomial: contacts within both primitives come out 1/100 before the
         const auto contact = first_contact_by_polynomial(kind, motion, {separation, 0.5});
         const auto conservative = first_contact(kind, motion, {separation, 0.5});
         if (contact) CHECK(conservative);
-        // Where the first contact is not near an edge, end or corner, the polynomial must have it.
+        // The polynomial must find the first contact unless it is near an edge, end or corner.
         if (!conservative || !within_both(*conservative, 0.05) || conservative->time == 0) continue;
         const double d0 = conservative->start_distance, threshold = d0 < separation ? 0.5 * d0 : separation;
         const auto truth = reference::first_time(kind, motion, threshold + 1e-9, 1e-10L);
