@@ -24,7 +24,7 @@ Vector3 rotation_vector(const Quaternion& rotation) {
   return std::copysign(angle / length, rotation.w()) * rotation.vec();
 }
 
-/// The rotation that, applied after `from`, gives `to`; as a vector.
+/// The vector of the rotation that leads from `from` to `to`.
 Vector3 turn_between(const Controls& from, const Controls& to, Index row) {
   return rotation_vector(rotation(to.row(row)) * rotation(from.row(row)).conjugate());
 }

@@ -25,7 +25,7 @@ struct Frame {
   double alpha = 0, beta = 0;
 };
 
-/// Derivatives of a scalar by the three vectors of a frame.
+/// Derivatives of a scalar with respect to the three vectors of a frame.
 struct FrameGradient {
   Vector3 u = Vector3::Zero(), v = Vector3::Zero(), apart = Vector3::Zero();
 };
@@ -56,13 +56,14 @@ Frame frame_of(const Event& event, const std::array<Vector3, 4>& x) {
   return {x[1] - x[0], x[3] - x[2], x[0] - x[2], -w[1], -w[3]};
 }
 
-/// The gradient by the four positions of a scalar of the frame.
+/// The gradient of a scalar of the frame with respect to the four positions.
 CornerGradients by_corners(const Event& event, const FrameGradient& g) {
   if (is_vertex_face(event)) return {g.apart, -g.u - g.v - g.apart, g.u, g.v};
   return {g.apart - g.u, g.u, -g.apart - g.v, g.v};
 }
 
-/// Derivative of n . r by the frame, n the unit normal of u and v on the side of `normal`, r held.
+/// Derivative of n . r with respect to the frame; n is the unit normal of u and v on the side of `normal`, and r is
+/// constant.
 FrameGradient of_normal(const Frame& frame, const Vector3& normal, const Vector3& r) {
   const Vector3 product = frame.u.cross(frame.v);
   const double length = std::copysign(product.norm(), product.dot(normal));
@@ -70,7 +71,7 @@ FrameGradient of_normal(const Frame& frame, const Vector3& normal, const Vector3
   return {frame.v.cross(within), within.cross(frame.u), Vector3::Zero()};
 }
 
-/// Derivative of a alpha + b beta by the frame, from u . d = v . d = 0 for the separation vector d.
+/// Derivative of a alpha + b beta with respect to the frame, from u . d = v . d = 0 for the separation vector d.
 FrameGradient of_weights(const Frame& frame, double a, double b) {
   const double uu = frame.u.squaredNorm(), vv = frame.v.squaredNorm(), uv = frame.u.dot(frame.v);
   const double determinant = uu * vv - uv * uv;
@@ -80,7 +81,7 @@ FrameGradient of_weights(const Frame& frame, double a, double b) {
   return {y * separation - frame.alpha * m, z * separation - frame.beta * m, m};
 }
 
-/// Derivatives of n . Dr by alpha and beta, through the side's |w_k|.
+/// Derivatives of n . Dr with respect to alpha and beta, through the side's |w_k|.
 std::array<double, 2> slopes_by_weights(const Event& event, const ContactSide& side, const Vector3& normal,
                                         const ContactMotion& motion) {
   const auto along = [&](std::size_t to, std::size_t from) {
@@ -94,7 +95,7 @@ bool spans_a_plane(const Frame& frame) {
   return frame.u.cross(frame.v).norm() > least_sine * frame.u.norm() * frame.v.norm();
 }
 
-/// Derivative of n . Dr by the positions at the time of contact, through n and the weights.
+/// Derivative of n . Dr with respect to the positions at the time of contact, through n and the weights.
 CornerGradients by_contact(const Event& event, const ContactSide& side, const Vector3& normal,
                            const ContactMotion& motion) {
   const Frame frame = frame_of(event, motion.at);

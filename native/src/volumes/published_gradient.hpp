@@ -17,8 +17,8 @@ struct ContactSide {
 /// A vector for each of an event's four vertices, in their order.
 using CornerGradients = std::array<Vector3, 4>;
 
-/// Gradient of (1 - t) n . Dr by the four end positions, with constant t, n and w: (1 - t) |w_k| n at the side's
-/// corners.
+/// Gradient of (1 - t) n . Dr with respect to the four end positions, with constant t, n and w: (1 - t) |w_k| n at the
+/// side's corners.
 /// @param normal the event's, oriented so that n . Dr < 0
 CornerGradients frozen_gradient(const Event& event, const ContactSide& side, const Vector3& normal);
 

@@ -26,7 +26,7 @@ struct Contact {
 };
 
 /// The first time at which the pair is within `proximity.clearance(d).threshold`, d its distance at the reference, or
-/// nothing if it never is. A pair that starts nearer than that may come no nearer. Conservative: no contact is missed,
+/// nothing if it never is. A pair that starts nearer than that may not come nearer. Conservative: no contact is missed,
 /// and no time is later than the true one. The distance at a report exceeds the threshold by at most 10 %. Distances
 /// are those of the clamped primitives (edges and vertices of a triangle included).
 ///
@@ -37,13 +37,13 @@ std::optional<Contact> first_contact(EventKind kind, const PairMotion& motion, P
 
 /// The same as published, for comparison [P4.1, P5.2]: not conservative. The roots in time are those of a polynomial
 /// that is zero where vertex and plane (or the lines of both edges) are at the threshold. It has degree six, or three
-/// without a separation [Provot 1997]. The contact is the first root at which the primitives themselves are that near.
+/// without a separation [Provot 1997]. The contact is the first root at which the primitives themselves are that close.
 /// The time is 1/100 early. Contacts on edges and corners at a distance, and within a common plane, are missed or late.
 std::optional<Contact> first_contact_by_polynomial(EventKind kind, const PairMotion& motion, Proximity proximity,
                                                    double latest = 1);
 
-/// Time at which the pair first is within `separation` (>= 0), never later than the true time; 0 if it starts so;
-/// infinity (`never`) if it never does.
+/// Time at which the pair first is within `separation` (>= 0), never later than the true time; 0 if it starts within
+/// it; infinity (`never`) if it never does.
 double time_of_impact(EventKind kind, const PairMotion& motion, double separation);
 
 }  // namespace stiv

@@ -28,7 +28,7 @@ class BodySeparations {
 
 /// Distances of a pair of primitives.
 struct PairClearance {
-  double threshold = 0;  ///< h_eff: the pair may come no nearer
+  double threshold = 0;  ///< h_eff: the pair may not come nearer
   double margin = 0;     ///< how far beyond that it may be pushed, so that rounding causes no new contact
 };
 

@@ -10,7 +10,7 @@
 
 namespace stiv {
 
-/// A space-time interference volume (STIV) and its gradient by the positions at the end of the step.
+/// A space-time interference volume (STIV) and its gradient with respect to the positions at the end of the step.
 struct Stiv {
   double volume = 0;     ///< sum_i A_i min(n . sum_k w_k q1_k - target, -target / 1000); negative
   SparseField gradient;  ///< sum_i A_i w_k n at vertex k

@@ -43,7 +43,7 @@ struct Gaps {
   Lanes beyond, before;
 };
 
-/// Of the projections of the other vertices.
+/// The gaps from the projections of the other vertices.
 template <EventKind kind>
 HWY_INLINE Gaps gaps_between(Lanes p1, Lanes p2, Lanes p3) {
   if constexpr (kind == EventKind::vertex_face) return {hn::Neg(max3(p1, p2, p3)), min3(p1, p2, p3)};

@@ -169,7 +169,7 @@ std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, co
 }
 
 double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold) {
-  // A pair that starts at the threshold may come no nearer; one that starts touching may not cross.
+  // A pair that starts at the threshold may not come nearer; one that starts touching may not cross.
   const bool at_threshold = start_distance > 8 * motion.rounding;
   const double least = (at_threshold ? std::min(start_distance, threshold) : 0) - motion.rounding;
   const double apart = threshold + motion.rounding;
