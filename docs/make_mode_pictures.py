@@ -28,7 +28,7 @@ FIXTURES = {  # pictures, and how many steps of the script they show; None: all
     "cage": ("cage_into_wavy_wall", None),
     "lattice": ("lattice_bspline", None),
     "soft": ("arm_with_handles", None),
-    "gives_way": ("figures/weighted_handles", None),
+    "weighted": ("figures/weighted_handles", None),
     "loop": ("figures/dressing", None),
     "repair": ("figures/untangling", None),
 }
