@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 import bpy
 
 from .modal.expression import Units, evaluate
-from .modal.header_texts import DECIMALS, decimal_text
+from .modal.header_texts import DIGITS, fixed_text
 
 SCENE_LENGTHS = {
     "KILOMETERS": "km", "METERS": "m", "CENTIMETERS": "cm", "MILLIMETERS": "mm", "MICROMETERS": "um",
@@ -18,20 +18,22 @@ SCENE_LENGTHS = {
 }  # fmt: skip
 
 
-def length_text(value: float, units: bpy.types.UnitSettings, decimals: int = DECIMALS) -> str:
-    """A length with its unit: "0 m", "1.5 cm".
+def length_text(value: float, units: bpy.types.UnitSettings, digits: int = DIGITS) -> str:
+    """A length with its unit and a fixed number of digits: "0.0000 m", "1.500 cm".
 
-    value: in world units. units: the scene's `unit_settings`. decimals: digits after the point, at most. A value that
-    rounds to zero has no sign.
+    value: in world units. units: the scene's `unit_settings`. A value that rounds to zero has no sign.
     """
     if units.system == "NONE":
-        return decimal_text(value, decimals)
+        return fixed_text(value, digits)
     value *= units.scale_length
-    name = SCENE_LENGTHS.get(units.length_unit)
-    if name is not None:
-        return f"{decimal_text(value / unit_length(units.system, name), decimals)} {name}"
-    text = str(bpy.utils.units.to_string(units.system, "LENGTH", value, precision=decimals))  # adaptive
-    return text[1:] if text.startswith("-0") and not any(digit in text for digit in "123456789") else text
+    name = SCENE_LENGTHS.get(units.length_unit) or _adaptive_unit(value, units.system)
+    space = " " if name.isalpha() else ""
+    return f"{fixed_text(value / unit_length(units.system, name), digits)}{space}{name}"
+
+
+def _adaptive_unit(value: float, system: str) -> str:
+    """The unit that Blender chooses for a length in metres: "cm", or "'" for feet."""
+    return str(bpy.utils.units.to_string(system, "LENGTH", value, precision=DIGITS)).lstrip("-.0123456789 ")
 
 
 @functools.cache

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texts of header and status bar during a drag; `translate` puts a text into the language of the interface."""
+"""Text of the header during a drag, in Blender's own wording; `translate` puts it into the interface's language."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
+from .axis_lock import AXIS_NAMES, AxisLock
 from .proportional import Proportional
 from .state import State
 
 Translate = Callable[[str], str]
 
-DECIMALS = 4
+DIGITS = 4
+SEPARATOR = "  |  "
 _STATUS_TEXTS = {
     "reached": "clear",
     "corrected": "deflected",
@@ -23,32 +26,59 @@ _STATUS_TEXTS = {
 _RESPONDER_TEXTS = {"unselected": "yields: others", "all": "yields: both"}
 
 
-def header_text(
+def header_parts(
     state: State,
-    transform: str,
+    value: str,
     status: str,
     notes: Sequence[str] = (),
     orientations: tuple[str, str] = ("", ""),
     translate: Translate = str,
-) -> str:
-    """One line: value, axis lock, typed text, status. `orientations` names those of the first and second axis key."""
-    parts = [transform]
-    if state.axis_lock.label:
-        name = orientations[state.axis_lock.second].title()
-        axes = f"{translate(name)} {state.axis_lock.label}" if name else state.axis_lock.label
-        parts.append(translate("along {}").format(axes))
-    if state.typed.active:
-        parts.append(state.typed.text(state.components))
-    parts.extend(filter(None, (_proportional_text(state.proportional, translate), *_modes(state, translate))))
-    return "  |  ".join(part for part in ["  ".join(parts), status, *notes] if part)
+) -> list[str]:
+    """Parts of the line, the most important first: value with axis lock and modes, status, notes.
+
+    value: `text` of the transform. orientations: names of those of the first and the second press of an axis key.
+    """
+    name = orientations[state.axis_lock.second].replace("_", " ")
+    first = [value, axis_text(state.axis_lock, name, translate), _proportional_text(state.proportional, translate)]
+    modes = ", ".join(filter(None, _modes(state, translate)))
+    return [part for part in (" ".join(filter(None, first)), status, modes, *notes) if part]
+
+
+def fitted(parts: Sequence[str], fits: Callable[[str], bool]) -> str:
+    """One line of as many parts as fit; the first is always shown."""
+    shown = list(parts)
+    while len(shown) > 1 and not fits(SEPARATOR.join(shown)):
+        shown.pop()
+    return SEPARATOR.join(shown)
+
+
+def axis_text(lock: AxisLock, orientation: str, translate: Translate = str) -> str:
+    """The axis lock as Blender writes it: "along global X", or "locking global X" for the plane across X."""
+    if lock.axis is None:
+        return ""
+    axis = " ".join(filter(None, (translate(orientation.title()).lower(), AXIS_NAMES[lock.axis])))
+    return translate("locking {}" if lock.plane else "along {}").format(axis)
+
+
+def entry_text(state: State, index: int, value: str) -> str:
+    """A value, after the typed text if there is any: "[5|] = 5.000 m"."""
+    if not state.typed.active or index >= state.components:
+        return value
+    typed, is_current = state.typed.numbers[index], index == state.typed.index
+    return f"[{typed.text}{'|' if is_current else ''}] = {value}" if typed.active or is_current else value
+
+
+def progress_text(fraction: float, translate: Translate = str) -> str:
+    """The header while a goal is solved to its end; fraction: 0 to 1."""
+    return translate("Solving {}, Esc stops").format(f"{fraction:.0%}".replace("%", " %"))
 
 
 def _proportional_text(proportional: Proportional, translate: Translate) -> str:
     if not proportional.active:
         return ""
-    parts = [translate("proportional {}").format(f"{proportional.size:.4g}")]
+    parts = [translate("Proportional Size: {}").format(f"{proportional.size:.2f}")]
     parts.append(translate(proportional.falloff.replace("_", " ").title()))
-    return " ".join([*parts, *([translate("connected")] if proportional.connected else [])])
+    return ", ".join([*parts, *([translate("connected")] if proportional.connected else [])])
 
 
 def _modes(state: State, translate: Translate) -> list[str]:
@@ -61,34 +91,28 @@ def _modes(state: State, translate: Translate) -> list[str]:
     ]
 
 
-def status_text(state: State, translate: Translate = str) -> str:
-    """The keys that have an effect now."""
-    if state.typed.expression:
-        keys = [translate("Enter: confirm"), translate("Esc: cancel"), translate("+ - * / ( ) and units: expression")]
-        return "    ".join([*keys, translate("Tab: next axis"), translate("Backspace: delete")])
-    keys = [translate("Enter, Space, Left Mouse: confirm"), translate("Esc, Right Mouse: cancel")]
-    keys += [translate("G R S: transform"), translate("X Y Z: axis"), translate("Shift+X/Y/Z: plane")]
-    if state.typed.active:
-        keys += [translate("Tab: next axis"), translate("=: expression"), translate("Backspace: delete")]
-    else:
-        keys += [translate("0-9 . - =: value"), translate("Shift: precision"), translate("Ctrl: snap")]
-    if state.proportional.available:
-        keys.append(translate("O: proportional"))
-    if state.proportional.active:
-        keys += [translate("Wheel, Page Up/Down: size"), translate("Shift+O: falloff")]
-    return "    ".join([*keys, translate("W: yields"), translate("I: collisions")])
-
-
 def result_text(status: str, blocking: Sequence[str] = (), translate: Translate = str) -> str:
     """The status of a result for the user; `blocking` names the objects that block the edit."""
     if status == "blocked" and blocking:
-        return translate("blocked by {}").format(", ".join(blocking))
+        return translate("blocked by {}").format(listed(blocking, translate))
     text = _STATUS_TEXTS.get(status, status)
     return translate(text) if text else ""
 
 
-def decimal_text(value: float, decimals: int = DECIMALS) -> str:
-    """A number with at most `decimals` digits after the point, without trailing zeros; rounding noise becomes "0"."""
-    text = f"{value:.{decimals}f}"
-    text = text.rstrip("0").rstrip(".") if "." in text else text
-    return "0" if text == "-0" else text
+MAX_NAMES = 3
+
+
+def listed(names: Sequence[str], translate: Translate = str) -> str:
+    """The first names, and the number of the others."""
+    first, others = ", ".join(names[:MAX_NAMES]), len(names) - MAX_NAMES
+    return translate("{} and {} more").format(first, others) if others > 0 else first
+
+
+def fixed_text(value: float, digits: int = DIGITS) -> str:
+    """A number with `digits` digits, as in Blender's headers, but with trailing zeros: "4.300", "12.34", "0.0000".
+
+    Numbers below 1 have `digits` decimals, and a number that rounds to zero has no sign: no rounding noise.
+    """
+    whole = len(str(int(abs(value)))) if abs(value) >= 1.0 and math.isfinite(value) else 0
+    text = f"{value:.{max(digits - whole, 0)}f}"
+    return text if any(digit in text for digit in "123456789") or not text.startswith("-") else text[1:]

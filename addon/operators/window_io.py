@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
+import blf
 import bpy
 
 from ..modal.event import Event
-from ..modal.header_texts import header_text, status_text
+from ..modal.header_texts import fitted, header_parts, progress_text
+from ..modal.key_hints import KeyHint, hints_that_fit, key_hints, stop_hints
 from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..scene.frame import view_areas
@@ -16,6 +19,7 @@ from ..transform.frame import Frame
 from ..translations import translate
 
 MODIFIERS = ("shift", "ctrl", "alt", "oskey")
+ICON, GAP, MARGIN = 20, 20, 20  # pixels of an icon, after a hint, and beside a header's text, at scale 1
 
 
 def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Event:
@@ -64,20 +68,65 @@ def show(
     orientations: tuple[str, str],
 ) -> None:
     """Write header and status bar, and redraw the views."""
-    write_header(context, header_text(state, value, status, notes, orientations, translate))
-    if context.workspace is not None:
-        context.workspace.status_text_set(status_text(state, translate))
+    _write_header(context, header_parts(state, value, status, notes, orientations, translate))
+    _write_keys(context, key_hints(state, translate))
 
 
-def write_header(context: bpy.types.Context, text: str | None) -> None:
-    """Write a line into the headers of the 3D views; None restores them."""
+def show_progress(context: bpy.types.Context, fraction: float, label: str = "") -> None:
+    """Write how far a solve is, from 0 to 1, and the key that stops it. label: what is solved."""
+    _write_header(context, [*([label] if label else []), progress_text(fraction, translate)])
+    _write_keys(context, stop_hints(translate))
+
+
+def _write_header(context: bpy.types.Context, parts: Sequence[str]) -> None:
+    """Write as many parts of a line as fit into the headers of the 3D views."""
     for area in view_areas(context):
-        area.header_text_set(text)
+        area.header_text_set(fitted(parts, functools.partial(_fits, area.width - 2 * MARGIN * _scale())))
         area.tag_redraw()
+
+
+def _write_keys(context: bpy.types.Context, hints: Sequence[KeyHint]) -> None:
+    """Draw key hints in the status bar, in place of Blender's own, as many as fit."""
+
+    def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
+        width = context.area.width if context.area is not None else context.window.width
+        _draw_keys(header.layout, hints_that_fit(hints, width, lambda hint: _hint_width(hint)))
+
+    if context.workspace is not None:
+        context.workspace.status_text_set(draw)
+
+
+def _draw_keys(layout: bpy.types.UILayout, hints: Sequence[KeyHint]) -> None:
+    for hint in hints:
+        row = layout.row(align=True)
+        for icon in hint.icons:
+            row.label(text="", icon=icon)
+        row.label(text=hint.label, translate=False)
+
+
+def _hint_width(hint: KeyHint) -> float:
+    """Pixels of a hint in the status bar, with the space after it."""
+    return (len(hint.icons) * ICON + GAP) * _scale() + _text_width(hint.label)
+
+
+def _fits(width: float, text: str) -> bool:
+    return _text_width(text) <= width
+
+
+def _text_width(text: str) -> float:
+    """Pixels of a text in the font of the interface."""
+    blf.size(0, bpy.context.preferences.ui_styles[0].widget.points * _scale())
+    return float(blf.dimensions(0, text)[0])
+
+
+def _scale() -> float:
+    return float(bpy.context.preferences.system.ui_scale)
 
 
 def clear(context: bpy.types.Context) -> None:
     """Restore header and status bar."""
-    write_header(context, None)
+    for area in view_areas(context):
+        area.header_text_set(None)
+        area.tag_redraw()
     for workspace in bpy.data.workspaces:
         workspace.status_text_set(None)

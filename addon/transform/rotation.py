@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..modal.header_texts import Translate, decimal_text
+from ..modal.header_texts import Translate, entry_text, fixed_text
 from ..modal.state import State
 from ..modal.typed_numbers import Read
 from .frame import Frame, about
@@ -40,9 +40,12 @@ class Rotation:
         """The rotation at a fraction of the way, 0 to 1."""
         return Rotation(fraction * self.angle, self.axis)
 
-    def text(self, translate: Translate = str, length: Callable[[float], str] = decimal_text) -> str:
-        """The text of the header; a rotation has no `length`."""
-        return translate("Rotate {}").format(f"{decimal_text(math.degrees(self.angle))}°")
+    def text(
+        self, state: State, frame: Frame, translate: Translate = str, length: Callable[[float], str] = fixed_text
+    ) -> str:
+        """The text of the header, as Blender's; a rotation has no `length`."""
+        degrees = f"{math.degrees(self.angle):.2f}°".replace("-0.00", "0.00")
+        return translate("Rotation: {}").format(entry_text(state, 0, degrees))
 
 
 def read_degrees(text: str) -> float:

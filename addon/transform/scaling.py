@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..modal.header_texts import Translate, decimal_text
+from ..modal.header_texts import Translate, entry_text, fixed_text
 from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.typed_numbers import Read
@@ -37,10 +37,18 @@ class Scaling:
         """The scaling at a fraction of the way, 0 to 1."""
         return Scaling(1.0 + fraction * (self.factors - 1.0), self.axes)
 
-    def text(self, translate: Translate = str, length: Callable[[float], str] = decimal_text) -> str:
-        """The text of the header; a scaling has no `length`."""
-        x, y, z = map(decimal_text, self.factors)
-        return translate("Scale {}").format(x if x == y == z else f"X {x}  Y {y}  Z {z}")
+    def text(
+        self, state: State, frame: Frame, translate: Translate = str, length: Callable[[float], str] = fixed_text
+    ) -> str:
+        """The text of the header, as Blender's: the factors of the locked axes, or of all three."""
+        lock = state.axis_lock
+        factors = [f"{self.factors[axis]:.4f}" for axis in lock.axes]
+        entries = [entry_text(state, i, factor) for i, factor in enumerate(factors)]
+        if lock.axis is not None:
+            return translate("Scale: {}").format(" : ".join(entries))
+        return translate("Scale {}").format(
+            "   ".join(f"{axis}: {entry}" for axis, entry in zip("XYZ", entries, strict=True))
+        )
 
 
 def requested_scaling(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Scaling:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..modal.axis_lock import AxisLock
-from ..modal.header_texts import Translate, decimal_text
+from ..modal.header_texts import Translate, entry_text, fixed_text
 from ..modal.state import State
 from ..modal.typed_numbers import Read
 from .frame import Frame
@@ -41,11 +41,18 @@ class Translation:
         """The translation at a fraction of the way, 0 to 1."""
         return Translation(fraction * self.vector)
 
-    def text(self, translate: Translate = str, length: Callable[[float], str] = decimal_text) -> str:
-        """The text of the header; `length` formats a length."""
-        x, y, z = map(length, self.vector)
-        distance = length(float(np.linalg.norm(self.vector)))
-        return translate("Move {}  (distance {})").format(f"X {x}  Y {y}  Z {z}", distance)
+    def text(
+        self, state: State, frame: Frame, translate: Translate = str, length: Callable[[float], str] = fixed_text
+    ) -> str:
+        """The text of the header, as Blender's: along the locked axes, or the world's. `length` formats a length."""
+        lock = state.axis_lock
+        along = self.vector if lock.axis is None else self.vector @ frame.axes_of(lock)[:, list(lock.axes)]
+        labels = ("Dx", "Dy", "Dz") if lock.axis is None else ("D",) * len(along)
+        entries = [
+            f"{label}: {entry_text(state, i, length(float(value)))}"
+            for i, (label, value) in enumerate(zip(labels, along, strict=True))
+        ]
+        return f"{'   '.join(entries)} ({length(float(np.linalg.norm(self.vector)))})"
 
 
 def requested_translation(state: State, frame: Frame, read: Read = float, snap: Snap | None = None) -> Translation:

@@ -36,6 +36,7 @@ class Driver:
         from guard_switch import GUARD_SWITCH
         from guard_uncorrected import GUARD_UNCORRECTED
         from guide_pictures import PICTURES
+        from interface import INTERFACE
         from languages import LANGUAGES
         from measuring import MEASURES
         from proportional_editing import PROPORTIONAL_EDITING
@@ -50,7 +51,7 @@ class Driver:
         guard = GUARD | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
-        usual = drags | grammar | guard | LANGUAGES | SEQUENCES | PICTURES
+        usual = drags | grammar | guard | INTERFACE | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

@@ -9,7 +9,7 @@ import scenes
 from playing import INTO_WALL, click, prepared, start
 from simulation import Steps, Window
 
-SAYS = {"de_DE": "Umschalt: Präzision", "ja_JP": "Shift: 精密"}  # for "Shift: precision"
+SAYS = {"de_DE": "Präzision", "ja_JP": "精密"}  # for "Precision"
 
 
 def in_language(code: str) -> object:
@@ -20,7 +20,7 @@ def in_language(code: str) -> object:
         before = view.language
         view.language, view.use_translate_interface = code, True
         try:
-            assert extension.module("translations").translate("Shift: precision") == SAYS[code]
+            assert extension.module("translations").translate("Precision") == SAYS[code]
             yield from prepared(window, scenes.add_box, "Box")
             yield from start(window)
             yield from window.glide(window.pixel(INTO_WALL))

@@ -110,9 +110,7 @@ class ReshapeOperator(NeedsNativeModule):
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         if self._worker.is_alive():
-            phase, fraction = self._worker.progress
-            label = translate(self.bl_label)
-            window_io.write_header(context, f"{label}: {phase} {fraction:.0%}    {translate('Esc: cancel')}")
+            window_io.show_progress(context, self._worker.progress[1], translate(self.bl_label))
             return {"RUNNING_MODAL"}
         return self._write(context)
 

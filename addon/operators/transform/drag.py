@@ -116,7 +116,7 @@ class DragOperator(Mixin):
             return
         self._shown = news
         label = translate(OPERATORS[drag.state.kind].bl_label)
-        value = drag.transform.text(translate, self._length) if drag.transform is not None else label
+        value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
         status = outcome_text(drag.result) if drag.result is not None else ""
         notes = [text for text in (drag.note, write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)

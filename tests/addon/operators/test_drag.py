@@ -24,7 +24,7 @@ from stiv_addon.transform.frame import Frame  # noqa: E402
 class Area:
     """A 3D view: its header, and the number of redraws."""
 
-    type = "VIEW_3D"
+    type, width = "VIEW_3D", 800
 
     def __init__(self) -> None:
         self.header: str | None = None
@@ -42,7 +42,7 @@ class Value(SimpleNamespace):
 
     rotation = None
 
-    def text(self, translate: Callable[[str], str] = str, length: Callable[[float], str] = str) -> str:
+    def text(self, state: State, frame: Frame, translate: Callable[[str], str], length: Callable[[float], str]) -> str:
         return length(self.value)
 
 
