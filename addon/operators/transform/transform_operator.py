@@ -137,8 +137,8 @@ def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Edi
 
 
 def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
-    """Show in the panel which objects the edit does not guard, and which exclusions it dropped."""
+    """Show in the panel which objects the edit does not guard, and which intersections it leaves as they are."""
     check = context.window_manager.stiv_check
     check.left_out = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried)
-    if edit.dropped_exclusions:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
-        check.summary = edit.dropped_exclusions
+    if edit.start_notes:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
+        check.summary = "; ".join(edit.start_notes)

@@ -36,7 +36,7 @@ class RecordingEdit:
 
     begun: Any = None
     summary = SimpleNamespace(warnings=())
-    dropped_exclusions = ""
+    start_notes = ()
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()
     failing: Exception | None = None

@@ -26,6 +26,7 @@ from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.culling import CullingBox
+from stiv.blender.scene.exclusions import self_intersection_notes
 from stiv.blender.settings import EditSettings, check_kind
 
 
@@ -83,11 +84,13 @@ class BlenderEdit:
     def summary(self) -> Summary:
         """The participants and their warnings. Examines every triangle, so a drag does not call it."""
         summary = summarise(self.assembly, self._control_sets, self._hidden, self.guard)
-        return (
-            replace(summary, warnings=(self.dropped_exclusions, *summary.warnings))
-            if self.dropped_exclusions
-            else summary
-        )
+        return replace(summary, warnings=(*self.start_notes, *summary.warnings))
+
+    @property
+    def start_notes(self) -> tuple[str, ...]:
+        """Notes about intersections at the start that the edit leaves as they are, and about stale exclusions."""
+        dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
+        return (*dropped, *self_intersection_notes(self._solver.excluded))
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:

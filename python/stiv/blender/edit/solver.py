@@ -2,6 +2,7 @@
 """The session of an edit with its history; opened again when flipped triangles have to stay free of intersections."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import stiv
@@ -10,13 +11,16 @@ from stiv.blender.edit.sessions import deformation_of, make_session
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.exclusions import has_only_excluded
+from stiv.blender.scene.exclusions import exclude_self_intersections, has_only_excluded
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
 
 
 class EditSolver:
-    """Attributes: `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`."""
+    """Attributes: `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
+
+    excluded: the excluded pairs of the settings, and those of objects that intersected themselves at the start.
+    """
 
     def __init__(
         self, assembly: Assembly, control_sets: Sequence[ControlSet], controls: Floats, settings: EditSettings
@@ -27,6 +31,7 @@ class EditSolver:
         """
         self._control_sets = control_sets
         self._settings = settings
+        self.excluded = settings.excluded
         self._weights = [each.weights for each in control_sets]
         self._session: stiv.EditSession | None = None
         self._at_start = self.assembly = assembly
@@ -94,7 +99,7 @@ class EditSolver:
 
         def is_free(state: AcceptedState) -> bool:
             q = self.deformation.surface(state.controls)
-            return has_only_excluded(self._settings.excluded, assembly, q, self._settings.threads)
+            return has_only_excluded(self.excluded, assembly, q, self._settings.threads)
 
         state = find_latest(self.trail.states(), is_free)
         if state is None:
@@ -107,6 +112,17 @@ class EditSolver:
         return True
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> None:
+        """Open a session. Objects may intersect themselves at its first start."""
         deformation = deformation_of(assembly, self._control_sets)
-        self._session = make_session(assembly, deformation, self._control_sets, controls, self._weights, self._settings)
-        self.deformation, self.assembly = deformation, assembly
+        try:
+            session = self._make_session(assembly, deformation, controls)
+        except stiv.StartIntersectsError as error:
+            if self._session is not None:
+                raise
+            self.excluded = exclude_self_intersections(self._settings.excluded, assembly, error.pairs)
+            session = self._make_session(assembly, deformation, controls)
+        self._session, self.deformation, self.assembly = session, deformation, assembly
+
+    def _make_session(self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats) -> stiv.EditSession:
+        settings = replace(self._settings, excluded=self.excluded)
+        return make_session(assembly, deformation, self._control_sets, controls, self._weights, settings)

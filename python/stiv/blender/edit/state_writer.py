@@ -77,7 +77,7 @@ class StateWriter:
 
     def verify(self, accepted: Floats) -> Verification:
         """Test Blender's present evaluation against a surface, (N, 3), that is free of intersections."""
-        if self._verifier.assembly is not self._solver.assembly:  # extra triangles were added
+        if not self._verifier.tests(self._solver.assembly, self._solver.excluded):
             self._verifier = self._new_verifier()
         return self._verifier.verify(bpy.context, accepted)
 
@@ -89,7 +89,7 @@ class StateWriter:
         def is_step_free(start: Floats, end: Floats) -> bool:
             return self._solver.session.is_step_free(start, end)
 
-        return Verifier(self._solver.assembly, is_step_free, self._settings.threads, self._settings.excluded)
+        return Verifier(self._solver.assembly, is_step_free, self._settings.threads, self._solver.excluded)
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         states = self._solver.trail.states()

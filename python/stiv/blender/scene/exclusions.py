@@ -16,12 +16,39 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
 from stiv.blender.settings import Exclusions, FaceKey
 
+_MOST_CHARACTERS = 80  # of a message in Blender
+
 
 def exclude(pairs: Sequence[FacePair], meshes: Sequence[VisibleMesh]) -> Exclusions:
     """Exclude the given pairs of faces. Pairs with loose edges, loose vertices or strands cannot be excluded."""
     chosen = frozenset(_key(pair.first, pair.second) for pair in pairs if pair.first.kind == pair.second.kind == "face")
     names = {name for pair in chosen for name, _ in pair}
     return Exclusions(chosen, {name: _digest(meshes, name) for name in sorted(names)})
+
+
+def exclude_self_intersections(excluded: Exclusions, assembly: Assembly, found: Indices) -> Exclusions:
+    """Also exclude the intersecting pairs of triangles, (k, 2), whose triangles belong to one object."""
+    pairs = ((assembly.face(a), assembly.face(b)) for a, b in found.tolist())
+    own = frozenset(_key(a, b) for a, b in pairs if a.object == b.object)
+    return Exclusions(excluded.pairs | own, excluded.shapes)
+
+
+def self_intersection_notes(excluded: Exclusions) -> tuple[str, ...]:
+    """A note for each object that has excluded pairs of its own faces, with their number."""
+    faces: dict[str, set[int]] = {}
+    for (first, number), (second, other) in excluded.pairs:
+        if first == second:
+            faces.setdefault(first.partition("\n")[0], set()).update((number, other))
+    return tuple(_self_intersection_note(name, len(numbers)) for name, numbers in sorted(faces.items()))
+
+
+def _self_intersection_note(name: str, count: int) -> str:
+    text = f" intersects itself, {count} faces, left as it is"
+    return _shortened(name, _MOST_CHARACTERS - len(text)) + text
+
+
+def _shortened(name: str, most: int) -> str:
+    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exclusions, str]:

@@ -59,6 +59,10 @@ class Verifier:
         self._excluded = excluded or Exclusions()
         self._most = len(find_excluded_triangles(self._excluded, assembly, assembly.positions, threads))
 
+    def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
+        """Is this the verifier of an assembly and its exclusions? Both may change during an edit."""
+        return self.assembly is assembly and self._excluded == excluded
+
     def verify(self, context: bpy.types.Context, accepted: Floats) -> Verification:
         """Test Blender's present evaluation against the accepted surface, (N, 3), which is free of intersections.
 

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that intersect themselves at the start are edited; no other pair of faces ever intersects."""
+
+from typing import Any
+
+import bpy
+import pytest
+from building import add_cube, add_grid, add_modifier, edit_mode, select, shift
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene
+
+DEFORM = EditSettings(object_response="deform")
+
+
+def suzanne(levels: int = 0, location: Any = (0, 0, 0)) -> Any:
+    """Blender's monkey, whose eyes cut its face."""
+    bpy.ops.mesh.primitive_monkey_add(location=location)
+    if levels:
+        add_modifier(bpy.context.object, "SUBSURF", levels=levels, render_levels=levels)
+    return bpy.context.object
+
+
+def intersecting() -> set[frozenset[tuple[str, int]]]:
+    """Pairs of faces that intersect now."""
+    return {
+        frozenset((each.object, each.number) for each in (pair.first, pair.second))
+        for pair in check_scene(bpy.context).pairs
+    }
+
+
+@pytest.mark.parametrize("levels", [0, 1])
+@pytest.mark.parametrize("in_edit_mode", [False, True])
+def test_a_mesh_that_intersects_itself_is_edited_and_no_other_faces_intersect(levels: int, in_edit_mode: bool) -> None:
+    add_cube("Cube", (0, 0, -3.0))
+    monkey = suzanne(levels)
+    (edit_mode if in_edit_mode else select)(monkey)
+    before = intersecting()
+    faces = len(set().union(*before))
+    edit = BlenderEdit.begin(bpy.context, DEFORM, "move")
+    assert edit.summary.warnings == (f"Suzanne intersects itself, {faces} faces, left as it is",)
+    assert edit.apply(shift(x=0.2, z=-2.0)).status == "corrected"  # into the cube
+    assert edit.write().passed
+    assert intersecting() <= before
+    assert len(check_scene(bpy.context).pairs) > 0  # a check still reports them
+    edit.restore()
+    for goal in (0.4, -0.3, 0.1):
+        assert edit.drag(shift(y=goal)).status in ("reached", "corrected")
+        assert edit.write().passed
+        assert intersecting() <= before
+
+
+def test_the_note_has_at_most_80_characters() -> None:
+    monkey = suzanne()
+    monkey.name = "M" * 63
+    select(monkey)
+    (note,) = BlenderEdit.begin(bpy.context, DEFORM, "move").start_notes
+    assert len(note) == 80 and note.startswith("MMM") and note.endswith("… intersects itself, 52 faces, left as it is")
+
+
+def test_other_objects_that_intersect_still_need_a_decision() -> None:
+    add_grid("Floor", 4, 2.0)
+    select(suzanne())
+    with pytest.raises(stiv.StartIntersectsError, match="Floor") as refused:
+        BlenderEdit.begin(bpy.context, DEFORM, "move")
+    assert not any("Suzanne" in line and "Floor" not in line for line in str(refused.value).split(";")[1:2])
+
+
+def test_obstacles_that_intersect_each_other_do_not_block() -> None:
+    add_cube("One", (3, 0, 0))
+    add_cube("Other", (3.5, 0.2, 0.1))
+    select(suzanne())
+    edit = BlenderEdit.begin(bpy.context, DEFORM, "move")
+    before = intersecting()
+    edit.apply(shift(x=3.0))
+    assert edit.write().passed
+    assert intersecting() <= before
