@@ -15,6 +15,7 @@ from bpy.props import (
 
 from . import loop_updates
 from .operators.last_edit import note_written
+from .operators.transform.options import OBJECT_RESPONSES
 
 CHOSEN_SEPARATION = 0.001  # initial value when the user turns Auto off
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # can be set for a library override too
@@ -22,7 +23,7 @@ OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}  # can be set for a library override too
 ROLES = (
     ("auto", "Automatic", "Moves with its controls or as a rigid object if selected; otherwise an obstacle"),
     ("controls", "Controls", "Yields with the vertices of its cage or the points of its lattice"),
-    ("rigid", "Rigid", "Yields as a rigid object by moving and rotating"),
+    ("rigid", "Rigid", "Yields as a rigid object, as the scene's Response lets it"),
     ("obstacle", "Obstacle", "Never yields"),
     ("ignored", "No Collision", "Other objects pass through it"),
 )
@@ -56,10 +57,6 @@ GUARDS = (
     ("viewport", "Viewport", "Surfaces that the viewport shows in Object Mode and Edit Mode"),
     ("render", "Render", "Surfaces that are rendered"),
     ("both", "Both", "Surfaces of the viewport and of the render"),
-)
-OBJECT_RESPONSES = (
-    ("rigid", "Rigid", "Selected objects preserve their shape"),
-    ("deform", "Deform", "Selected objects move the points of their cage or lattice"),
 )
 
 
@@ -138,9 +135,9 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     )
     object_response: EnumProperty(
         name="Response",
-        description="How selected objects respond in Object Mode",
+        description="How objects respond to contact in Object Mode",
         items=OBJECT_RESPONSES,
-        default="rigid",
+        default="slide",
     )
     guard: EnumProperty(
         name="Guard", description="Evaluation that stays free of intersections", items=GUARDS, default="auto"

@@ -15,7 +15,7 @@ from .typed_numbers import expression_character, typed_character
 CONFIRM_KEYS = frozenset({"RET", "NUMPAD_ENTER", "SPACE", "LEFTMOUSE"})
 CANCEL_KEYS = frozenset({"ESC", "RIGHTMOUSE"})
 EXPRESSION_KEYS = frozenset({"EQUAL", "NUMPAD_ASTERIX"})
-COLLISIONS_KEY, RESPONDERS_KEY, PROPORTIONAL_KEY = "I", "W", "O"
+COLLISIONS_KEY, RESPONDERS_KEY, RESPONSE_KEY, PROPORTIONAL_KEY = "I", "W", "T", "O"
 
 
 def step(state: State, event: Event) -> tuple[State, Effect]:
@@ -79,6 +79,8 @@ def _requested(request: Request, key: str) -> Request:
         return replace(request, interference=not request.interference)
     if key == RESPONDERS_KEY:
         return request.with_next_responders()
+    if key == RESPONSE_KEY:
+        return request.with_next_response()
     return replace(request, kind=KIND_KEYS.get(key, request.kind))
 
 

@@ -23,6 +23,7 @@ _STATUS_TEXTS = {
     "unchanged": "",
     "unguarded": "collisions off",
 }
+_RESPONSE_TEXTS = {"slide_and_turn": "slide and turn", "deform": "deform"}
 _RESPONDER_TEXTS = {"unselected": "yields: others", "all": "yields: both"}
 
 
@@ -84,10 +85,12 @@ def _proportional_text(proportional: Proportional, translate: Translate) -> str:
 def _modes(state: State, translate: Translate) -> list[str]:
     """Modes that differ from the defaults."""
     responders = _RESPONDER_TEXTS.get(state.request.responders, "")
+    response = _RESPONSE_TEXTS.get(state.request.response, "")
     return [
         translate("precision") if state.precise else "",
         translate("snap") if state.snapping else "",
         translate(responders) if responders else "",
+        translate(response) if response else "",
     ]
 
 
@@ -97,6 +100,12 @@ def result_text(status: str, blocking: Sequence[str] = (), translate: Translate 
         return translate("blocked by {}").format(listed(blocking, translate))
     text = _STATUS_TEXTS.get(status, status)
     return translate(text) if text else ""
+
+
+def turned_text(angle: float, translate: Translate = str) -> str:
+    """By what angle, in radians, contact has turned an object; empty below half a degree."""
+    degrees = round(math.degrees(angle))
+    return translate("turned {}°").format(degrees) if degrees else ""
 
 
 MAX_NAMES = 3

@@ -33,6 +33,7 @@ def key_hints(state: State, translate: Translate = str) -> list[KeyHint]:
         KeyHint(("EVENT_SHIFT", *AXES), translate("Plane")),
         KeyHint(("EVENT_CTRL",), translate("Snap")),
         KeyHint(("EVENT_W",), translate("Yields")),
+        KeyHint(("EVENT_T",), translate("Response")),
         KeyHint(("EVENT_I",), translate("Collisions")),
     ]
     if state.proportional.available:

@@ -25,7 +25,7 @@ def edit_settings(
     return stiv_blender.EditSettings(
         separation=chosen.separation,
         responders=chosen.responders if request is None else request.responders,
-        object_response=chosen.object_response,
+        object_response=chosen.object_response if request is None else request.response,
         guard=chosen.guard,
         smoothness=round(chosen.smoothness, 6),  # single precision: 0.1 becomes the core's 0.1
         constraints=chosen.constraints,

@@ -6,7 +6,8 @@ The first value of each is its default.
 
 OPERATORS = ("move", "rotate", "scale")  #: kinds of edit
 RESPONDERS = ("selected", "unselected", "all")  #: which side moves out of the way
-OBJECT_RESPONSES = ("rigid", "deform")  #: how a selected object responds in Object Mode
+OBJECT_RESPONSES = ("slide", "slide_and_turn", "deform")  #: how objects respond to contact in Object Mode
+FORMER_RESPONSES = {"rigid": "slide_and_turn"}  #: values of version 0.1.0, which files may contain
 ROLES = ("auto", "controls", "rigid", "obstacle", "ignored")  #: how an object participates
 DEFORMATIONS = ("auto", "vertices", "laplacian", "arap", "lattice", "rigid")  #: how an object deforms on contact
 RESTS = ("follows", "stays")  #: vertices that are neither a handle nor anchored

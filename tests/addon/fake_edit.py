@@ -23,6 +23,7 @@ class FakeEdit:
     interference: bool = True
     moving = frozenset({"Box"})
     furthest: float = 10.0
+    turned = 0.0
     start_digest = "start"
     controls = ()
 

@@ -10,6 +10,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import stiv_blender
+from ...modal.header_texts import turned_text
 from ...modal.drag_loop import DragEnded, DragLoop, Progress
 from ...modal.pointer import Pointer
 from ...modal.request import Request
@@ -73,7 +74,7 @@ class DragOperator(Mixin):
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
         pointer = Pointer.at(window_io.plain_event(event, context.region).mouse, window_io.centre(self._frame))
-        request = Request(self.kind, scene.stiv.responders, scene.stiv.interference)
+        request = Request(self.kind, scene.stiv.responders, scene.stiv.interference, scene.stiv.object_response)
         proportional, snap = read_proportional(context), scene.tool_settings.use_snap
         state = State(pointer, request, proportional=proportional, snap=snap)
         self._launch(context, state, lambda request: begin_drag(context, request))
@@ -118,7 +119,8 @@ class DragOperator(Mixin):
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
         status = outcome_text(drag.result) if drag.result is not None else ""
-        notes = [text for text in (drag.note, write_failure(drag.report)) if text]
+        turned = turned_text(drag.edit.turned, translate)
+        notes = [text for text in (turned, drag.note, write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.result is not None:
             display.show_edit(drag.edit, drag.result)

@@ -22,6 +22,15 @@ INTERFERENCE = (
     ("ON", "On", "Surfaces collide"),
     ("OFF", "Off", "Surfaces pass through each other"),
 )
+OBJECT_RESPONSES = (  # with the numbers that files of version 0.1.0 contain
+    ("slide", "Slide", "Objects slide along surfaces and keep their rotation", 0),
+    ("slide_and_turn", "Slide and Turn", "Objects slide along surfaces and rotate where contact turns them", 2),
+    ("deform", "Deform", "Vertices of selected meshes and points of lattices yield; all else slides", 1),
+)
+RESPONSES = (
+    ("SCENE", "Scene Setting", "Use the setting of the scene"),
+    *((name, label, text) for name, label, text, _ in OBJECT_RESPONSES),
+)
 
 
 class TransformOptions:
@@ -48,6 +57,7 @@ class TransformOptions:
     )
     responders: EnumProperty(name="Yields", items=RESPONDERS, default=OF_SCENE, options={"SKIP_SAVE"})
     interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=OF_SCENE, options={"SKIP_SAVE"})
+    response: EnumProperty(name="Response", items=RESPONSES, default=OF_SCENE, options={"SKIP_SAVE"})
     outcome: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def influence(self) -> stiv_blender.Influence | None:
@@ -59,12 +69,14 @@ class TransformOptions:
         """The request of the edit."""
         responders = scene.stiv.responders if self.responders == OF_SCENE else self.responders
         on = scene.stiv.interference if self.interference == OF_SCENE else self.interference == "ON"
-        return Request(self.kind, responders, on)
+        response = scene.stiv.object_response if self.response == OF_SCENE else self.response
+        return Request(self.kind, responders, on, response)
 
     def option_values(self) -> tuple[object, ...]:
         """The values of all options, for comparison."""
         settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
-        return (self.responders, self.interference, *((self.proportional, *settings) if self.proportional else ()))
+        chosen = (self.responders, self.interference, self.response)
+        return (*chosen, *((self.proportional, *settings) if self.proportional else ()))
 
 
 def make_influence(proportional: Proportional) -> stiv_blender.Influence | None:
@@ -81,6 +93,8 @@ def changed_options(request: Request, proportional: Proportional, scene: bpy.typ
         found["interference"] = "ON" if request.interference else "OFF"
     if request.responders != scene.stiv.responders:
         found["responders"] = request.responders
+    if request.response != scene.stiv.object_response:
+        found["response"] = request.response
     if proportional.active:
         found["proportional"] = True
         found["proportional_size"], found["proportional_falloff"] = proportional.size, proportional.falloff

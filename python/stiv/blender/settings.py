@@ -9,7 +9,17 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from stiv import InputError
-from stiv.choices import BOUNDARIES, DEFORMATIONS, GUARDS, OBJECT_RESPONSES, OPERATORS, RESPONDERS, RESTS, ROLES
+from stiv.choices import (
+    BOUNDARIES,
+    DEFORMATIONS,
+    FORMER_RESPONSES,
+    GUARDS,
+    OBJECT_RESPONSES,
+    OPERATORS,
+    RESPONDERS,
+    RESTS,
+    ROLES,
+)
 from stiv.edit_options import SharedOptions
 
 Kind = Literal["move", "rotate", "scale"]
@@ -127,8 +137,9 @@ class EditSettings(SharedOptions):
         responders: which controls yield: those that the edit moves ("selected", default), all others ("unselected": the
             selection then follows the goal exactly), or "all". In Object Mode "unselected" covers all visible objects
             that can be moved, rigidly or by their own deformation; in Edit Mode the unselected vertices or points.
-        object_response: how selected objects respond in Object Mode: "rigid" (placement) or "deform" (vertices of the
-            cage, points of a lattice).
+        object_response: how objects respond in Object Mode: "slide" (default; Move never rotates an object),
+            "slide_and_turn", or "deform" (selected objects by the vertices of their cage or the points of a lattice,
+            all others slide). "rigid", of version 0.1.0, is "slide_and_turn".
         deformations: how an object deforms on contact, by name: "auto" (see `object_response`), "vertices" (of its
             cage, or points of a lattice), "laplacian" or "arap" (handles of a mesh), "lattice" (points of the lattice
             that deforms it), or "rigid". Edit Mode uses only "laplacian" and "arap".
@@ -146,7 +157,7 @@ class EditSettings(SharedOptions):
     pair_separations: tuple[tuple[str, str, float], ...] = ()
     interference: bool = True
     responders: str = "selected"
-    object_response: str = "rigid"
+    object_response: str = "slide"
     deformations: Mapping[str, str] = field(default_factory=dict)
     handles: Mapping[str, Handles] = field(default_factory=dict)
     weights: Mapping[str, WeightGroup] = field(default_factory=dict)
@@ -160,6 +171,8 @@ class EditSettings(SharedOptions):
         """Refuse unknown choices."""
         _require("responders", self.responders, RESPONDERS)
         _require("guard", self.guard, GUARDS)
+        response = FORMER_RESPONSES.get(self.object_response, self.object_response)
+        object.__setattr__(self, "object_response", response)
         _require("object_response", self.object_response, OBJECT_RESPONSES)
         for first, second, distance in self.pair_separations:
             if not 0 < distance < float("inf"):

@@ -49,6 +49,9 @@ class GoalRule(Protocol):
     def affected(self, influence: Influence | None) -> NDArray[np.bool_]:
         """Flags of the controls, (m,), that a motion with this influence moves."""
 
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """Angle in radians by which moving controls, (m, 3), rotate though their goal does not; 0 for points."""
+
 
 @dataclass(frozen=True)
 class ControlSet:

@@ -89,6 +89,10 @@ class PointGoal:
         """Flags of the points that the transform moves, (m,)."""
         return self.selected if influence is None else self.shares(influence) > 0
 
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """0: points have no rotation."""
+        return 0.0
+
     def shares(self, influence: Influence) -> Floats:
         """Fraction of the transform for each point, (m,)."""
         if not self.moves:

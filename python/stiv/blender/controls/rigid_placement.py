@@ -39,7 +39,7 @@ def make_rigid_set(
     axes = _axes(group, starts) if scales else None
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
-    turns = scales or _may_turn(group, starts, kind if selected else "move")
+    turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
     objects = [root.reference.find() for root in group.roots]
     free = None if scales else find_free_directions(objects, starts)
     turns = turns and free is None  # rotation about the centre would move the origin along locked axes
@@ -95,6 +95,12 @@ class PlacementGoal:
         """Flags of the controls of a selected group, (2,); proportional editing does not affect objects."""
         return np.full(2, self.selected)
 
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """Angle in radians by which a selected group rotates though its goal does not."""
+        if not self.selected or self.axes is not None or goal[1].any():
+            return 0.0
+        return float(np.linalg.norm(controls[1]))
+
 
 @dataclass(frozen=True)
 class PlacementWriter:
@@ -129,11 +135,13 @@ class PlacementWriter:
         return [(reference.find(), start) for reference, start in zip(self.references, self.starts, strict=True)]
 
 
-def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str) -> bool:
-    """Can all roots be rotated? Not below an unevenly scaled parent, or with locks.
+def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str, settings: EditSettings) -> bool:
+    """Can all roots be rotated? Not while objects slide, below an unevenly scaled parent, or with locks.
 
     Raises InputError for rotations below that parent; locked objects move without rotation.
     """
+    if kind != "rotate" and settings.object_response != "slide_and_turn":
+        return False
     if not all(can_rotate(root.reference.find()) for root in group.roots):
         return False
     for root, start in zip(group.roots, starts, strict=True):

@@ -103,6 +103,13 @@ class BlenderEdit:
         return self._solver.session.controls if self._unguarded is None else self._unguarded
 
     @property
+    def turned(self) -> float:
+        """Largest angle, in radians, by which contact has turned a moving object whose goal has no rotation."""
+        sets = self._control_sets
+        rows = zip(sets, split_controls(self.controls, sets), split_controls(self._goal, sets), strict=True)
+        return max((each.rule.turned(present, goal) for each, present, goal in rows), default=0.0)
+
+    @property
     def surface(self) -> Floats:
         """Surface of `controls`, (N, 3)."""
         if self._unguarded is not None:

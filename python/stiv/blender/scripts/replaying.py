@@ -13,6 +13,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.scripts.selection import select
 from stiv.blender.verify.scene_check import find_pairs, read_surface
+from stiv.choices import FORMER_RESPONSES
 from stiv.edit_scripts import RESHAPES, EditScript, EditStep
 
 OBJECT_SETTINGS = ("roles", "objects")
@@ -64,6 +65,8 @@ def _apply_settings(settings: Mapping[str, Any]) -> None:
         try:
             if name in OBJECT_SETTINGS:
                 _apply_to_objects(name, value)
+            elif name == "object_response":
+                scene.stiv.object_response = FORMER_RESPONSES.get(value, value)
             else:
                 setattr(scene.stiv, name, value)
         except (AttributeError, TypeError, ValueError) as error:
