@@ -105,6 +105,7 @@ def rigid_ellipsoid() -> Fixture:
             move(selected, (0.0, 0.2, 0.3)),
         ),
         view=View((3.0, -4.2, 2.4), (0.0, 0.0, 0.4)),
+        settings={"object_response": "slide_and_turn"},
     )
 
 

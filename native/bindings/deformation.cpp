@@ -216,7 +216,9 @@ void bind_deformation(py::module_& module) {
       py::arg("starts"), py::arg("controls"), py::arg("values"), py::arg("control_count"), py::arg("offset"));
   module.def("linear_parts", &linear_parts, py::arg("deformation"));
   module.def(
-      "rigid", [](const Positions& rest) { return shared(make_rigid(rest)); }, py::arg("rest"));
+      "rigid",
+      [](const Positions& rest, const std::optional<Vector3>& pivot) { return shared(make_rigid(rest, pivot)); },
+      py::arg("rest"), py::arg("pivot") = py::none());
   module.def("rigid_rest_controls", &rigid_rest_controls, py::arg("rest"));
   module.def(
       "scaling",

@@ -104,6 +104,12 @@ class Session {
     session_.restore(to, toward);
   }
 
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
+    const InUse in_use(in_use_);
+    const py::gil_scoped_release unlocked;
+    session_.set_weights(std::move(weights), std::move(weight_axes));
+  }
+
   Controls controls() {
     const InUse in_use(in_use_);
     return session_.controls();
@@ -227,6 +233,7 @@ void bind_editing(py::module_& module) {
       .def("drag", &Session::drag, py::arg("goal"), cancel, progress, py::arg("time_budget") = py::none())
       .def("settle", &Session::settle, cancel, progress)
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
+      .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))
       .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))
       .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)

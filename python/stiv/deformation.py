@@ -82,17 +82,20 @@ def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Defo
     return result
 
 
-def rigid(vertices: ArrayLike) -> Deformation:
+def rigid(vertices: ArrayLike, pivot: ArrayLike | None = None) -> Deformation:
     """Return the motion of a rigid body: q_i = center + R r_i.
 
     r_i = vertices_i - mean of the vertices. Controls are (2, 3): the center, and the rotation vector
     of R (axis times angle in radians). At `rigid_rest_controls(vertices)`, all vertices are at rest.
 
     vertices  (n, 3) world positions at rest, length
+    pivot     (3,) fixed point of the rotation; the center then only translates. The response neglects the coupling of
+              both rows, so give one of them weight 0. None: the mean of the vertices, and no coupling
 
     Raises InputError naming a vertex that is not finite.
     """
-    return _native.rigid(as_floats(vertices, "vertices", (None, 3)))
+    about = None if pivot is None else as_floats(pivot, "pivot", (3,))
+    return _native.rigid(as_floats(vertices, "vertices", (None, 3)), about)
 
 
 def rigid_rest_controls(vertices: ArrayLike) -> Floats:

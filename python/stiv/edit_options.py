@@ -43,7 +43,7 @@ def as_doubles(value: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name}: expected an array of real numbers") from error
 
 
-def _weights(value: ArrayLike | None) -> Floats:
+def as_weights(value: ArrayLike | None) -> Floats:
     """Return weights, (m,) or (m, 3), as one row of coordinates."""
     weights = np.zeros(0) if value is None else as_doubles(value, "weights")
     if weights.ndim == 1 or (weights.ndim == 2 and weights.shape[1] == 3):
@@ -51,7 +51,7 @@ def _weights(value: ArrayLike | None) -> Floats:
     raise InputError(f"weights: shape is {weights.shape}, expected (m,) or (m, 3): one for each control or coordinate")
 
 
-def _weight_axes(value: ArrayLike | None) -> list[Floats]:
+def as_weight_axes(value: ArrayLike | None) -> list[Floats]:
     """Return the axes of each control's weights, (3, 3) each."""
     axes = np.zeros((0, 3, 3)) if value is None else as_doubles(value, "weight_axes")
     if axes.ndim == 3 and axes.shape[1:] == (3, 3):
@@ -108,9 +108,9 @@ class EditOptions(SharedOptions):
     min_clearance_ratio: float = 0.5
     min_clearance_ratio_between: float = 0.9  #: the same between two bodies
     #: response of each control, (m,), or of each of its coordinates, (m, 3); 0 pins exactly; None: all 1
-    weights: ArrayLike | None = field(default=None, metadata={"convert": _weights})
+    weights: ArrayLike | None = field(default=None, metadata={"convert": as_weights})
     #: (m, 3, 3): the three weights of a control act along the columns of a rotation; None: x, y and z
-    weight_axes: ArrayLike | None = field(default=None, metadata={"convert": _weight_axes})
+    weight_axes: ArrayLike | None = field(default=None, metadata={"convert": as_weight_axes})
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
     exclude: ArrayLike | str | None = field(default=None, metadata={"convert": _excluded_pairs})
     #: "lcp": contacts only push; "linear": they also pull, and each round starts without constraints

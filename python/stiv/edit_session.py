@@ -14,7 +14,15 @@ from stiv import _native
 from stiv._native import CancelToken, Deformation
 from stiv.detection import Events
 from stiv.distances import LeastDistance, least_distance_of
-from stiv.edit_options import EditOptions, StorageFrame, as_doubles, native_options, with_numbers
+from stiv.edit_options import (
+    EditOptions,
+    StorageFrame,
+    as_doubles,
+    as_weight_axes,
+    as_weights,
+    native_options,
+    with_numbers,
+)
 from stiv.surface import Surface, as_surface
 
 __all__ = ["CancelToken", "EditOptions", "EditResult", "EditSession", "StorageFrame", "edit"]
@@ -163,6 +171,13 @@ class EditSession:
         """
         toward = None if goal is None else as_doubles(goal, "goal")
         self._session.restore(as_doubles(controls, "controls"), toward)
+
+    def set_weights(self, weights: ArrayLike | None, weight_axes: ArrayLike | None = None) -> None:
+        """Change the response weights and their axes, as in :class:`stiv.EditOptions`.
+
+        Continues from the accepted state as after :meth:`restore`. Raises InputError, with nothing changed.
+        """
+        self._session.set_weights(as_weights(weights), as_weight_axes(weight_axes))
 
 
 def edit(

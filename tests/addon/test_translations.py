@@ -75,12 +75,15 @@ def is_operator(cls: Any) -> bool:
     return issubclass(cls, bpy.types.Operator)
 
 
+SMALL = {"and", "for", "in", "on"}
+
+
 def test_labels_are_short_titles_without_articles() -> None:
     for label in filter(None, labels()):
         words = label.split()
         assert len(words) <= 3 or label == "Show Overlay on Startup", label
         assert not {"a", "an", "the"} & {word.lower() for word in words}, label
-        assert all(word[0].isupper() or word in {"for", "in", "on"} for word in words if word[0].isalpha()), label
+        assert all(word[0].isupper() or word in SMALL for word in words if word[0].isalpha()), label
 
 
 def test_no_text_ends_with_a_full_stop_and_none_is_longer_than_a_line() -> None:

@@ -10,8 +10,8 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import stiv_blender
-from ...modal.header_texts import turned_text
 from ...modal.drag_loop import DragEnded, DragLoop, Progress
+from ...modal.header_texts import turned_text
 from ...modal.pointer import Pointer
 from ...modal.request import Request
 from ...modal.state import Effect, State

@@ -120,5 +120,5 @@ def dressing() -> Fixture:
         meshes=tuple(meshes),
         steps=tuple(steps),
         view=View((2.6, -5.4, 1.9), (0.0, 0.0, 1.22), 62.0),
-        settings={"objects": {"Ogre": {"weight_group": "Gives way"}}},
+        settings={"object_response": "slide_and_turn", "objects": {"Ogre": {"weight_group": "Gives way"}}},
     )

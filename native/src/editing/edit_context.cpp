@@ -80,6 +80,16 @@ void EditContext::set_proximity(const Positions& start, const Controls& controls
   if (may_touch) round_proximity_.separation = 0;
 }
 
+void EditContext::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
+  EditOptions changed = options_;
+  changed.weights = std::move(weights);
+  changed.weight_axes = std::move(weight_axes);
+  check_options(changed, deformation_->control_count());
+  metric_ = metric_of(*deformation_, changed);
+  rotation_rows_ = free_rotation_rows(*deformation_, changed.weights);
+  options_ = std::move(changed);
+}
+
 void EditContext::check_controls(const Controls& controls, const char* name) const {
   const Index count = deformation_->control_count();
   if (controls.rows() != count)

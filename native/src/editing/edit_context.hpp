@@ -22,7 +22,7 @@ struct State {
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
 double energy(const Positions& a, const Positions& b);
 
-/// The validated input of a session, and data derived from it once. Immutable.
+/// The validated input of a session, and data derived from it once. Only the weights can change.
 class EditContext {
  public:
   /// @throws InputError for shapes and values that do not fit
@@ -47,6 +47,8 @@ class EditContext {
   double least_separation() const { return least_separation_; }
   /// Largest displacement of a vertex of the goal in a pull; 0: no pulls.
   double pull_distance() const { return options_.pull_limit * diagonal_; }
+  /// @throws InputError, with nothing changed
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
   /// @param name of the argument: "controls" or "goal"

@@ -47,6 +47,12 @@ class EditSession::Implementation {
     is_dragging_ = goal != controls;
   }
 
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
+    context_.set_weights(std::move(weights), std::move(weight_axes));
+    checked_ = accepted_.controls;
+    restore(Controls(accepted_.controls), Controls(goal_.controls));
+  }
+
   EditResult edit(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
@@ -165,7 +171,7 @@ class EditSession::Implementation {
     }
   }
 
-  const EditContext context_;
+  EditContext context_;
   CollisionQueries queries_;
   State accepted_;
   State goal_;  ///< of the last call, as given
@@ -192,6 +198,9 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution) {
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
 void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
+void EditSession::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
+  implementation_->set_weights(std::move(weights), std::move(weight_axes));
+}
 
 bool EditSession::is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
   return implementation_->is_step_free(start, end, execution);

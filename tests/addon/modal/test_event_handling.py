@@ -10,7 +10,7 @@ from stiv_addon.modal.event import Event
 from stiv_addon.modal.event_handling import CANCEL_KEYS, CONFIRM_KEYS, step
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.proportional import Proportional
-from stiv_addon.modal.request import Request
+from stiv_addon.modal.request import RESPONSES, Request
 from stiv_addon.modal.state import Effect, Phase, State
 
 SHIFT = frozenset({"shift"})
@@ -140,6 +140,7 @@ def test_ctrl_and_shift_tab_invert_snapping() -> None:
 def test_keys_change_the_responders_and_collisions() -> None:
     assert after(Event("I")).request == Request(interference=False)
     assert after(Event("I"), Event("I")).request == Request()
+    assert [after(*[Event("T")] * times).request.response for times in range(4)] == [*RESPONSES, RESPONSES[0]]
     found = [after(*[Event("W")] * times).request.responders for times in range(4)]
     assert sorted(set(found)) == ["all", "selected", "unselected"] and found[3] == found[0]
 

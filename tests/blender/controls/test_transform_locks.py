@@ -38,7 +38,7 @@ def test_locked_rotations_are_respected_on_contact() -> None:
     start = evaluated(bar)
     for locks in ((False, False, False), ALL, (False, False, True)):
         bar.lock_rotation = locks
-        edit = begin()
+        edit = begin(object_response="slide_and_turn")
         edit.apply(shift(2.0))
         assert edit.write().passed
         turned = np.abs(evaluated(bar) - evaluated(bar).mean(axis=0) - start + start.mean(axis=0)).max() > 1e-4

@@ -78,7 +78,7 @@ def test_slide_and_turn_turns() -> None:
 @pytest.mark.parametrize("responders", ["unselected", "all"])
 @pytest.mark.parametrize("kind", ["move", "rotate", "scale"])
 def test_what_is_pushed_aside_slides(kind: str, responders: str) -> None:
-    pusher, figure = add_cube("Pusher"), random_figure("Figure", 3, (2.2, 0.6, 0.2))
+    pusher, figure = add_cube("Pusher"), random_figure("Figure", 3, (1.8, 0.6, 0.2))
     before, place = rotation_bits(figure), tuple(figure.location)
     select(pusher)
     goal = {"move": shift(1.5), "rotate": turn(0.8, "Z"), "scale": np.diag([2.0, 2.0, 2.0, 1.0])}[kind]
@@ -91,7 +91,7 @@ def test_what_is_pushed_aside_slides(kind: str, responders: str) -> None:
 
 
 def test_deform_dents_the_selected_mesh_and_slides_the_rest() -> None:
-    cube, figure = add_cube("Cube"), random_figure("Figure", 3, (2.2, 0.6, 0.2))
+    cube, figure = add_cube("Cube"), random_figure("Figure", 3, (1.8, 0.6, 0.2))
     before = rotation_bits(figure)
     select(cube)
     edit = begin(object_response="deform", responders="all")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "stiv/deformation/deformation.hpp"
 
 namespace stiv {
@@ -9,8 +11,10 @@ namespace stiv {
 /// Controls, (2, 3): center, rotation vector (axis times angle in radians).
 /// The metric is J'J, (6, 6), at the current controls. Its damping is relative to the diagonal of J'J in terms of
 /// angular velocity, which is not singular at full turns, where the rotation vector is.
-/// @throws InputError naming a vertex that is not finite
-std::shared_ptr<const Deformation> make_rigid(const Positions& rest);
+/// With a pivot the rotation is about it: q_i = center + (pivot - mean(rest)) + R (rest_i - pivot). The center, which
+/// is mean(rest) at rest, then only translates. The metric neglects the coupling of both rows, so pin one of them.
+/// @throws InputError naming a vertex that is not finite, or for such a pivot
+std::shared_ptr<const Deformation> make_rigid(const Positions& rest, const std::optional<Vector3>& pivot = {});
 
 /// The rest controls of make_rigid(rest): (mean(rest), 0).
 Controls rigid_rest_controls(const Positions& rest);

@@ -66,6 +66,10 @@ class EditSession {
   void restore(const Controls& controls, const Controls& goal);
   void restore(const Controls& controls) { restore(controls, controls); }
 
+  /// Changes the response weights and their axes, as in EditOptions. Continues from the accepted state as after
+  /// `restore`. @throws InputError, with nothing changed
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes = {});
+
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
   /// Like stiv::is_step_free, but with the trees of the session. For sessions without excluded pairs.
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution);

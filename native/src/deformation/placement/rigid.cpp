@@ -26,14 +26,15 @@ Eigen::Matrix3d rotation_block(const Eigen::Matrix3d& rest_inertia, const Vector
 
 class Rigid final : public Deformation {
  public:
-  explicit Rigid(Positions from_centre) : from_centre_(std::move(from_centre)) {}
+  /// @param offset of the pivot from the mean
+  Rigid(Positions from_pivot, const Eigen::RowVector3d& offset) : from_pivot_(std::move(from_pivot)), offset_(offset) {}
 
   Index control_count() const override { return 2; }
-  Index vertex_count() const override { return static_cast<Index>(from_centre_.rows()); }
+  Index vertex_count() const override { return static_cast<Index>(from_pivot_.rows()); }
 
   Positions surface(const Controls& p, const Execution&) const override {
     check_control_rows(p, 2);
-    return (from_centre_ * rotation_matrix(p.row(1)).transpose()).rowwise() + p.row(0);
+    return (from_pivot_ * rotation_matrix(p.row(1)).transpose()).rowwise() + (p.row(0) + offset_);
   }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
@@ -41,7 +42,7 @@ class Rigid final : public Deformation {
     const Eigen::Matrix3d rotation = rotation_matrix(p.row(1));
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
     for (std::size_t k = 0; k < g.index.size(); ++k) {
-      const Vector3 arm = rotation * from_centre_.row(g.index[k]).transpose();
+      const Vector3 arm = rotation * from_pivot_.row(g.index[k]).transpose();
       force += g.value[k];
       torque += arm.cross(g.value[k]);
     }
@@ -52,11 +53,11 @@ class Rigid final : public Deformation {
     check_control_rows(d, 2);
     const Vector3 turn = left_jacobian(p.row(1)) * d.row(1).transpose();
     const Eigen::Matrix3d velocity = cross_matrix(turn) * rotation_matrix(p.row(1));
-    return (from_centre_ * velocity.transpose()).rowwise() + d.row(0);
+    return (from_pivot_ * velocity.transpose()).rowwise() + d.row(0);
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    const Eigen::Matrix3d scatter = from_centre_.transpose() * from_centre_;
+    const Eigen::Matrix3d scatter = from_pivot_.transpose() * from_pivot_;
     const Eigen::Matrix3d inertia = scatter.trace() * Eigen::Matrix3d::Identity() - scatter;
     const auto block = [inertia, smoothness = options.smoothness](const ControlsView& p) {
       return rotation_block(inertia, p.row(1), smoothness);
@@ -73,14 +74,18 @@ class Rigid final : public Deformation {
   std::vector<Index> rotation_rows() const override { return {1}; }
 
  private:
-  Positions from_centre_;  ///< r_i = rest_i - mean(rest), (n, 3)
+  Positions from_pivot_;  ///< r_i = rest_i - pivot, (n, 3)
+  Eigen::RowVector3d offset_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Deformation> make_rigid(const Positions& rest) {
+std::shared_ptr<const Deformation> make_rigid(const Positions& rest, const std::optional<Vector3>& pivot) {
   check_finite(rest, "rigid body, vertex");
-  return std::make_shared<Rigid>(rest.rowwise() - rigid_rest_controls(rest).row(0));
+  const Eigen::RowVector3d mean = rigid_rest_controls(rest).row(0);
+  if (!pivot) return std::make_shared<Rigid>(rest.rowwise() - mean, Eigen::RowVector3d::Zero());
+  if (!pivot->allFinite()) throw InputError("rigid body: the pivot is not finite");
+  return std::make_shared<Rigid>(rest.rowwise() - pivot->transpose(), pivot->transpose() - mean);
 }
 
 Controls rigid_rest_controls(const Positions& rest) {
