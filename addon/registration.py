@@ -7,6 +7,7 @@ import bpy
 
 from . import keymap, loop_updates, manual, menus, operators, panels, preferences, properties, translations
 from .guard import watcher
+from .operators import running
 from .operators.transform import drag_results
 from .overlay import display
 
@@ -35,7 +36,8 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Remove everything."""
+    """Remove everything; a running edit restores its start first."""
+    running.cancel(bpy.context)
     display.unregister()
     watcher.unregister()
     loop_updates.unregister()

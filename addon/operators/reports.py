@@ -32,13 +32,19 @@ def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str) -> 
 
 
 def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blender.Edit | None = None) -> set[str]:
-    """Report an error after restoring `edit`; unexpected errors also print their trace."""
+    """Report an error after restoring `edit`; unexpected errors print their trace."""
     if edit is not None:
         restore_after_error(edit, error)
-    if not isinstance(error, ValueError | stiv_blender.SceneChangedError | DragEnded):
-        traceback.print_exception(error)
-    operator.report({"ERROR"}, "; ".join([str(error) or type(error).__name__, *getattr(error, "__notes__", ())]))
+    operator.report({"ERROR"}, "; ".join([error_text(error), *getattr(error, "__notes__", ())]))
     return {"CANCELLED"}
+
+
+def error_text(error: Exception) -> str:
+    """The message of an error that names its cause. Texts of Python and NumPy go to the console with their trace."""
+    if isinstance(error, stiv_blender.InputError | stiv_blender.SceneChangedError | DragEnded):
+        return str(error)
+    traceback.print_exception(error)
+    return translate("Unexpected error, the edit is undone; the system console has the details")
 
 
 def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:

@@ -7,8 +7,9 @@ import tempfile
 from pathlib import Path
 
 import bpy
+import extension
 import scenes
-from playing import FURTHEST, INTO_WALL, NEAR, box, click, ended, expect_near, prepared, start
+from playing import CLOSE, FURTHEST, INTO_WALL, NEAR, box, click, ended, expect_near, prepared, start
 from simulation import Steps, Window
 
 
@@ -73,7 +74,67 @@ def fault_within(window: Window) -> Steps:
     assert not window.leftovers(), window.leftovers()
 
 
+def disabled_during_drag(window: Window) -> Steps:
+    """The extension is disabled during a drag: the start is restored, and nothing stays behind."""
+    yield from prepared(window, scenes.add_box, "Box")
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(box().location.x, FURTHEST, NEAR, "the box before")
+    window.picture("disabled_during_drag_before")
+    with window.override():
+        bpy.ops.preferences.addon_disable(module=extension.NAME)
+    try:
+        assert box().location.length == 0.0, box().location
+        window.move(*window.pixel((0.8, 0.0, 0.0)))  # Blender frees the operator at the next event
+        yield from window.settle()
+        assert not window.handle.modal_operators and not window.leftovers(), window.leftovers()
+        assert box().location.length == 0.0, box().location
+        window.picture("disabled_during_drag_after")
+    finally:
+        with window.override():
+            bpy.ops.preferences.addon_enable(module=extension.NAME)
+    yield from window.settle()
+
+
+def two_windows(window: Window) -> Steps:
+    """A drag in a second window is refused until the first one ends, so that Esc undoes nothing of the other."""
+    yield from prepared(window, scenes.add_box, "Box")
+    with window.override():
+        bpy.ops.wm.window_new()
+    second = bpy.context.window_manager.windows[1]
+    try:
+        yield from window.settle()
+        yield from start(window)
+        yield from window.glide(window.pixel((0.5, 0.0, 0.0)))
+        assert refused(second)
+        yield from click(window)
+        confirmed = box().location.x
+        expect_near(confirmed, 0.5, CLOSE, "the box after the first drag")
+        assert not refused(second)
+        yield from window.until(lambda: len(second.modal_operators) == 1, "a drag in the second window")
+        second.event_simulate(type="ESC", value="PRESS", x=10, y=10)
+        yield from window.until(lambda: not second.modal_operators, "its end")
+        assert box().location.x == confirmed, box().location
+    finally:
+        with bpy.context.temp_override(window=second):
+            bpy.ops.wm.window_close()
+    yield from window.settle()
+
+
+def refused(window: bpy.types.Window) -> bool:
+    """Whether a window cannot begin a drag."""
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        if not bpy.ops.stiv.move.poll():
+            return True
+        bpy.ops.stiv.move("INVOKE_DEFAULT")
+    return not window.modal_operators
+
+
 _ALL = (
+    disabled_during_drag,
+    two_windows,
     saved_during_drag,
     mode_changed,
     object_deleted,

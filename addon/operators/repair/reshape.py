@@ -14,7 +14,7 @@ from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
-from .. import window_io
+from .. import running, window_io
 from ..last_edit import numbers
 from ..reports import report_error
 
@@ -87,6 +87,9 @@ class ReshapeOperator(NeedsNativeModule):
 
     def start(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and start the worker."""
+        if obstacle := running.obstacle():
+            self.report({"ERROR"}, obstacle)
+            return {"CANCELLED"}
         try:
             self._task = self.begin(context)
         except Exception as error:
@@ -94,6 +97,7 @@ class ReshapeOperator(NeedsNativeModule):
         self._worker = Worker(self._task)
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
+        running.begin(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -137,6 +141,7 @@ class ReshapeOperator(NeedsNativeModule):
         return self._finish(context, report)
 
     def _leave(self, context: bpy.types.Context) -> None:
+        running.end()
         window_io.stop_timer(context, self._timer)
         window_io.clear(context)
 

@@ -22,7 +22,7 @@ from ...scene.tool_settings import read_proportional, read_snap, store_proportio
 from ...transform import requested_transform
 from ...translations import translate
 from ...units import length_text, readers
-from .. import last_edit, window_io
+from .. import last_edit, running, window_io
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
 from .move import STIV_OT_move
@@ -42,6 +42,9 @@ class DragOperator(Mixin):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Begin the drag; if the edit is rejected, nothing changes."""
+        if obstacle := running.obstacle():
+            self.report({"ERROR"}, obstacle)
+            return {"CANCELLED"}
         try:
             self._start(context, event)
         except Exception as error:
@@ -90,6 +93,7 @@ class DragOperator(Mixin):
         )
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
+        running.begin(self)
 
     def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> Effect:
         if context.mode != self._mode:
@@ -153,6 +157,7 @@ class DragOperator(Mixin):
         return {"FINISHED"}
 
     def _leave(self, context: bpy.types.Context) -> None:
+        running.end()
         window_io.stop_timer(context, self._timer)
         display.end_edit()
         window_io.clear(context)

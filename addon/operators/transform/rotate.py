@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty
 
+from ... import stiv_blender
 from ...transform.rotation import Rotation
 from ...translations import translate
 from .transform_operator import TransformOperator
@@ -29,7 +30,7 @@ class STIV_OT_rotate(TransformOperator, bpy.types.Operator):
         axis = np.array(self.axis)
         length = np.linalg.norm(axis)
         if not length > 0.0:
-            raise ValueError(translate("The rotation axis is (0, 0, 0): set a direction"))
+            raise stiv_blender.InputError(translate("The rotation axis is (0, 0, 0): set a direction"))
         return Rotation(self.angle, axis / length)
 
     def own_values(self) -> tuple[object, ...]:

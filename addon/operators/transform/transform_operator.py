@@ -14,7 +14,7 @@ from ...scene.edit_settings import DRAG_BUDGET, edit_settings
 from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
-from .. import last_edit
+from .. import last_edit, running
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
 from .options import TransformOptions
@@ -29,8 +29,10 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """In Object Mode, and in Edit Mode of a mesh or a lattice."""
-        return context.mode in MODES
+        """In Object Mode, and in Edit Mode of a mesh or a lattice, while no edit runs."""
+        if obstacle := running.obstacle():
+            cls.poll_message_set(obstacle)
+        return context.mode in MODES and not obstacle
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Start a drag; without a 3D view, apply the values.

@@ -2,7 +2,7 @@
 """The modal part of the operators with a context of plain values, since Blender needs a window to run it."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,10 +15,13 @@ from fake_edit import FakeEdit  # noqa: E402
 
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
-from stiv_addon.operators import window_io  # noqa: E402
+from stiv_addon.operators import running, window_io  # noqa: E402
 from stiv_addon.operators.transform import drag  # noqa: E402
 from stiv_addon.operators.transform.drag import DragOperator  # noqa: E402
+from stiv_addon.operators.transform.move import STIV_OT_move  # noqa: E402
 from stiv_addon.transform.frame import Frame  # noqa: E402
+
+UNEXPECTED = "Unexpected error, the edit is undone; the system console has the details"
 
 
 class Area:
@@ -87,7 +90,7 @@ def edit() -> FakeEdit:
 
 
 @pytest.fixture
-def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Context]:
+def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> Iterator[tuple[Probe, Context]]:
     monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
     monkeypatch.setattr(
         drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)
@@ -96,7 +99,8 @@ def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> tuple[Probe, Con
     monkeypatch.setattr(drag, "make_influence", lambda proportional: None)
     operator, context = Probe(), Context()
     operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begun)
-    return operator, context
+    yield operator, context
+    running.end()
 
 
 def expect_clean(context: Context) -> None:
@@ -129,7 +133,7 @@ def test_a_fault_of_the_edit_restores_reports_and_clears(started: Any, edit: Fak
     edit.failing = {failing: RuntimeError("broken")}
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    assert edit.calls[-1] == "restore" and operator.reports == [({"ERROR"}, "broken")]
+    assert edit.calls[-1] == "restore" and operator.reports == [({"ERROR"}, UNEXPECTED)]
     expect_clean(context)
 
 
@@ -143,7 +147,7 @@ def test_a_fault_of_the_interface_ends_the_drag_too(
 
     monkeypatch.setattr(window_io, "show", fail)
     assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"CANCELLED"}
-    assert edit.calls == ["restore"] and operator.reports == [({"ERROR"}, "no such area")]
+    assert edit.calls == ["restore"] and operator.reports == [({"ERROR"}, UNEXPECTED)]
     expect_clean(context)
 
 
@@ -152,7 +156,7 @@ def test_a_failure_to_restore_is_reported(started: Any, edit: FakeEdit) -> None:
     edit.failing = {"drag": RuntimeError("broken"), "restore": RuntimeError("the box is gone")}
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
     operator.modal(context, event("TIMER"))
-    assert operator.reports == [({"ERROR"}, "broken; while restoring: the box is gone")]
+    assert operator.reports == [({"ERROR"}, f"{UNEXPECTED}; while restoring: the box is gone")]
     expect_clean(context)
 
 
@@ -175,3 +179,25 @@ def test_blender_may_end_the_drag(started: Any, edit: FakeEdit) -> None:
     operator.cancel(context)
     assert edit.calls == ["restore"]
     expect_clean(context)
+
+
+def test_disabling_the_extension_restores_the_start(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    assert edit.shown == 0.5
+    running.cancel(context)
+    assert edit.shown == 0.0
+    expect_clean(context)
+    running.cancel(context)  # nothing runs any more
+    assert edit.calls.count("restore") == 1
+
+
+def test_a_second_window_cannot_begin_an_edit_until_the_first_one_ends(started: Any, edit: FakeEdit) -> None:
+    operator, context = started
+    second = Probe()
+    assert second.invoke(context, event("MOUSEMOVE", "NOTHING")) == {"CANCELLED"}
+    assert second.reports == [({"ERROR"}, "Another window runs an edit; finish it first")]
+    assert not STIV_OT_move.is_available(context)
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert STIV_OT_move.is_available(context) and not running.obstacle()

@@ -15,6 +15,7 @@ bpy = pytest.importorskip("bpy")
 import mathutils  # noqa: E402
 
 import stiv_addon  # noqa: E402
+from stiv import InputError  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES  # noqa: E402
@@ -118,11 +119,17 @@ def test_scale_uses_local_axes_on_request(scene: Any) -> None:
     np.testing.assert_allclose(RecordingEdit.begun.matrix[:3, :3], np.diag([2.0, 1.0, 1.0]), atol=1e-6)
 
 
-@pytest.mark.parametrize("failure", [ValueError("no"), RuntimeError("no"), KeyError("no")])
-def test_a_refusal_is_reported_and_changes_nothing(scene: Any, failure: Exception) -> None:
+UNEXPECTED = "Unexpected error, the edit is undone; the system console has the details"
+
+
+@pytest.mark.parametrize(
+    ("failure", "text"),
+    [(InputError("no"), "no"), (KeyError("no"), "no"), (ValueError("zip()"), UNEXPECTED), (RuntimeError(), UNEXPECTED)],
+)
+def test_a_refusal_is_reported_and_changes_nothing(scene: Any, failure: Exception, text: str) -> None:
     RecordingEdit.failing = failure
     before = scene.matrix_world.copy()
-    with pytest.raises(RuntimeError, match="no"):  # what Blender makes of a reported error
+    with pytest.raises(RuntimeError, match=text):  # what Blender makes of a reported error
         bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
     assert scene.matrix_world == before
 

@@ -40,7 +40,7 @@ def test_nothing_selected_in_edit_mode() -> None:
 
 def test_lights_have_no_surface() -> None:
     select(add("Light", bpy.data.lights.new("Light", "POINT")))
-    refused("nothing movable is selected")
+    refused("Light: no surface; also select an object that has one")
 
 
 def test_modes_without_controls() -> None:

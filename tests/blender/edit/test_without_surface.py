@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects without a mesh: hair, point clouds and volumes beside edited objects."""
 
+from collections.abc import Callable
+from typing import Any
+
 import bpy
 import pytest
 from building import add, add_cube, add_grid, select, shift
 
+from stiv import InputError
 from stiv.blender import BlenderEdit, EditSettings
 
 DATA = {
@@ -37,3 +41,42 @@ def test_selected_objects_without_a_surface_move_along(kind: str) -> None:
     assert edit.write().passed
     assert 1 < cube.location.z < 1.01
     assert other.location.z == pytest.approx(5 + cube.location.z - 1.5, abs=1e-6)
+
+
+OTHERS = {
+    "camera": lambda: bpy.data.cameras.new("Other"),
+    "armature": lambda: bpy.data.armatures.new("Other"),
+    "empty": lambda: None,
+    "pencil": lambda: getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new("Other"),
+}
+
+
+@pytest.mark.parametrize(
+    ("data", "response"),
+    [((DATA | OTHERS)[kind], response) for kind in DATA | OTHERS for response in ("rigid", "deform")]
+    + [(lambda: bpy.data.meshes.new("Other"), "deform")],
+)
+def test_a_selection_without_a_surface_is_refused_by_name(data: Callable[[], Any], response: str) -> None:
+    """A mesh without vertices once ended in "cannot reshape array of size 0 into shape (0,newaxis)"."""
+    add_cube("Cube")
+    select(add("Other", data(), (9, 0, 0)))
+    with pytest.raises(InputError, match=r"^Other: (has )?no surface") as raised:
+        BlenderEdit.begin(bpy.context, EditSettings(object_response=response), "move")
+    assert len(str(raised.value)) <= 80
+
+
+def test_a_mesh_that_shows_only_points_is_refused_by_name() -> None:
+    """It once ended in "zip() argument 2 is longer than argument 1"."""
+    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    first, points, last = (
+        tree.nodes.new(kind) for kind in ("NodeGroupInput", "GeometryNodeMeshToPoints", "NodeGroupOutput")
+    )
+    tree.links.new(first.outputs[0], points.inputs[0])
+    tree.links.new(points.outputs[0], last.inputs[0])
+    cube = add_cube("Cube")
+    cube.modifiers.new("Nodes", "NODES").node_group = tree
+    select(cube)
+    with pytest.raises(InputError, match="Cube: has no surface that deforms; set its deformation to Rigid"):
+        BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")

@@ -102,6 +102,8 @@ def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) 
     indices = _shown_by({shown}, meshes)
     if not indices and shown != name:
         raise InputError(f'{shown}: shows the cage "{name}" and is hidden; show it')
+    if not any(len(meshes[index].local) for index in indices):
+        raise InputError(f"{name}: has no surface that deforms; set its deformation to Rigid")
     return indices
 
 

@@ -164,6 +164,8 @@ def add_refined(context: bpy.types.Context, cage: bpy.types.Object, levels: int,
     be edited or has a face that is not a triangle.
     """
     check_data(cage)
+    if not len(cage.data.polygons):
+        raise InputError(f"{cage.name}: has no faces; add triangles")
     refine(cage, LoopSurface("", levels, boundary))  # may raise InputError before anything is created
     name = f"{cage.name}.loop"
     refined = bpy.data.objects.new(name, bpy.data.meshes.new(name))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds the participants of an edit: objects with controls that move or yield."""
 
+from collections.abc import Sequence
+
 import bpy
 
 from stiv import InputError
@@ -33,8 +35,16 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     if settings.responders != "selected" and context.mode == "OBJECT":
         participants += find_automatic_responders(objects, participants, settings)
     if not any(each.selected for each in participants):
-        raise InputError("nothing movable is selected; select an object with a surface")
+        raise nothing_movable([ob.name for ob in selected if settings.participates(settings.shown_by(ob.name))])
     return participants
+
+
+def nothing_movable(names: Sequence[str]) -> InputError:
+    """The error for a selection that cannot move, from the names of selected objects without a surface."""
+    if not names:
+        return InputError("nothing movable is selected; select an object with a surface")
+    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return InputError(f"{names[0]}{others}: no surface; also select an object that has one")
 
 
 def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:

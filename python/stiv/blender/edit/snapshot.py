@@ -9,6 +9,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.arrays import Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
@@ -70,7 +71,7 @@ def take_snapshot(
     found, groups = make_control_sets(context, participants, solid, settings, kind)
     control_sets = tuple(adapt(each) for each in found)
     if not any(each.rule.moves for each in control_sets):
-        raise InputError("nothing movable is selected; select vertices, points or objects with a surface")
+        raise _nothing_moves(participants, solid)
     moving = {each.reference.name for each in participants}.union(
         *(group.members for group in groups),
         (solid[index].owner.name for control_set in control_sets for index in control_set.surfaces),
@@ -84,6 +85,14 @@ def take_snapshot(
     start_digest = digest(*(each.controls for each in control_sets), points, *placements).hex()
     chosen = replace(settings, excluded=excluded)
     return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, start_digest, carried)
+
+
+def _nothing_moves(participants: Sequence[Participant], solid: Sequence[VisibleMesh]) -> InputError:
+    if any(each.role != "rigid" for each in participants):
+        return InputError("nothing movable is selected; select vertices, points or objects with a surface")
+    shown = {mesh.owner.name for mesh in solid}
+    names = [each.reference.name for each in participants if each.selected]
+    return nothing_movable([name for name in names if name not in shown])
 
 
 def find_moving_vertices(assembly: Assembly, control_sets: Sequence[ControlSet]) -> Indices:
