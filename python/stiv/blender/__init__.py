@@ -9,6 +9,8 @@ from stiv.blender.edit.drawable import Contacts, contacts_of, triangles_of
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
+from stiv.blender.guard.guarding import GuardedResult, guard_result
+from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, object_pair
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state, revert
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
@@ -43,8 +45,10 @@ __all__ = [
     "ExpansionSettings",
     "FacePair",
     "Guard",
+    "GuardedResult",
     "Handles",
     "Influence",
+    "KnownIntersections",
     "LoopSurface",
     "Motion",
     "ObjectState",
@@ -68,9 +72,12 @@ __all__ = [
     "expand_scene",
     "faces_of",
     "find_exclusions",
+    "find_intersections",
     "first_hit",
     "follow",
+    "guard_result",
     "nearest_pair",
+    "object_pair",
     "read_state",
     "read_surface",
     "refresh",

@@ -32,10 +32,19 @@ class Change:
 
 @dataclass(frozen=True)
 class Changes:
-    """All changes. `unsupported` describes a change that no edit can reproduce; "" if there is none."""
+    """All changes.
+
+    Attributes:
+        changes: those that an edit can reproduce.
+        added: objects that were added or shown.
+        rebuilt: objects with other vertices, another parent or rotation mode, or transformed and deformed at once.
+        unsupported: describes the first change that no edit can reproduce; "" if there is none.
+    """
 
     changes: tuple[Change, ...]
     unsupported: str = ""
+    added: tuple[ObjectReference, ...] = ()
+    rebuilt: tuple[ObjectReference, ...] = ()
 
     def __bool__(self) -> bool:
         """Did anything change?"""
@@ -44,19 +53,31 @@ class Changes:
 
 def compare(before: SceneState, after: SceneState) -> Changes:
     """Find the changes from `before` to `after`."""
-    for number in before.keys() ^ after.keys():
-        name = (before.get(number) or after[number]).reference.name
-        return Changes((), f'object "{name}" was {"added or shown" if number in after else "removed or hidden"}')
-    found = []
+    found, rebuilt, reasons = [], [], []
+    added = [state.reference for number, state in after.items() if number not in before]
+    reasons += [f'object "{each.name}" was added or shown' for each in added]
+    reasons += [
+        f'object "{state.reference.name}" was removed or hidden'
+        for number, state in before.items()
+        if number not in after
+    ]
     for number, state in after.items():
+        if number not in before:
+            continue
+        reference = state.reference
         if state.kind != before[number].kind:
-            return Changes((), f'the structure of object "{state.reference.name}" was changed')
+            rebuilt.append(reference)
+            reasons.append(f'the structure of object "{reference.name}" was changed')
+            continue
         change = _compare(before[number], state)
         if change.placed and change.points is not None:
-            return Changes((), f'object "{state.reference.name}" was transformed and deformed at once')
-        if change.placed or change.points is not None:
+            rebuilt.append(reference)
+            reasons.append(f'object "{reference.name}" was transformed and deformed at once')
+        elif change.placed or change.points is not None:
             found.append(change)
-    return Changes(tuple(found), "" if found else _posed(before, after))
+    if not found and not reasons:
+        reasons = [reason] if (reason := _posed(before, after)) else []
+    return Changes(tuple(found), "".join(reasons[:1]), tuple(added), tuple(rebuilt))
 
 
 def _posed(before: SceneState, after: SceneState) -> str:

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Corrects what is new in a scene: copies from the place of their original, extrusions, and any other new object."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from stiv.blender.guard.changes import Change, Changes, compare
+from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
+from stiv.blender.guard.extrusion import extruded_from
+from stiv.blender.guard.free_place import find_free_place
+from stiv.blender.guard.known_intersections import KnownIntersections, fresh_objects
+from stiv.blender.guard.scene_state import ObjectState, SceneState, read_object, read_state
+from stiv.blender.scene.mesh_reading import read_edges
+from stiv.blender.scene.references import ObjectReference
+from stiv.blender.settings import EditSettings
+
+FIRST_FRACTIONS = (1 / 16, 1 / 64, 1 / 256)  # of an extrusion, from which its correction starts
+
+
+def find_originals(accepted: SceneState, present: SceneState, new: Collection[int]) -> dict[int, int]:
+    """The object of which each new one is a copy, by session number; objects that are no copies are left out."""
+    found = {}
+    for number in new:
+        candidates = [other for other in accepted if other in present and _is_copy(present[number], accepted[other])]
+        if candidates:
+            place = present[number].world[:3, 3]
+            distance = {other: float(np.linalg.norm(accepted[other].world[:3, 3] - place)) for other in candidates}
+            found[number] = min(candidates, key=lambda other: distance[other])
+    return found
+
+
+def _is_copy(state: ObjectState, other: ObjectState) -> bool:
+    """Do the objects have the same name up to its number, the same kind of data, and the same vertices?"""
+    first, second = state.reference.find(), other.reference.find()
+    if first.type != second.type or _base_name(first.name) != _base_name(second.name):
+        return False
+    return state.kind == other.kind and state.has_same_points(other)
+
+
+def _base_name(name: str) -> str:
+    base, _, number = name.rpartition(".")
+    return base if base and number.isdigit() else name
+
+
+def is_in_place(copy: ObjectState, original: ObjectState) -> bool:
+    """Is a copy exactly where its original is?"""
+    return copy.placement == original.placement
+
+
+def correct_copies(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    known: KnownIntersections,
+    accepted: SceneState,
+    originals: Mapping[int, int],
+) -> ToolCorrection:
+    """Move copies from the places of their originals toward their own. They pass through all originals.
+
+    Raises InputError and SceneChangedError, with nothing changed.
+    """
+    present = read_state(context)
+    base = dict(present)
+    for copy, original in originals.items():
+        start = accepted[original]
+        base[copy] = replace(
+            present[copy], location=start.location, rotation=start.rotation, scale=start.scale, world=start.world
+        )
+    names = {present[copy].reference.name: accepted[original].reference.name for copy, original in originals.items()}
+    left_out = known.left_out(settings, names)
+    through = tuple((copy, original) for copy in names for original in names.values())
+    left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, *through))
+    return correct_after_tool(context, left_out, base, compare(base, present))
+
+
+def correct_extrusion(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    known: KnownIntersections,
+    accepted: SceneState,
+    reference: ObjectReference,
+) -> ToolCorrection | None:
+    """Pull an extrusion out again up to where it is blocked; None if the new vertices are no extrusion.
+
+    Raises InputError and SceneChangedError, with nothing changed.
+    """
+    before, after = accepted[reference.session_uid], read_object(reference.find())
+    if before.points is None or after.points is None or reference.find().type != "MESH":
+        return None
+    extruded = extruded_from(before.points, after.points, read_edges(reference.find().data))
+    if extruded is None:
+        return None
+    origins, moved = extruded
+    for fraction in FIRST_FRACTIONS:
+        points = origins + fraction * (after.points - origins)
+        start = replace(after, points=np.where(moved[:, None], points, after.points).astype(np.float32))
+        start.restore_points()
+        context.view_layer.update()
+        is_free = reference.name not in fresh_objects(context, settings, known)
+        after.restore_points()
+        context.view_layer.update()
+        if is_free:
+            base = {**read_state(context), reference.session_uid: start}
+            change = Change(reference, moved=False, turned=False, scaled=False, points=moved)
+            return correct_after_tool(context, known.left_out(settings), base, Changes((change,)))
+    return None
+
+
+def place_freely(
+    context: bpy.types.Context, settings: EditSettings, known: KnownIntersections, names: Collection[str]
+) -> bool:
+    """Put new objects, which stay together, at the nearest free place; False, with nothing changed, without success."""
+    translation = find_free_place(context, known.left_out(settings), names)
+    if translation is None:
+        return False
+    roots = [ob for ob in map(bpy.data.objects.get, names) if ob and (not ob.parent or ob.parent.name not in names)]
+    before = [read_object(ob) for ob in roots]
+    if any(ob.library is not None for ob in roots):
+        return False
+    for ob in roots:
+        ob.matrix_world = Matrix.Translation(Vector(translation)) @ ob.matrix_world
+    context.view_layer.update()
+    if not fresh_objects(context, settings, known).isdisjoint(names):
+        for state in before:
+            state.restore_placement()
+        context.view_layer.update()
+        return False
+    return True

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The nearest place where new objects intersect nothing."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+import stiv
+from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.guarded_evaluations import read_guarded_scene
+from stiv.blender.settings import EditSettings
+from stiv.blender.verify.scene_check import tested_names
+
+DIRECTIONS = sorted(
+    (np.array(each) / np.linalg.norm(each) for each in itertools.product((-1, 0, 1), repeat=3) if any(each)),
+    key=lambda each: float(-np.abs(each).max()),
+)
+"""Along the axes, then between two and three of them."""
+FIRST_STEP, GROWTH = 1 / 64, 1.5  # of the new objects' diagonal; each step out is longer
+BISECTIONS = 8
+MARGIN = 1e-3  # added to the shortest free distance
+TIME_LIMIT = 3.0  # seconds; then the best place so far is returned
+
+
+def find_free_place(context: bpy.types.Context, settings: EditSettings, names: Collection[str]) -> Floats | None:
+    """The shortest translation found, (3,), that frees the named objects from all others; None if none was found.
+
+    They stay together, and intersections among them are not counted. Places inside a closed surface do not count.
+    """
+    scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
+    mobility = ["rigid" if mesh.owner.name in names else "fixed" for mesh in scene.meshes]
+    assembly = assemble(scene.meshes, mobility, [frozenset(names)], settings.ignored_pairs)
+    search = _Search.of(assembly, [index for index, kind in enumerate(mobility) if kind == "rigid"], settings.threads)
+    if search is None:
+        return None
+    best, deadline = np.inf, time.monotonic() + TIME_LIMIT
+    found = None
+    for direction in DIRECTIONS:
+        distance = search.free_distance(direction, best, deadline)
+        if distance < best:
+            best, found = distance, direction * distance
+    return found
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Tests translations of some vertices against all others."""
+
+    assembly: Assembly
+    moving: NDArray[np.bool_]
+    test: stiv.IntersectionTest
+    others: list[Indices]
+    size: float
+    extent: float
+
+    @staticmethod
+    def of(assembly: Assembly, meshes: list[int], threads: int) -> _Search | None:
+        if not meshes or len(meshes) == len(assembly.meshes):
+            return None
+        moving = np.zeros(len(assembly.positions), np.bool_)
+        moving[assembly.vertices_of(meshes)] = True
+        if not moving.any() or moving.all():
+            return None
+        triangles = assembly.surface.triangles
+        bodies = np.asarray(assembly.surface.vertex_body)[triangles[:, 0]]
+        fixed = ~moving[triangles[:, 0]]
+        others = [triangles[fixed & (bodies == body)] for body in np.unique(bodies[fixed])]
+        size = float(np.linalg.norm(np.ptp(assembly.positions[moving], axis=0)))
+        extent = size + float(np.linalg.norm(np.ptp(assembly.positions, axis=0)))
+        test = stiv.IntersectionTest(assembly.surface, threads)
+        return _Search(assembly, moving, test, others, size, extent)
+
+    def free_distance(self, direction: Floats, limit: float, deadline: float) -> float:
+        """The shortest free distance found along a direction below a limit, with a margin; infinity for none."""
+        low, step = 0.0, self.size * FIRST_STEP
+        high = step
+        while not self._is_free(direction * high):
+            low, step = high, step * GROWTH
+            high += step
+            if low > min(limit, self.extent) or time.monotonic() > deadline:
+                return float("inf")
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (low, middle) if self._is_free(direction * middle) else (middle, high)
+        padded = high + MARGIN * self.size
+        return padded if self._is_free(direction * padded) else high
+
+    def _is_free(self, translation: Floats) -> bool:
+        q = self.assembly.positions + self.moving[:, None] * translation
+        return len(self.test.find(q)) == 0 and not self._is_inside(q)
+
+    def _is_inside(self, q: Floats) -> bool:
+        """Is a moving vertex inside another closed surface?"""
+        point = q[np.flatnonzero(self.moving)[0]]
+        return any(abs(_winding_number(q[triangles], point)) > 0.5 for triangles in self.others)
+
+
+def _winding_number(corners: Floats, point: Floats) -> float:
+    """Winding number of triangles, (f, 3, 3), around a point: the sum of their solid angles over 4 pi."""
+    a, b, c = np.moveaxis(corners - point, 1, 0)
+    la, lb, lc = (np.linalg.norm(each, axis=1) for each in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    products = (np.einsum("ij,ij->i", *pair) for pair in ((a, b), (b, c), (c, a)))
+    ab, bc, ca = products
+    return float(np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2 * np.pi))

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Intersections that the live guard leaves alone, so that it guards everything else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import bpy
+
+from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.exclusions import exclude, without_excluded
+from stiv.blender.scene.guarded_evaluations import read_guarded_scene
+from stiv.blender.settings import EditSettings, Exclusions
+from stiv.blender.verify.scene_check import check_scene, tested_names
+
+ObjectPair = tuple[str, str]
+"""Names of two objects in ascending order; the same name twice for an object that intersects itself."""
+
+
+def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tuple[FacePair, ...]:
+    """All intersecting pairs of the present scene that are not excluded. Raises InputError."""
+    return tuple(dict.fromkeys(without_excluded(check_scene(context, settings).pairs, settings.excluded)))
+
+
+def fresh_objects(context: bpy.types.Context, settings: EditSettings, known: KnownIntersections) -> set[str]:
+    """Names of the objects in intersections that are not known."""
+    found = known.fresh(find_intersections(context, settings))
+    return {name for pair in found for name in object_pair(pair)}
+
+
+def object_pair(pair: FacePair) -> ObjectPair:
+    """The objects of a pair of elements."""
+    first, second = sorted((pair.first.object, pair.second.object))
+    return first, second
+
+
+@dataclass(frozen=True)
+class KnownIntersections:
+    """Pairs that intersect in the accepted state.
+
+    Two objects that intersect pass through each other until they are apart. Within one object only the intersecting
+    faces are excluded, since the object could not deform with its other faces guarded otherwise.
+
+    Attributes:
+        pairs: the intersecting elements.
+        within: the intersecting faces within one object, as exclusions.
+    """
+
+    pairs: tuple[FacePair, ...] = ()
+    within: Exclusions = Exclusions()
+
+    @staticmethod
+    def of(context: bpy.types.Context, settings: EditSettings, pairs: Iterable[FacePair]) -> KnownIntersections:
+        """The pairs of a test of the present scene."""
+        known = tuple(dict.fromkeys(pairs))
+        own = [pair for pair in known if pair.first.object == pair.second.object]
+        if not own:
+            return KnownIntersections(known)
+        scene, _ = read_guarded_scene(context, settings, tested_names(context, settings))
+        return KnownIntersections(known, exclude(own, scene.meshes))
+
+    @property
+    def objects(self) -> frozenset[ObjectPair]:
+        """The pairs of objects."""
+        return frozenset(map(object_pair, self.pairs))
+
+    def left_out(self, settings: EditSettings, copies: Mapping[str, str] | None = None) -> EditSettings:
+        """Settings of an edit that tests everything else.
+
+        copies: names of objects that were copied, by the name of the copy; it passes through what the original did.
+        """
+        pairs = {pair for pair in self.objects if pair[0] != pair[1] or not self._has_faces_of(pair[0])}
+        for copy, original in (copies or {}).items():
+            pairs |= {(copy, other) for pair in pairs for other in pair if original in pair and other != original}
+        own = settings.excluded
+        merged = Exclusions(own.pairs | self.within.pairs, {**own.shapes, **self.within.shapes})
+        return replace(settings, ignored_pairs=(*settings.ignored_pairs, *sorted(pairs)), excluded=merged)
+
+    def fresh(self, pairs: Iterable[FacePair]) -> tuple[FacePair, ...]:
+        """The pairs of objects that did not intersect before."""
+        return tuple(pair for pair in pairs if object_pair(pair) not in self.objects)
+
+    def _has_faces_of(self, name: str) -> bool:
+        return any(name in {owner.split("\n")[0] for owner, _ in pair} for pair in self.within.pairs)

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One intersection leaves the rest guarded; copies, extrusions and new objects are corrected, placed or named."""
+
+from typing import Any
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from building import add_cube, edit_mode, evaluated, select
+
+from stiv.blender import EditSettings, KnownIntersections, check_scene, find_intersections, guard_result, read_state
+
+WALL = 3.0  # where its face is, along x
+
+
+def add_wall() -> Any:
+    return add_cube("Wall", (WALL + 0.5, 0, 0), 1.0, scale=(0.5, 4, 4))
+
+
+def guarded(change: Any, **settings: Any) -> Any:
+    """Read the scene, change it, guard the result."""
+    chosen = EditSettings(**settings)
+    accepted = read_state(bpy.context)
+    existing = {ob.session_uid for ob in bpy.data.objects}
+    known = KnownIntersections.of(bpy.context, chosen, find_intersections(bpy.context, chosen))
+    change()
+    bpy.context.view_layer.update()
+    created = {ob.session_uid for ob in bpy.data.objects} - existing
+    return guard_result(bpy.context, chosen, accepted, known, created)
+
+
+def pairs() -> set[tuple[str, str]]:
+    return {(pair.first.object, pair.second.object) for pair in check_scene(bpy.context).pairs}
+
+
+def duplicate(ob: Any, **values: Any) -> Any:
+    """As Shift+D does it: the copy is selected and then moved."""
+    select(ob)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    for name, value in values.items():
+        setattr(copy, name, value)
+    return copy
+
+
+def test_one_intersecting_pair_leaves_all_others_guarded_and_may_part() -> None:
+    add_wall()
+    box, stuck = add_cube("Box"), add_cube("Stuck", (0, 3, 0))
+    add_cube("Other", (-0.5, 4, 0))
+    outcome = guarded(lambda: setattr(box, "location", (9, 0, 0)))
+    assert outcome.wrote and outcome.corrected == ["Box"]
+    assert box.location.x == pytest.approx(WALL - 1, abs=0.02)
+    assert pairs() == {("Stuck", "Other")} and len(outcome.pairs) == len(check_scene(bpy.context).pairs)
+    outcome = guarded(lambda: setattr(stuck, "location", (9, 3, 0)))  # away from Other, into the wall
+    assert stuck.location.x == pytest.approx(WALL - 1, abs=0.03) and outcome.pairs == () and pairs() == set()
+    outcome = guarded(lambda: setattr(stuck, "location", (0, 3, 0)))  # guarded again since they are apart
+    assert outcome.wrote and pairs() == set()
+
+
+def test_an_object_that_intersects_itself_is_guarded_against_others() -> None:
+    add_wall()
+    mesh = bmesh.new()
+    for matrix in ((0, 0, 0), (0.5, 0.3, 0.2)):
+        moved = bmesh.ops.create_cube(mesh, size=1.0)["verts"]
+        bmesh.ops.translate(mesh, verts=moved, vec=matrix)
+    data = bpy.data.meshes.new("Eyes")
+    mesh.to_mesh(data)
+    eyes = bpy.data.objects.new("Eyes", data)
+    bpy.context.collection.objects.link(eyes)
+    outcome = guarded(lambda: setattr(eyes, "location", (9, 0, 0)))
+    assert outcome.corrected == ["Eyes"] and pairs() == {("Eyes", "Eyes")}
+    assert evaluated(eyes)[:, 0].max() == pytest.approx(WALL, abs=0.02)
+
+
+def test_a_copy_dragged_into_a_wall_stops_on_the_side_of_its_original() -> None:
+    add_wall()
+    box = add_cube("Box")
+    outcome = guarded(lambda: duplicate(box, location=(3.5, 0.5, 0)))
+    copy = bpy.data.objects["Box.001"]
+    assert outcome.corrected == ["Box.001"] and outcome.pairs == () and pairs() == set()
+    assert copy.location.x == pytest.approx(WALL - 1, abs=0.02) and box.location.x == 0
+
+
+def test_a_copy_that_overlaps_its_original_goes_to_the_nearest_free_place() -> None:
+    box = add_cube("Box")
+    outcome = guarded(lambda: duplicate(box, location=(1.5, 0.2, 0)))
+    copy = bpy.data.objects["Box.001"]
+    assert outcome.placed == ["Box.001"] and pairs() == set()
+    assert tuple(copy.location) == pytest.approx((2, 0.2, 0), abs=0.02)
+
+
+def test_a_copy_in_the_place_of_its_original_stays_and_is_named() -> None:
+    box = add_cube("Box")
+    outcome = guarded(lambda: duplicate(box))
+    assert not outcome.wrote and outcome.reason == "Box.001: is in the same place as Box; move it"
+    assert outcome.pairs
+
+
+@pytest.mark.parametrize("kind", ["primitive", "collection instance", "text"])
+def test_a_new_object_goes_to_the_nearest_free_place(kind: str) -> None:
+    add_wall()
+
+    def add_new() -> None:
+        if kind == "primitive":
+            bpy.ops.mesh.primitive_uv_sphere_add(location=(2.8, 0, 0))
+        elif kind == "text":
+            bpy.ops.object.text_add(location=(2.5, 0, 0))
+            bpy.context.object.data.extrude = 0.1
+        else:
+            sphere = bpy.data.objects.new("Inner", bpy.data.meshes.new("Inner"))
+            ball = bmesh.new()
+            bmesh.ops.create_icosphere(ball, subdivisions=2, radius=1.0)
+            ball.to_mesh(sphere.data)
+            collection = bpy.data.collections.new("Asset")
+            collection.objects.link(sphere)
+            empty = bpy.data.objects.new("New", None)
+            empty.instance_type, empty.instance_collection, empty.location = "COLLECTION", collection, (2.8, 0, 0)
+            bpy.context.collection.objects.link(empty)
+
+    outcome = guarded(add_new)
+    assert outcome.wrote and len(outcome.placed) == 1 and outcome.pairs == () and pairs() == set()
+    new = bpy.data.objects[outcome.placed[0]]
+    assert 1.0 < new.location.x < 2.5 and abs(new.location.y) < 0.2
+
+
+def test_objects_that_were_only_shown_stay_and_are_named() -> None:
+    add_wall()
+    box = add_cube("Box", (WALL, 0, 0))
+    box.hide_set(True)
+    outcome = guarded(lambda: box.hide_set(False))
+    assert not outcome.wrote and box.location.x == WALL and outcome.pairs
+    assert outcome.reason == 'object "Box" was added or shown'
+
+
+def extrude(box: Any, distance: float) -> None:
+    """Extrude the faces at the right side along x."""
+    content = bmesh.from_edit_mesh(box.data)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    for face in content.faces:
+        if face.calc_center_median().x > 0.99:
+            face.select_set(True)
+    bmesh.update_edit_mesh(box.data)
+    bpy.ops.mesh.extrude_region_move(TRANSFORM_OT_translate={"value": (distance, 0, 0)})
+
+
+@pytest.mark.parametrize("levels", [0, 2])
+def test_an_extrusion_stops_at_the_wall(levels: int) -> None:
+    add_wall()
+    box = add_cube("Box")
+    if levels:
+        box.modifiers.new("Subdivision", "SUBSURF").levels = levels
+    edit_mode(box)
+    content = bmesh.from_edit_mesh(box.data)
+    bmesh.ops.subdivide_edges(content, edges=content.edges[:], cuts=2, use_grid_fill=True)  # vertices inside the region
+    outcome = guarded(lambda: extrude(box, 6.0))
+    assert outcome.corrected == ["Box"] and outcome.pairs == () and pairs() == set()
+    box.update_from_editmode()
+    assert WALL - 0.2 < evaluated(box)[:, 0].max() < WALL
+    stored = np.array([vertex.co for vertex in box.data.vertices])
+    assert np.isclose(stored[:, 0], 1.0).sum() == 12 and stored[:, 0].min() == -1.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_a_free_extrusion_stays_exactly() -> None:
+    add_wall()
+    box = add_cube("Box")
+    edit_mode(box)
+    outcome = guarded(lambda: extrude(box, 1 / 3))
+    assert not outcome.wrote and outcome.pairs == ()
+    box.update_from_editmode()
+    assert max(vertex.co.x for vertex in box.data.vertices) == np.float32(1) + np.float32(1 / 3)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize("what", ["join", "boolean", "primitive in Edit Mode"])
+def test_new_geometry_of_other_tools_that_intersects_is_named(what: str) -> None:
+    add_wall()
+    box, other = add_cube("Box"), add_cube("Other", (0, 0, 5))
+
+    def change() -> None:
+        select(box, other)
+        if what == "join":
+            other.location.x = 3.5
+            bpy.context.view_layer.update()
+            bpy.ops.object.join()
+        elif what == "boolean":
+            other.location = (3.5, 0, 0)
+            modifier = box.modifiers.new("Boolean", "BOOLEAN")
+            modifier.object, modifier.operation = other, "UNION"
+            bpy.context.view_layer.update()
+            bpy.ops.object.modifier_apply(modifier="Boolean")
+            bpy.data.objects.remove(other)
+        else:
+            edit_mode(box)
+            bpy.ops.mesh.primitive_cube_add(location=(3.5, 0, 0))
+
+    outcome = guarded(change)
+    assert outcome.reason and ("Box", "Wall") in {tuple(sorted(pair)) for pair in pairs()}
+    assert {each.object for pair in outcome.pairs for each in (pair.first, pair.second)} == {"Box", "Wall"}
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
