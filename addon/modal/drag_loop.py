@@ -87,6 +87,7 @@ class DragLoop:
         self.transform: Transform | None = None
         self.result: EditResult | None = None
         self.report: WriteReport | None = None
+        self.written: EditResult | None = None  # the result that the scene shows
         self.note = ""
         self.error: Exception | None = None
         self.edit = begin(state.request)
@@ -248,6 +249,7 @@ class DragLoop:
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
+        self.written = self.result if self.report is None or not self.report.message else None
         self._pace.note(time.perf_counter() - begun)
 
     def _fail(self, error: Exception) -> None:

@@ -20,6 +20,7 @@ from ..translations import translate
 
 MODIFIERS = ("shift", "ctrl", "alt", "oskey")
 ICON, GAP, MARGIN = 20, 20, 20  # pixels of an icon, after a hint, and beside a header's text, at scale 1
+WIDE = frozenset({"EVENT_ESC", "EVENT_CTRL", "EVENT_BACKSPACE"})  # icons that reach over their right edge
 
 
 def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Event:
@@ -101,12 +102,15 @@ def _draw_keys(layout: bpy.types.UILayout, hints: Sequence[KeyHint]) -> None:
         row = layout.row(align=True)
         for icon in hint.icons:
             row.label(text="", icon=icon)
+            if icon in WIDE:
+                row.separator(factor=1.0)
         row.label(text=hint.label, translate=False)
 
 
 def _hint_width(hint: KeyHint) -> float:
     """Pixels of a hint in the status bar, with the space after it."""
-    return (len(hint.icons) * ICON + GAP) * _scale() + _text_width(hint.label)
+    wide = len(WIDE.intersection(hint.icons))
+    return (len(hint.icons) * ICON + wide * ICON / 2 + GAP) * _scale() + _text_width(hint.label)
 
 
 def _fits(width: float, text: str) -> bool:

@@ -5,20 +5,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..modal.header_texts import Translate
 
+if TYPE_CHECKING:
+    from ..stiv_blender import ContactRegion, Ghost
+
 Floats = NDArray[np.float64]
+CONTACT_ALPHA, GHOST_ALPHA, GHOST_BOX_ALPHA, FACE_ALPHA = 0.6, 0.15, 0.6, 0.5
 
 
 class Switches(Protocol):
     """The switches of the overlay."""
 
     contacts: bool
+    goal: bool
     intersections: bool
     clearance: bool
     speed: bool
@@ -39,7 +44,8 @@ class Content:
     """Everything that may be drawn; None and empty arrays are not.
 
     Attributes:
-        contacts: positions where an edit is blocked, (k, 3), and the blocked directions, (k, 3).
+        contacts: the faces that hold an edit up.
+        ghost: the moved objects at the goal of an edit.
         intersecting: triangles, (t, 3, 3).
         clearance: the closest pair.
         milliseconds: time of the last step of an edit.
@@ -47,7 +53,8 @@ class Content:
         alert: lines on the problem that the live guard could not correct.
     """
 
-    contacts: tuple[Floats, Floats] | None = None
+    contacts: ContactRegion | None = None
+    ghost: Ghost | None = None
     intersecting: Floats = field(default_factory=lambda: np.empty((0, 3, 3)))
     clearance: Clearance | None = None
     milliseconds: float | None = None
@@ -57,7 +64,8 @@ class Content:
     def __bool__(self) -> bool:
         """Whether there is anything to draw."""
         return bool(
-            self.contacts is not None
+            (self.contacts is not None and len(self.contacts.triangles))
+            or self.ghost
             or len(self.intersecting)
             or self.clearance
             or self.milliseconds is not None
@@ -65,32 +73,47 @@ class Content:
         )
 
 
-def lines_of(content: Content, switches: Switches, length: float) -> dict[str, Floats]:
-    """End points, (2 n, 3), of the lines to draw, by the name of their colour. length: of an arrow, world units."""
-    lines = {}
-    if content.contacts is not None and switches.contacts and len(content.contacts[0]):
-        points, blocked = content.contacts
-        lines["contact"] = crosses(points, length / 6)
-        lines["blocked"] = arrows(points, blocked, length)
+@dataclass(frozen=True)
+class Shape:
+    """Primitives of one colour to draw.
+
+    Attributes:
+        kind: "TRIS" or "LINES".
+        colour: name of the colour.
+        points: (n, 3) positions.
+        alpha: opacity.
+        strengths: (n,) factor of the opacity at each point; empty for 1.
+        indices: of the points of each primitive; empty if the points are in order.
+        culled: whether faces that look away are left out.
+    """
+
+    kind: str
+    colour: str
+    points: Floats
+    alpha: float = 1.0
+    strengths: Floats = field(default_factory=lambda: np.empty(0))
+    indices: NDArray[np.int32] = field(default_factory=lambda: np.empty((0, 2), np.int32))
+    culled: bool = False
+
+
+def shapes_of(content: Content, switches: Switches) -> dict[str, Shape]:
+    """The shapes to draw by name, in order."""
+    shapes = {}
+    if content.ghost is not None and switches.goal:
+        ghost = content.ghost
+        is_box = len(ghost.edges) > 0
+        kind, indices = ("LINES", ghost.edges) if is_box else ("TRIS", ghost.triangles)
+        alpha = GHOST_BOX_ALPHA if is_box else GHOST_ALPHA
+        shapes["ghost"] = Shape(kind, "goal", ghost.points, alpha, indices=indices, culled=not is_box)
+    if content.contacts is not None and len(content.contacts.triangles) and switches.contacts:
+        corners, strengths = content.contacts.triangles, content.contacts.strengths
+        shapes["contacts"] = Shape("TRIS", "contact", corners.reshape(-1, 3), CONTACT_ALPHA, strengths.ravel())
+    if len(content.intersecting) and switches.intersections:
+        shapes["faces"] = Shape("TRIS", "intersecting", content.intersecting.reshape(-1, 3), FACE_ALPHA)
     if content.clearance is not None and switches.clearance:
-        lines["clearance"] = np.array([content.clearance.first, content.clearance.second])
-    return lines
-
-
-def crosses(points: Floats, half: float) -> Floats:
-    """Three short lines through each point, (k, 3): (6 k, 3)."""
-    steps = half * np.array([axis * sign for axis in np.eye(3) for sign in (-1.0, 1.0)])
-    return np.asarray((points[:, None] + steps).reshape(-1, 3))
-
-
-def arrows(points: Floats, directions: Floats, length: float) -> Floats:
-    """A shaft with two barbs at each point, along unit directions, (k, 3): (6 k, 3)."""
-    tips = points + length * directions
-    across = np.cross(directions, np.eye(3)[np.abs(directions).argmin(axis=1)])
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    back = tips - 0.3 * length * directions
-    barbs = [back + 0.15 * length * across, back - 0.15 * length * across]
-    return np.stack([points, tips, tips, barbs[0], tips, barbs[1]], axis=1).reshape(-1, 3)
+        ends = np.array([content.clearance.first, content.clearance.second])
+        shapes["clearance"] = Shape("LINES", "clearance", ends)
+    return shapes
 
 
 def texts_of(
@@ -98,15 +121,9 @@ def texts_of(
 ) -> list[str]:
     """Lines of text for the corner of the view. length_text: formats a length."""
     texts = []
-    if content.clearance is not None and switches.clearance:
-        between = f" ({', '.join(content.clearance.names)})" if content.clearance.names else ""
-        texts.append(translate("Clearance {}").format(length_text(content.clearance.distance)) + between)
-    if len(content.intersecting) and switches.intersections:
-        count = len(content.intersecting)
-        texts.append(translate("1 intersecting triangle" if count == 1 else "{} intersecting triangles").format(count))
-    if content.contacts is not None and switches.contacts:
-        count = len(content.contacts[0])
-        texts.append(translate("1 contact" if count == 1 else "{} contacts").format(count))
+    if content.clearance is not None and content.clearance.names and switches.clearance:
+        between = ", ".join(content.clearance.names)
+        texts.append(translate("{}: clearance {}").format(between, length_text(content.clearance.distance)))
     if content.milliseconds is not None and switches.speed:
         rate = f", {content.frames:.0f} fps" if content.frames else ""
         texts.append(f"{content.milliseconds:.0f} ms{rate}")

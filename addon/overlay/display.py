@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable, Sequence
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
@@ -15,10 +16,11 @@ from .. import stiv_blender
 from ..preferences import overlay_at_start
 from ..scene.frame import view_areas
 from . import drawing
-from .content import Clearance, Content, Switches
+from .content import Clearance, Content, Floats, Switches
 
 _content = Content()
 _handles: list[object] = []
+_ghosts: stiv_blender.GhostSource | None = None
 _last_step = 0.0
 
 
@@ -48,9 +50,8 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
     show: SwitchProperty(
         name="Overlay", description="Show contacts, intersecting faces, clearance and speed in the 3D view"
     )
-    contacts: SwitchProperty(
-        name="Contacts", description="Show contacts that block an edit, and the blocked directions"
-    )
+    contacts: SwitchProperty(name="Contacts", description="Highlight the faces that hold up a drag, on both sides")
+    goal: SwitchProperty(name="Goal", description="Show where the moved objects would be without collisions")
     intersections: SwitchProperty(name="Intersections", description="Show intersecting faces that the last check found")
     clearance: SwitchProperty(name="Clearance", description="Show the closest pair of objects and its distance")
     while_dragging: SwitchProperty(
@@ -61,15 +62,21 @@ class StivOverlaySettings(bpy.types.PropertyGroup):
     speed: SwitchProperty(name="Speed", description="Show the milliseconds and frames per second of an edit")
 
 
-def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult) -> None:
-    """Show a step of a drag: its contacts and its time."""
-    global _last_step
+def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult, matrix: Floats | None = None) -> None:
+    """Show a result that a drag has written: its contacts, the goal and its time.
+
+    matrix: (4, 4) motion of whole objects to the goal; None if only parts of them move.
+    """
+    global _last_step, _ghosts
     if not _is_on():
         return
-    now = time.monotonic()
-    found = stiv_blender.contacts_of(edit, result)
-    _content.contacts = (found.points, found.blocked)
-    if bpy.context.window_manager.stiv_overlay.while_dragging:
+    now, switches = time.monotonic(), bpy.context.window_manager.stiv_overlay
+    if _ghosts is None or not _ghosts.belongs_to(edit):
+        _ghosts = stiv_blender.GhostSource(edit)
+    _content.ghost = _ghosts.ghost(result, matrix) if switches.goal else None
+    _content.contacts = stiv_blender.contact_region(edit.assembly, result) if switches.contacts else None
+    _content.clearance = _contact_clearance(_content.contacts)
+    if switches.while_dragging:
         _content.clearance = clearance_of(edit.least_distance())
     _content.milliseconds = 1000.0 * result.timings["total"]
     _content.frames = 1.0 / (now - _last_step) if 0.0 < now - _last_step < 1.0 else None
@@ -79,7 +86,9 @@ def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult) -> None:
 
 def end_edit() -> None:
     """Remove the content of a drag."""
-    _content.contacts = _content.milliseconds = _content.frames = _content.clearance = None
+    global _ghosts
+    _ghosts = None
+    _content.contacts = _content.ghost = _content.milliseconds = _content.frames = _content.clearance = None
     _redraw()
 
 
@@ -108,10 +117,19 @@ def clearance_of(found: stiv_blender.LeastDistance | None) -> Clearance | None:
     return None if found is None else Clearance(found.points[0], found.points[1], found.distance, found.bodies)
 
 
+def _contact_clearance(found: stiv_blender.ContactRegion | None) -> Clearance | None:
+    """The closest contact as content."""
+    if found is None or found.closest is None:
+        return None
+    first, second = found.closest
+    return Clearance(first, second, float(np.linalg.norm(first - second)))
+
+
 def clear() -> None:
     """Remove all content."""
-    global _content
-    _content = Content()
+    global _content, _ghosts
+    _content, _ghosts = Content(), None
+    drawing.forget()
     _remove_handlers()
 
 

@@ -60,6 +60,6 @@ class STIV_PT_overlay(SubPanel, bpy.types.Panel):
         switches = context.window_manager.stiv_overlay
         column = self.layout.column()
         column.active = switches.show
-        for name in ("contacts", "intersections", "clearance", "while_dragging", "speed"):
+        for name in ("contacts", "goal", "intersections", "clearance", "while_dragging", "speed"):
             column.prop(switches, name)
         self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")

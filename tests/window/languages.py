@@ -9,7 +9,7 @@ import scenes
 from playing import INTO_WALL, click, prepared, start
 from simulation import Steps, Window
 
-SAYS = {"de_DE": "Präzision", "ja_JP": "精密"}  # for "Precision"
+SAYS = {"de_DE": "Rechnet {}, Esc hält an", "ja_JP": "計算中 {}、Escで停止"}  # for the progress
 
 
 def in_language(code: str) -> object:
@@ -20,7 +20,7 @@ def in_language(code: str) -> object:
         before = view.language
         view.language, view.use_translate_interface = code, True
         try:
-            assert extension.module("translations").translate("Precision") == SAYS[code]
+            assert extension.module("translations").translate("Solving {}, Esc stops") == SAYS[code]
             yield from prepared(window, scenes.add_box, "Box")
             yield from start(window)
             yield from window.glide(window.pixel(INTO_WALL))

@@ -20,6 +20,7 @@ from ...overlay import display
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame
 from ...scene.tool_settings import read_proportional, read_snap, store_proportional, unsupported_settings
 from ...transform import requested_transform
+from ...transform.view import Vector
 from ...translations import translate
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
@@ -84,7 +85,7 @@ class DragOperator(Mixin):
 
     def _launch(self, context: bpy.types.Context, state: State, begin: Callable[[Request], stiv_blender.Edit]) -> None:
         self._mode = context.mode
-        self._shown: tuple[State, int, str] | None = None
+        self._shown: tuple[State, int, int, str] | None = None
         self._drag = DragLoop(
             begin,
             lambda state: requested_transform(state, self._frame, self._readers, self._snap),
@@ -116,7 +117,7 @@ class DragOperator(Mixin):
     def _show(self, context: bpy.types.Context) -> None:
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
         drag = self._drag
-        news = (drag.state, id(drag.result), drag.note)
+        news = (drag.state, id(drag.result), id(drag.written), drag.note)
         if news == self._shown or drag.progress is not Progress.RUNNING:
             return
         self._shown = news
@@ -126,8 +127,14 @@ class DragOperator(Mixin):
         turned = turned_text(drag.edit.turned, translate)
         notes = [text for text in (turned, drag.note, write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
-        if drag.result is not None:
-            display.show_edit(drag.edit, drag.result)
+        if drag.written is not None and drag.written is drag.result:
+            display.show_edit(drag.edit, drag.written, self._motion_of_all())
+
+    def _motion_of_all(self) -> Vector | None:
+        """The motion of whole objects to the goal, (4, 4); None if each has its own, or only parts of them move."""
+        if self._drag.transform is None or self._frame.individual or self._mode != "OBJECT":
+            return None
+        return self._drag.transform.matrix(self._frame)
 
     def _end(self, context: bpy.types.Context) -> set[str]:
         drag = self._drag

@@ -4,8 +4,10 @@
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit
-from stiv.blender.edit.drawable import Contacts, contacts_of, triangles_of
+from stiv.blender.edit.drawable import triangles_of
+from stiv.blender.edit.ghost import Ghost, GhostSource
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
@@ -36,7 +38,7 @@ __all__ = [
     "BlenderRepair",
     "Change",
     "Changes",
-    "Contacts",
+    "ContactRegion",
     "ContractionSettings",
     "CulledEdit",
     "EditSettings",
@@ -44,6 +46,8 @@ __all__ = [
     "Exclusions",
     "ExpansionSettings",
     "FacePair",
+    "Ghost",
+    "GhostSource",
     "Guard",
     "GuardedResult",
     "Handles",
@@ -65,7 +69,7 @@ __all__ = [
     "check_scene",
     "choose_guard",
     "compare",
-    "contacts_of",
+    "contact_region",
     "contract_scene",
     "correct_after_tool",
     "enable",

@@ -45,6 +45,9 @@ class Value(SimpleNamespace):
 
     rotation = None
 
+    def matrix(self, frame: Frame) -> np.ndarray:
+        return np.diag([self.value] * 3 + [1.0])
+
     def text(self, state: State, frame: Frame, translate: Callable[[str], str], length: Callable[[float], str]) -> str:
         return length(self.value)
 

@@ -42,22 +42,26 @@ def test_the_nearest_pair_is_shown_until_the_scene_changes() -> None:
     assert display.content().clearance is None
 
 
-def test_a_drag_shows_contacts_speed_and_on_demand_the_clearance() -> None:
+def test_a_drag_shows_contacts_goal_speed_and_on_demand_the_clearance() -> None:
     from stiv.blender import BlenderEdit, EditSettings
 
     bpy.context.object.location = (3.0, 0.0, 0.0)
     bpy.context.view_layer.update()
     edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.01), "move")
     matrix = [[1, 0, 0, -2.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    edit.drag(matrix)
     result = edit.drag(matrix)
     display.show_edit(edit, result)
     shown = display.content()
-    assert shown.contacts is not None and len(shown.contacts[0]) > 0
-    assert shown.milliseconds is not None and shown.clearance is None
+    assert shown.contacts is not None and len(shown.contacts.triangles) > 0
+    assert shown.ghost is not None and shown.ghost.points[:, 0].min() == pytest.approx(0.0)
+    assert shown.milliseconds is not None
+    assert shown.clearance is not None and shown.clearance.names == ()
     bpy.context.window_manager.stiv_overlay.while_dragging = True
     try:
         display.show_edit(edit, result)
         assert shown.clearance is not None and 0.0 < shown.clearance.distance < 0.1
+        assert len(shown.clearance.names) == 2
     finally:
         bpy.context.window_manager.stiv_overlay.while_dragging = False
     display.end_edit()
