@@ -14,6 +14,16 @@ from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
 from stiv.blender.guard.guarding import GuardedResult, guard_result
 from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, object_pair
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state, revert
+from stiv.blender.layout.dropping import (
+    Drop,
+    DropSettings,
+    SettleIntoContact,
+    SettleSettings,
+    drop,
+    settle_into_contact,
+)
+from stiv.blender.layout.layout_task import LayoutReport
+from stiv.blender.layout.pushing_apart import PushApart, push_apart
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
@@ -41,6 +51,8 @@ __all__ = [
     "ContactRegion",
     "ContractionSettings",
     "CulledEdit",
+    "Drop",
+    "DropSettings",
     "EditSettings",
     "Element",
     "Exclusions",
@@ -53,14 +65,18 @@ __all__ = [
     "Handles",
     "Influence",
     "KnownIntersections",
+    "LayoutReport",
     "LoopSurface",
     "Motion",
     "ObjectState",
+    "PushApart",
     "RepairSettings",
     "ReshapeReport",
     "SceneChangedError",
     "SceneCheck",
     "SceneState",
+    "SettleIntoContact",
+    "SettleSettings",
     "ToolCorrection",
     "WeightGroup",
     "WriteReport",
@@ -72,6 +88,7 @@ __all__ = [
     "contact_region",
     "contract_scene",
     "correct_after_tool",
+    "drop",
     "enable",
     "expand_scene",
     "faces_of",
@@ -82,6 +99,7 @@ __all__ = [
     "guard_result",
     "nearest_pair",
     "object_pair",
+    "push_apart",
     "read_state",
     "read_surface",
     "refresh",
@@ -90,6 +108,7 @@ __all__ = [
     "revert",
     "run_to_end",
     "select_faces",
+    "settle_into_contact",
     "triangles_of",
     "unguarded_text",
     "without_excluded",

@@ -7,7 +7,7 @@ import bpy
 import mathutils
 import numpy as np
 
-from stiv.blender.controls.rotations import is_rotation, nearest_rotation
+from stiv.blender.controls.rotations import euler_angles, is_rotation, nearest_rotation
 from stiv.blender.scene.arrays import Floats, as_matrix
 
 ROTATION_PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
@@ -76,7 +76,7 @@ def _write_rotation(ob: bpy.types.Object, start: ObjectTransform, turn: Floats) 
     own = _own_rotation(ob)
     lengths = np.asarray(start.scale) * np.asarray(ob.delta_scale)
     delta = nearest_rotation(start.basis[:3, :3] / lengths @ own.T)
-    _set_own_rotation(ob, mathutils.Matrix((delta.T @ turn @ delta @ own).tolist()))
+    _set_own_rotation(ob, nearest_rotation(delta.T @ turn @ delta @ own))
 
 
 def _own_rotation(ob: bpy.types.Object) -> Floats:
@@ -88,8 +88,9 @@ def _own_rotation(ob: bpy.types.Object) -> Floats:
     return as_matrix(ob.rotation_euler.to_matrix())
 
 
-def _set_own_rotation(ob: bpy.types.Object, rotation: mathutils.Matrix) -> None:
-    """Set the rotation in the object's mode, using the representation nearest to the present one."""
+def _set_own_rotation(ob: bpy.types.Object, matrix: Floats) -> None:
+    """Set the rotation, (3, 3), in the object's mode, using the representation nearest to the present one."""
+    rotation = mathutils.Matrix(matrix.tolist())
     if ob.rotation_mode == "QUATERNION":
         quaternion = rotation.to_quaternion()
         ob.rotation_quaternion = -quaternion if quaternion.dot(ob.rotation_quaternion) < 0 else quaternion
@@ -97,4 +98,4 @@ def _set_own_rotation(ob: bpy.types.Object, rotation: mathutils.Matrix) -> None:
         axis, angle = rotation.to_quaternion().to_axis_angle()
         ob.rotation_axis_angle = (angle, *axis)
     else:
-        ob.rotation_euler = rotation.to_euler(ob.rotation_mode, ob.rotation_euler)
+        ob.rotation_euler = euler_angles(matrix, ob.rotation_mode, np.array(ob.rotation_euler))

@@ -41,6 +41,26 @@ def nearest_equivalent(vector: Floats, last: Floats) -> Floats:
     return vector + axis * (2 * np.pi * turns)
 
 
+def euler_angles(matrix: Floats, order: str, near: Floats) -> Floats:
+    """The Euler angles, (3,), of a rotation in Blender's order ("XYZ" turns about X first), nearest to other angles.
+
+    Exact to double precision also where the middle angle is close to a right angle, unlike Blender's own conversion.
+    """
+    i, j, k = ("XYZ".index(axis) for axis in order)
+    parity = 1 if (j - i) % 3 == 1 else -1
+    middle = np.arctan2(-matrix[k, i], np.hypot(matrix[i, i], matrix[j, i]))
+    if np.hypot(matrix[i, i], matrix[j, i]) < 1e-12:
+        first, last = np.arctan2(-matrix[j, k], matrix[j, j]), 0.0
+    else:
+        first, last = np.arctan2(matrix[k, j], matrix[k, k]), np.arctan2(matrix[j, i], matrix[i, i])
+    found = []
+    for angles in ((first, middle, last), (first + np.pi, np.pi - middle, last + np.pi)):
+        signed = np.zeros(3)
+        signed[[i, j, k]] = np.array(angles) * parity
+        found.append(signed + 2 * np.pi * np.round((near - signed) / (2 * np.pi)))
+    return min(found, key=lambda each: float(np.abs(each - near).sum()))
+
+
 def nearest_rotation(matrix: Floats) -> Floats:
     """The rotation nearest to a linear map, (3, 3): its polar factor without reflection."""
     u, _, vt = np.linalg.svd(matrix)

@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid bodies among obstacles: how far one can travel, what is near it, and what it rests on. Without Blender."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import stiv
+from stiv.blender.scene.arrays import Flags, Floats, Indices
+
+AUTOMATIC_FRACTION = 1e-4  # of the diagonal of what moves, as in the core
+SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
+TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
+
+
+@dataclass(frozen=True)
+class Mover:
+    """A rigid body, or several that move as one.
+
+    Attributes:
+        name: the object that is written.
+        rows: its vertices in the surface of the scene, (n,).
+        deformation: from a pose to the positions of these vertices.
+        can_turn: is its rotation free?
+        free: projection, (3, 3), onto the directions in which its location is free.
+    """
+
+    name: str
+    rows: Indices
+    deformation: stiv.Deformation
+    can_turn: bool = True
+    free: Floats | None = None
+
+    def along_free(self, vector: Floats) -> Floats:
+        """The component of a displacement, (3,), along the free directions."""
+        return vector if self.free is None else self.free @ vector
+
+
+@dataclass(frozen=True)
+class Facing:
+    """One body of a mover and the obstacles near it that have one minimum distance from it, as a small surface.
+
+    Attributes:
+        surface: the rigid body first, then the obstacles as one fixed body.
+        rows: their vertices in the surface of the scene, (m,); the first `count` are those of the body.
+        separation: the minimum distance.
+    """
+
+    surface: stiv.Surface
+    rows: Indices
+    count: int
+    separation: float
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A point of a mover, (3,), its distance to an obstacle there, and the minimum distance between the two.
+
+    `normal`, (3,), is the direction from the obstacle to the mover.
+    """
+
+    point: Floats
+    distance: float
+    separation: float
+    normal: Floats
+
+
+class RigidScene:
+    """A surface whose movers have poses, (2, 3): center and rotation vector. Everything else is an obstacle.
+
+    Attributes:
+        movers: the bodies that can be posed.
+        separation: the minimum distance of all pairs of bodies without one of their own.
+    """
+
+    def __init__(
+        self,
+        surface: stiv.Surface,
+        positions: Floats,
+        movers: Sequence[Mover],
+        poses: Sequence[Floats],
+        separation: float = 0.0,
+        pair_separations: Mapping[tuple[int, int], float] | None = None,
+        threads: int = 0,
+        moving: Sequence[int] | None = None,
+    ) -> None:
+        """Start at positions, (N, 3), and poses. separation 0: 1e-4 of the diagonal of the `moving` (None: all)."""
+        self.movers, self._poses = list(movers), [pose.copy() for pose in poses]
+        self._surface, self._positions, self._threads = surface, positions.copy(), threads
+        rows = [movers[number].rows for number in (range(len(movers)) if moving is None else moving)]
+        self.separation = separation or AUTOMATIC_FRACTION * _diagonal(positions[np.concatenate(rows)])
+        self._pair_separations = {tuple(sorted(pair)): h for pair, h in (pair_separations or {}).items()}
+        self._ignored = {tuple(sorted(pair)) for pair in surface.ignored}
+        self._mover_of_vertex = np.full(len(positions), -1, np.int32)
+        for number, mover in enumerate(self.movers):
+            self._mover_of_vertex[mover.rows] = number
+        self._elements = [surface.triangles, surface.loose_edges, _loose_vertices(surface)]
+        self._boxes = [_boxes(self._positions, each) for each in self._elements]
+        self._bodies = [np.unique(surface.vertex_body[each.rows]).tolist() for each in self.movers]
+        self._hidden = np.zeros(len(movers) + 1, np.bool_)  # movers that are left out; the last one: obstacles
+
+    def positions_of(self, mover: int) -> Floats:
+        """The vertices of a mover, (n, 3)."""
+        return self._positions[self.movers[mover].rows]
+
+    def pose(self, mover: int) -> Floats:
+        """Center and rotation vector of a mover, (2, 3)."""
+        return self._poses[mover].copy()
+
+    def set_pose(self, mover: int, pose: Floats) -> None:
+        """Pose a mover; nothing is tested."""
+        self._poses[mover] = pose.copy()
+        rows = self.movers[mover].rows
+        self._positions[rows] = self.movers[mover].deformation.surface(pose)
+        for elements, boxes in zip(self._elements, self._boxes, strict=True):
+            own = np.flatnonzero(self._mover_of_vertex[elements[:, 0]] == mover)
+            boxes[:, own] = _boxes(self._positions, elements[own])
+
+    def shift(self, mover: int, vector: Floats) -> None:
+        """Translate a mover by a vector, (3,); nothing is tested."""
+        pose = self.pose(mover)
+        pose[0] += vector
+        self.set_pose(mover, pose)
+
+    def leave_out(self, movers: Sequence[int]) -> None:
+        """Leave these movers out of all tests, instead of those of the previous call."""
+        self._hidden[:] = False
+        self._hidden[list(movers)] = True
+
+    def box(self, mover: int) -> Floats:
+        """Lowest and highest corner of a mover, (2, 3)."""
+        return _box(self.positions_of(mover))
+
+    def size(self, mover: int) -> float:
+        """Diagonal of the box of a mover."""
+        return _diagonal(self.positions_of(mover))
+
+    def extent(self) -> Floats:
+        """Lowest and highest corner of everything, (2, 3)."""
+        return _box(self._positions)
+
+    @property
+    def largest_separation(self) -> float:
+        """The largest minimum distance of any pair."""
+        return max([self.separation, *self._pair_separations.values()])
+
+    def extent_among(self, mover: int, among: Flags | None) -> Floats:
+        """Lowest and highest corner of the obstacles of a mover, (2, 3); of itself without any. among: see `facing`."""
+        near = self._near(mover, None, among)
+        rows = self._used(near)
+        return _box(self._positions[rows]) if len(rows) else self.box(mover)
+
+    def bodies_around(self, mover: int, among: Flags | None = None) -> list[Indices]:
+        """The triangles, (f, 3), of each obstacle whose box touches that of a mover. among: see `facing`."""
+        near, box = self._near(mover, None, among)[0], self.box(mover)
+        body, (low, high) = self._body_of(self._surface.triangles), self._boxes[0]
+        found = []
+        for number in np.unique(body[near]):
+            own = near & (body == number)
+            if (low[own].min(axis=0) <= box[1]).all() and (high[own].max(axis=0) >= box[0]).all():
+                found.append(self._surface.triangles[own])
+        return found
+
+    def corners(self, triangles: Indices) -> Floats:
+        """Positions of the corners of triangles, (f, 3, 3)."""
+        return self._positions[triangles]
+
+    def normals_of_contact(self, mover: int, among: Flags | None = None) -> Floats:
+        """Normals, (k, 3), of the triangles of both sides that intersect, and the vector between the closest points."""
+        normals = [np.empty((0, 3))]
+        for each in self.facing(mover, self.box(mover), among):
+            q = self._positions[each.rows]
+            pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
+            corners = q[each.surface.triangles[np.unique(pairs)]]
+            normals.append(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+            least = None if len(pairs) else stiv.least_distance(q, each.surface)
+            if least is not None:
+                normals.append((least.points[1] - least.points[0])[None])
+        found = np.concatenate(normals)
+        lengths = np.linalg.norm(found, axis=1)
+        return found[lengths > 0] / lengths[lengths > 0, None]
+
+    def travel(self, mover: int, vector: Floats, among: Flags | None = None) -> float | None:
+        """The fraction of a displacement, (3,), at which a mover stops at the minimum distance; None if it is free.
+
+        A body that starts nearer than that stops where it comes nearer yet. among: see `facing`.
+        """
+        start = self.box(mover)
+        swept = np.array([np.minimum(start[0], start[0] + vector), np.maximum(start[1], start[1] + vector)])
+        first = np.inf
+        for each in self.facing(mover, swept, among):
+            here = self._positions[each.rows]
+            there = here.copy()
+            there[: each.count] += vector
+            detector = stiv.Detector(each.surface, threads=self._threads)
+            first = min(first, detector.earliest_time(here, there, each.separation, 1 - TOLERANCE))
+        return None if first > 1 else first
+
+    def is_clear(self, mover: int, among: Flags | None = None) -> bool:
+        """Is a mover at least the minimum distance away from everything? Does not look inside closed surfaces."""
+        box = self.box(mover)
+        for each in self.facing(mover, box, among):
+            q = self._positions[each.rows]
+            if len(stiv.find_intersections(q, each.surface, threads=self._threads)):
+                return False
+            least = stiv.least_distance(q, each.surface)
+            if least is not None and least.distance < each.separation:
+                return False
+        return True
+
+    def intersected(self, mover: int) -> str:
+        """The name of a body that intersects a mover; "" if none does."""
+        for each in self.facing(mover, self.box(mover)):
+            q = self._positions[each.rows]
+            pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
+            if len(pairs):
+                corners = each.surface.triangles[pairs[0], 0]
+                return self._surface.bodies[int(self._surface.vertex_body[each.rows[corners.max()]])].name
+        return ""
+
+    def nearest(self, mover: int) -> tuple[Floats, float] | None:
+        """The vector, (3,), from a mover to the nearest obstacle, and the minimum distance there; None without one."""
+        best: tuple[Floats, float] | None = None
+        for each in self.facing(mover, None):
+            q = self._positions[each.rows]
+            least = stiv.least_distance(q, each.surface)
+            if least is None:
+                continue
+            own = each.surface.triangles[least.triangles[0], 0] < each.count
+            vector = (least.points[1] - least.points[0]) * (1 if own else -1)
+            if best is None or np.linalg.norm(vector) < np.linalg.norm(best[0]):
+                best = (vector, each.separation)
+        return best
+
+    def contacts(self, mover: int, direction: Floats, reach: float) -> list[Contact]:
+        """Where obstacles stop a mover within `reach` minimum distances along a direction."""
+        found = []
+        for each in self.facing(mover, self.box(mover), margin=1 + reach):
+            here = self._positions[each.rows]
+            there = here.copy()
+            there[: each.count] += reach * each.separation * direction
+            detector = stiv.Detector(each.surface, threads=self._threads)
+            events = detector.find(here, there, each.separation, 1 - TOLERANCE)
+            for vertices, weights, start in zip(events.vertices, events.weights, events.start_distance, strict=True):
+                own = vertices < each.count
+                point = np.abs(weights[own]) @ here[vertices[own]]
+                away = (weights @ here[vertices]) * (1 if own[0] else -1)
+                found.append(Contact(point, float(start), each.separation, away / max(float(np.linalg.norm(away)), 1e-300)))
+        return found
+
+    def session(self, mover: int, box: Floats) -> stiv.EditSession:
+        """A session that poses one mover among the obstacles in a box, (2, 3).
+
+        A response aims for twice the separation of its session, which is therefore half the minimum distance.
+        """
+        elements = [own | near for own, near in zip(self._of(mover), self._near(mover, box, None), strict=True)]
+        rows = self._rows(mover, elements)
+        bodies = [
+            stiv.Body(body.name, "rigid" if number in self._bodies[mover] else "fixed")
+            for number, body in enumerate(self._surface.bodies)
+        ]
+        surface = self._part(elements, rows, self._surface.vertex_body[rows], bodies, self._surface.ignored)
+        own = np.arange(len(self.movers[mover].rows), dtype=np.int32)
+        options = stiv.EditOptions(
+            separation=self.separation / 2,
+            pair_separations={pair: h / 2 for pair, h in self._pair_separations.items()},
+            single_precision=False,
+            threads=self._threads,
+        )
+        deformation = stiv.concatenate([(self.movers[mover].deformation, own)], self._positions[rows])
+        return stiv.EditSession(surface, deformation, self._poses[mover], options)
+
+    def facing(
+        self, mover: int, box: Floats | None, among: Flags | None = None, margin: float = 1.0
+    ) -> Iterator[Facing]:
+        """Each body of a mover with the obstacles near a box, (2, 3), of one minimum distance; None: everywhere.
+
+        among: flags of the movers that are obstacles here, (k + 1,), the last for everything else; None: all are.
+        margin: in minimum distances.
+        """
+        reach = margin * self.largest_separation
+        near = self._near(mover, None if box is None else box + [[-reach], [reach]], among)
+        for body in self._bodies[mover]:
+            own = [self._body_of(elements) == body for elements in self._elements]
+            distances = np.array([self._separation_of(body, other) for other in range(len(self._surface.bodies))])
+            for h in np.unique(distances[distances > 0]):
+                others = [
+                    flags & (distances[self._body_of(elements)] == h)
+                    for flags, elements in zip(near, self._elements, strict=True)
+                ]
+                if any(each.any() for each in others):
+                    yield self._face(own, others, float(h))
+
+    def _face(self, own: list[Flags], others: list[Flags], separation: float) -> Facing:
+        elements = [first | second for first, second in zip(own, others, strict=True)]
+        first, second = self._used(own), self._used(others)
+        rows = np.concatenate([first, second])
+        body = np.repeat(np.array([0, 1], np.int32), [len(first), len(second)])
+        bodies = [stiv.Body("mover", "rigid"), stiv.Body("obstacles", "fixed")]
+        return Facing(self._part(elements, rows, body, bodies, ()), rows, len(first), separation)
+
+    def _used(self, elements: list[Flags]) -> Indices:
+        """The vertices of chosen triangles, loose edges and loose vertices."""
+        chosen = [all_[flags].ravel() for all_, flags in zip(self._elements, elements, strict=True)]
+        return np.unique(np.concatenate(chosen))
+
+    def _rows(self, mover: int, elements: list[Flags]) -> Indices:
+        """All vertices of a mover, then those of other chosen elements."""
+        own = self.movers[mover].rows
+        return np.concatenate([own, np.setdiff1d(self._used(elements), own)])
+
+    def _part(
+        self,
+        elements: list[Flags],
+        rows: Indices,
+        body: Indices,
+        bodies: Sequence[stiv.Body],
+        ignored: Sequence[tuple[int, int]],
+    ) -> stiv.Surface:
+        number = np.zeros(len(self._positions), np.int32)
+        number[rows] = np.arange(len(rows), dtype=np.int32)
+        triangles, edges = (number[self._elements[k][elements[k]]] for k in (0, 1))
+        return stiv.Surface(triangles, len(rows), edges, body, bodies, ignored)
+
+    def _of(self, mover: int) -> list[Flags]:
+        return [self._mover_of_vertex[elements[:, 0]] == mover for elements in self._elements]
+
+    def _near(self, mover: int, box: Floats | None, among: Flags | None) -> list[Flags]:
+        """Flags of the elements of other bodies near a box, (2, 3); None: everywhere."""
+        tested = ~self._hidden if among is None else among & ~self._hidden
+        tested = tested.copy()
+        tested[mover] = False
+        found = []
+        for elements, (low, high) in zip(self._elements, self._boxes, strict=True):
+            flags = tested[self._mover_of_vertex[elements[:, 0]]]
+            if box is not None:
+                flags = flags & (low <= box[1]).all(axis=1) & (high >= box[0]).all(axis=1)
+            found.append(flags)
+        return found
+
+    def _body_of(self, elements: Indices) -> Indices:
+        return self._surface.vertex_body[elements[:, 0]]
+
+    def _separation_of(self, body: int, other: int) -> float:
+        """The minimum distance of two bodies; 0 for bodies that are not tested."""
+        pair = (min(body, other), max(body, other))
+        return 0.0 if pair in self._ignored else self._pair_separations.get(pair, self.separation)
+
+
+def _loose_vertices(surface: stiv.Surface) -> Indices:
+    """Vertices without a triangle or a loose edge, (k, 1)."""
+    used = np.zeros(surface.vertex_count, np.bool_)
+    used[surface.triangles] = True
+    used[surface.loose_edges] = True
+    return np.flatnonzero(~used).astype(np.int32)[:, None]
+
+
+def _boxes(positions: Floats, elements: Indices) -> Floats:
+    """Lowest and highest corner of each element, (2, k, 3)."""
+    corners = positions[elements]
+    return np.stack([corners.min(axis=1), corners.max(axis=1)]) if len(elements) else np.zeros((2, 0, 3))
+
+
+def _box(points: Floats) -> Floats:
+    return np.stack([points.min(axis=0), points.max(axis=0)])
+
+
+def _diagonal(points: Floats) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
