@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from .operators import TRANSFORMS
+from .operators import LAYOUT_ICONS, TRANSFORMS
 from .operators.check.check import STIV_OT_check
 from .operators.repair.repair import STIV_OT_repair
 
@@ -20,14 +20,22 @@ def draw(self: bpy.types.Menu, context: bpy.types.Context) -> None:
         self.layout.operator(operator.bl_idname, text=operator.bl_label)
 
 
+def draw_layout(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Append the layout operators to the Object menu."""
+    self.layout.separator()
+    self.layout.menu(STIV_MT_layout.bl_idname)
+
+
 def register() -> None:
     """Add the entries."""
+    bpy.types.VIEW3D_MT_object.append(draw_layout)
     for name in MENUS:
         getattr(bpy.types, name).append(draw)
 
 
 def unregister() -> None:
     """Remove the entries."""
+    bpy.types.VIEW3D_MT_object.remove(draw_layout)
     for name in MENUS:
         getattr(bpy.types, name).remove(draw)
 
@@ -50,4 +58,16 @@ class STIV_MT_pie(bpy.types.Menu):
         pie.operator(STIV_OT_repair.bl_idname)
 
 
-CLASSES = (STIV_MT_pie,)
+class STIV_MT_layout(bpy.types.Menu):
+    """Drop, settle, place, part and pack objects without collisions"""
+
+    bl_idname = "STIV_MT_layout"
+    bl_label = "Collision Layout"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """An entry for each operator."""
+        for operator, icon in LAYOUT_ICONS:
+            self.layout.operator(operator.bl_idname, icon=icon)
+
+
+CLASSES = (STIV_MT_pie, STIV_MT_layout)

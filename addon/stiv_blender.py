@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from stiv.checks.findings import untested_text as untested_text
 
     Edit = BlenderEdit | CulledEdit  # noqa: F405
-    Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair  # noqa: F405
+    Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair | LayoutTask  # noqa: F405
 else:
 
     def __getattr__(name: str) -> object:

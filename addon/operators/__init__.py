@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: transform, check, repair and setup, one in each file."""
+"""The operators: transform, layout, check, repair and setup, one in each file."""
 
 from .check.check import STIV_OT_check
 from .check.measure import STIV_OT_measure
+from .layout.drop import STIV_OT_drop
+from .layout.push_apart import STIV_OT_push_apart
+from .layout.settle_contact import STIV_OT_settle_contact
 from .repair.contract import STIV_OT_contract
 from .repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .repair.expand import STIV_OT_expand
@@ -19,11 +22,18 @@ from .transform.scale import STIV_OT_scale
 
 TRANSFORMS = (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
 RESHAPING = (STIV_OT_repair, STIV_OT_contract, STIV_OT_expand, STIV_OT_settle)
+LAYOUT_ICONS = (
+    (STIV_OT_drop, "SORT_ASC"),
+    (STIV_OT_settle_contact, "SNAP_FACE"),
+    (STIV_OT_push_apart, "FULLSCREEN_ENTER"),
+)
+LAYOUT = tuple(operator for operator, _ in LAYOUT_ICONS)
 CLASSES = (
     *TRANSFORMS,
     STIV_OT_drag,
     STIV_OT_check,
     STIV_OT_measure,
+    *LAYOUT,
     *RESHAPING,
     STIV_OT_exclude_intersections,
     STIV_OT_clear_exclusions,

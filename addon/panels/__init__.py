@@ -4,11 +4,13 @@
 from .check import STIV_PT_check, STIV_PT_overlay, STIV_PT_repair
 from .edit import STIV_PT_edit
 from .guard import STIV_PT_guard
+from .layout import STIV_PT_layout
 from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
 
 CLASSES = (
     STIV_PT_edit,
     STIV_PT_guard,
+    STIV_PT_layout,
     STIV_PT_roles,
     STIV_PT_deformation,
     STIV_PT_loop,

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 
@@ -152,7 +153,7 @@ class ReshapeOperator(NeedsNativeModule):
             if error is not None:
                 error.add_note(str(second))
 
-    def _finish(self, context: bpy.types.Context, report: stiv_blender.ReshapeReport) -> set[str]:
+    def _finish(self, context: bpy.types.Context, report: Any) -> set[str]:
         context.window_manager.stiv_last_edit = describe(report)
         context.window_manager.stiv_check.summary = outcome(report)
         display.show_pairs(context, report.pairs)

@@ -22,7 +22,7 @@ from stiv.blender.layout.dropping import (
     drop,
     settle_into_contact,
 )
-from stiv.blender.layout.layout_task import LayoutReport
+from stiv.blender.layout.layout_task import LayoutReport, LayoutTask
 from stiv.blender.layout.pushing_apart import PushApart, push_apart
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
@@ -66,6 +66,7 @@ __all__ = [
     "Influence",
     "KnownIntersections",
     "LayoutReport",
+    "LayoutTask",
     "LoopSurface",
     "Motion",
     "ObjectState",

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+from building import add_cube, add_grid, select
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mathutils import Euler
@@ -18,7 +19,6 @@ from stiv.blender import (
     nearest_pair,
     settle_into_contact,
 )
-from building import add_cube, add_grid, select
 
 H = 0.01
 EDIT = EditSettings(separation=H)

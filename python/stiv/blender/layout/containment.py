@@ -39,7 +39,7 @@ def _angles(points: Floats, corners: Floats) -> Floats:
 
 
 def is_outside(scene: RigidScene, mover: int, among: Flags | None = None) -> bool:
-    """Is no vertex of a mover, of a sample, inside a closed obstacle?"""
+    """Are all vertices of a mover, of a sample, outside closed obstacles?"""
     points = scene.positions_of(mover)
     return _fraction_inside(scene, mover, among, points[:: max(1, len(points) // MAX_POINTS)]) == 0
 

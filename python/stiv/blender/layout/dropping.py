@@ -100,7 +100,7 @@ class Drop(LayoutTask):
 
 
 class SettleIntoContact(LayoutTask):
-    """Moves the selected objects into contact with what is near, and turns them until they are supported."""
+    """Moves the selected objects into contact with the nearest surfaces, and turns them until they are supported."""
 
     def __init__(self, context: bpy.types.Context, settings: SettleSettings) -> None:
         """Read the scene. Raises InputError."""
@@ -175,7 +175,7 @@ def write_rests(edit: LayoutEdit, rests: dict[int, Rest], nothing: str) -> Layou
 def gravity(scene: bpy.types.Scene) -> tuple[float, float, float]:
     """The direction of the scene's gravity; down if it is off."""
     vector = tuple(scene.gravity) if scene.use_gravity else GRAVITY
-    return vector if any(vector) else GRAVITY  # type: ignore[return-value]
+    return vector if any(vector) else GRAVITY
 
 
 def unit_vector(vector: Floats | tuple[float, ...]) -> Floats:
@@ -198,7 +198,7 @@ def drop(context: bpy.types.Context, settings: DropSettings | None = None, **exe
 def settle_into_contact(
     context: bpy.types.Context, settings: SettleSettings | None = None, **execution: Any
 ) -> LayoutReport:
-    """Move the selected objects by the least motion until they touch what is near, and rest there.
+    """Move the selected objects by the least motion until they touch the nearest surfaces, and rest there.
 
     Raises InputError, with nothing changed.
     """

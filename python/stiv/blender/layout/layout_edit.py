@@ -36,7 +36,11 @@ class LayoutEdit:
     """
 
     def __init__(
-        self, context: bpy.types.Context, settings: EditSettings, objects: Sequence[bpy.types.Object], ground: bool = False
+        self,
+        context: bpy.types.Context,
+        settings: EditSettings,
+        objects: Sequence[bpy.types.Object],
+        ground: bool = False,
     ) -> None:
         """Read the scene. ground: the plane z = 0 is an obstacle too, the last mover.
 
@@ -48,12 +52,10 @@ class LayoutEdit:
         self.without_surface = tuple(ob.name for ob in objects if ob not in movable)
         for ob in movable:
             if settings.role(ob.name) == "ignored":
-                raise InputError(f"{ob.name}: its role is No Collision; set it to Automatic")
+                raise InputError(f"{ob.name}: it has the role No Collision; choose Automatic")
         if not movable:
             raise InputError("nothing movable is selected; select an object with a surface")
-        self._settings = replace(
-            settings, interference=False, responders="selected", object_response="slide_and_turn"
-        )
+        self._settings = replace(settings, interference=False, responders="selected", object_response="slide_and_turn")
         participants = [Participant(ObjectReference.of(ob), "rigid", True) for ob in movable]
         self._edit = BlenderEdit.begin_with(context, self._settings, "move", participants)
         self.assembly = self._edit.assembly
@@ -126,6 +128,6 @@ def _with_ground(surface: stiv.Surface, positions: Floats) -> tuple[stiv.Surface
         surface.loose_edges,
         np.append(surface.vertex_body, np.full(4, len(bodies), np.int32)),
         [*bodies, stiv.Body(GROUND, "fixed")],
-        surface.ignored,
+        surface.ignored.tolist(),
     )
     return larger, np.concatenate([positions, corners])

@@ -20,7 +20,7 @@ class LayoutReport:
     Attributes:
         status: "done", "unchanged", "cancelled" or "budget" (the time limit was reached); only "done" changes anything.
         changed: names of the objects that moved or were added.
-        left: names of objects that stay as they were, each with the reason: "nothing below", "nothing near", "locked",
+        left: names of objects that stay unchanged, each with the reason: "nothing below", "nothing near", "locked",
             "no surface", "stuck" (cannot be moved apart) or "no room".
         contacts: number of points that support each object that was brought to rest.
         asked: number of objects to lay out.

@@ -19,9 +19,7 @@ SAMPLES = 6  # distances tried along a direction, before the one from outside
 MAX_SWEEPS = 12  # over all pairs that are too near
 
 
-def part(
-    scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None
-) -> Floats | None:
+def part(scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None) -> Floats | None:
     """Translate a mover by the shortest way found to where it is clear; returns the translation, None if there is none.
 
     among: see `RigidScene.facing`.
@@ -64,7 +62,9 @@ def part_all(scene: RigidScene, movers: Sequence[int], watch: Watch) -> list[int
 def find_near_pairs(scene: RigidScene, movers: Sequence[int]) -> list[tuple[int, int]]:
     """Pairs of movers that are too near; (mover, -1) for a mover and anything else."""
     pairs = [
-        (a, b) for a, b in combinations(movers, 2) if _boxes_near(scene, a, b) and not scene.is_clear(a, _only(scene, b))
+        (a, b)
+        for a, b in combinations(movers, 2)
+        if _boxes_near(scene, a, b) and not scene.is_clear(a, _only(scene, b))
     ]
     others = _others(scene, movers)
     return pairs + [(a, -1) for a in movers if not scene.is_clear(a, others)]

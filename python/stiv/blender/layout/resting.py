@@ -55,9 +55,7 @@ def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.in
     return 0.0
 
 
-def rest(
-    scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Watch, length: float = np.inf
-) -> Rest:
+def rest(scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Watch, length: float = np.inf) -> Rest:
     """Let a mover fall along a direction until it rests. Without support, its pose does not change.
 
     turn: let it turn and slide until it is supported from below, if it can. watch: stops it between steps. length: of
@@ -122,7 +120,7 @@ def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, leng
             scene.set_pose(mover, before)
             if step <= SHORTEST_STEP * size:
                 break
-            session.restore(before)
+            session = None
             step /= 4
     lifted = -REACH * scene.separation * direction  # the session may have come nearer than the minimum distance
     if scene.travel(mover, lifted) is not None:
@@ -176,9 +174,7 @@ def least_step(jacobian: Floats, bounds: Floats, wanted: Floats) -> Floats:
     return step
 
 
-def _leave_balance(
-    scene: RigidScene, mover: int, direction: Floats, number: int, watch: Watch, length: float
-) -> bool:
+def _leave_balance(scene: RigidScene, mover: int, direction: Floats, number: int, watch: Watch, length: float) -> bool:
     """Turn a mover a little about an axis across the direction and let it sink again; False if it sank no further."""
     before = scene.pose(mover)
     angle = 0.6 + 0.5 * np.pi * number  # deterministic, along no axis of the world

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid bodies among obstacles: how far one can travel, what is near it, and what it rests on. Without Blender."""
+"""Rigid bodies among obstacles: how far one can travel, the obstacles near it, and its contacts. Without Blender."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import stiv
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 
-AUTOMATIC_FRACTION = 1e-4  # of the diagonal of what moves, as in the core
+AUTOMATIC_FRACTION = 1e-4  # of the diagonal of the movers, as in the core
 SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
 TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
 
@@ -92,8 +92,8 @@ class RigidScene:
         self._surface, self._positions, self._threads = surface, positions.copy(), threads
         rows = [movers[number].rows for number in (range(len(movers)) if moving is None else moving)]
         self.separation = separation or AUTOMATIC_FRACTION * _diagonal(positions[np.concatenate(rows)])
-        self._pair_separations = {tuple(sorted(pair)): h for pair, h in (pair_separations or {}).items()}
-        self._ignored = {tuple(sorted(pair)) for pair in surface.ignored}
+        self._pair_separations = {(min(pair), max(pair)): h for pair, h in (pair_separations or {}).items()}
+        self._ignored = {(min(pair), max(pair)) for pair in surface.ignored.tolist()}
         self._mover_of_vertex = np.full(len(positions), -1, np.int32)
         for number, mover in enumerate(self.movers):
             self._mover_of_vertex[mover.rows] = number
@@ -179,9 +179,10 @@ class RigidScene:
             least = None if len(pairs) else stiv.least_distance(q, each.surface)
             if least is not None:
                 normals.append((least.points[1] - least.points[0])[None])
-        found = np.concatenate(normals)
+        found: Floats = np.concatenate(normals)
         lengths = np.linalg.norm(found, axis=1)
-        return found[lengths > 0] / lengths[lengths > 0, None]
+        unit: Floats = found[lengths > 0] / lengths[lengths > 0, None]
+        return unit
 
     def travel(self, mover: int, vector: Floats, among: Flags | None = None) -> float | None:
         """The fraction of a displacement, (3,), at which a mover stops at the minimum distance; None if it is free.
@@ -248,7 +249,8 @@ class RigidScene:
                 own = vertices < each.count
                 point = np.abs(weights[own]) @ here[vertices[own]]
                 away = (weights @ here[vertices]) * (1 if own[0] else -1)
-                found.append(Contact(point, float(start), each.separation, away / max(float(np.linalg.norm(away)), 1e-300)))
+                unit = away / max(float(np.linalg.norm(away)), 1e-300)
+                found.append(Contact(point, float(start), each.separation, unit))
         return found
 
     def session(self, mover: int, box: Floats) -> stiv.EditSession:
@@ -262,11 +264,11 @@ class RigidScene:
             stiv.Body(body.name, "rigid" if number in self._bodies[mover] else "fixed")
             for number, body in enumerate(self._surface.bodies)
         ]
-        surface = self._part(elements, rows, self._surface.vertex_body[rows], bodies, self._surface.ignored)
+        surface = self._part(elements, rows, self._surface.vertex_body[rows], bodies, sorted(self._ignored))
         own = np.arange(len(self.movers[mover].rows), dtype=np.int32)
         options = stiv.EditOptions(
             separation=self.separation / 2,
-            pair_separations={pair: h / 2 for pair, h in self._pair_separations.items()},
+            pair_separations={(a, b): h / 2 for (a, b), h in self._pair_separations.items()},
             single_precision=False,
             threads=self._threads,
         )

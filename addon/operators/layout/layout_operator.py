@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Base of the layout operators: they solve as repair does, at once or in a thread, and report names and counts."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import bpy
+from bpy.props import FloatProperty
+
+from ... import stiv_blender
+from ...scene.edit_settings import edit_settings
+from ...translations import translate
+from ..repair.reshape import ReshapeOperator
+
+NAMED = 2  # objects that a message names
+
+DONE_TEXTS = {
+    "stiv.drop": "Dropped {} of {}",
+    "stiv.settle_contact": "Settled {} of {}",
+    "stiv.push_apart": "Moved {} of {}",
+}
+REASON_TEXTS = {
+    "nothing below": "{}: nothing below; add a floor",
+    "nothing near": "{}: nothing near; raise Max Distance",
+    "locked": "{}: its location is locked; unlock it",
+    "no surface": "{}: has no surface",
+    "stuck": "{}: cannot be moved apart; unlock its location",
+    "no room": "{}: does not fit",
+}
+STATUS_TEXTS = {
+    "budget": "time limit reached, nothing changed",
+    "cancelled": "cancelled, nothing changed",
+}
+
+
+class LayoutOperator(ReshapeOperator):
+    """Base of an operator; a subclass has its properties and `begin`."""
+
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="Stop after this time with nothing changed; 0 for no limit",
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+        default=120.0,
+        min=0.0,
+    )
+
+    @classmethod
+    def is_available(cls, context: bpy.types.Context) -> bool:
+        """In Object Mode, with a selection."""
+        return context.mode == "OBJECT" and bool(context.selected_objects)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Remember what depends on the window, then start."""
+        self.prepare(context, event)
+        return super().invoke(context, event)
+
+    def prepare(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """Store in properties what the redo panel cannot read again from the context."""
+
+    def settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
+        """The settings of the scene, with the time limit."""
+        return edit_settings(context.scene, time_budget=self.time_limit)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The redo panel: the properties that apply, then the time limit."""
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
+        for name in (*self.shown_properties(), "time_limit"):
+            self.layout.prop(self, name)
+
+    def shown_properties(self) -> tuple[str, ...]:
+        """Names of the properties that apply to the present values."""
+        return tuple(type(self).__annotations__)
+
+    def _finish(self, context: bpy.types.Context, report: stiv_blender.LayoutReport) -> set[str]:
+        context.window_manager.stiv_last_edit = json.dumps(asdict(report))
+        text = layout_text(report, DONE_TEXTS[type(self).bl_idname])
+        context.window_manager.stiv_check.summary = text
+        if report.status == "budget":
+            self.report({"ERROR"}, text)
+            return {"CANCELLED"}
+        self.report({"WARNING"} if report.left else {"INFO"}, text)
+        return {"FINISHED"} if report.changed else {"CANCELLED"}
+
+
+def layout_text(report: stiv_blender.LayoutReport, done: str) -> str:
+    """One line: the counts, and the first objects that stay, each with the reason."""
+    if report.status in STATUS_TEXTS:
+        return translate(STATUS_TEXTS[report.status])
+    left = [translate(REASON_TEXTS[reason]).format(name) for name, reason in report.left[:NAMED]]
+    if len(report.left) > NAMED:
+        left.append("...")
+    if report.changed or not left:
+        scaled = [translate("scaled by {}").format(f"{report.scale:.3g}")] if report.scale != 1 else []
+        left = [translate(done).format(len(report.changed), report.asked), *scaled, *left]
+    return "; ".join(left)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drop, Settle into Contact, Place, Push Apart and Fit into as a script calls them, with the core."""
+
+import json
+from typing import Any
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
+from stiv.blender import check_scene  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture(autouse=True)
+def empty_scene() -> None:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.mesh.primitive_plane_add(size=20)
+    bpy.context.object.name = "Floor"
+    bpy.context.scene.stiv.separation = 0.01
+
+
+def add_ball(name: str, location: Any, select: bool = True) -> Any:
+    ball = icosphere(2)
+    data = bpy.data.meshes.new(name)
+    data.from_pydata(ball.vertices.tolist(), [], [list(face) for face in ball.faces])
+    ob = bpy.data.objects.new(name, data)
+    ob.location = location
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.update()
+    ob.select_set(select)
+    bpy.context.view_layer.objects.active = ob
+    bpy.data.objects["Floor"].select_set(False)
+    return ob
+
+
+def last() -> dict[str, Any]:
+    result: dict[str, Any] = json.loads(bpy.context.window_manager.stiv_last_edit)
+    return result
+
+
+def test_drop_is_one_undo_step() -> None:
+    add_ball("Ball", (0, 0, 4))
+    bpy.ops.ed.undo_push(message="start")
+    assert bpy.ops.stiv.drop("EXEC_DEFAULT", True, turn=False) == {"FINISHED"}
+    assert bpy.data.objects["Ball"].location.z == pytest.approx(1.01, abs=0.01) and last()["changed"] == ["Ball"]
+    assert bpy.context.window_manager.stiv_check.summary == "Dropped 1 of 1"
+    bpy.ops.ed.undo()
+    assert bpy.data.objects["Ball"].location.z == 4
+
+
+def test_an_object_that_stays_is_named_with_the_way_out() -> None:
+    add_ball("Suzanne", (0, 30, 4))
+    bpy.ops.stiv.drop()
+    assert bpy.context.window_manager.stiv_check.summary == "Suzanne: nothing below; add a floor"
+    bpy.ops.stiv.settle_contact()
+    assert bpy.context.window_manager.stiv_check.summary == "Suzanne: nothing near; raise Max Distance"
+    assert bpy.ops.stiv.drop(ground=True) == {"FINISHED"}
+
+
+def test_the_view_is_straight_down_without_a_window() -> None:
+    ball = add_ball("Ball", (0, 0, 4))
+    bpy.context.scene.gravity = (1, 0, 0)
+    assert bpy.ops.stiv.drop() == {"CANCELLED"}
+    assert bpy.ops.stiv.drop(direction="VIEW", turn=False) == {"FINISHED"} and ball.location.z < 1.1
+
+
+def test_push_apart_parts_and_reports() -> None:
+    add_ball("A", (0, 0, 3))
+    add_ball("B", (0.5, 0.2, 3.4))
+    assert check_scene(bpy.context).pairs
+    assert bpy.ops.stiv.push_apart() == {"FINISHED"} and last()["changed"] == ["A", "B"]
+    assert not check_scene(bpy.context).pairs
+
+
+def test_refusals_name_the_object_and_change_nothing() -> None:
+    ball = add_ball("Ball", (0, 0, 0.5))
+    with pytest.raises(RuntimeError, match="Ball: intersects Floor; use Push Apart"):
+        bpy.ops.stiv.drop()
+    assert tuple(ball.location) == (0, 0, 0.5)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert not bpy.ops.stiv.drop.poll()
