@@ -12,7 +12,7 @@ from .layout_operator import LayoutOperator
 
 
 class STIV_OT_drop(ViewDirection, LayoutOperator, bpy.types.Operator):
-    """Drop the selected objects until they rest on what is below"""
+    """Drop the selected objects until they rest on the surfaces below"""
 
     bl_idname = "stiv.drop"
     bl_label = "Drop"
