@@ -5,7 +5,7 @@ import sys
 
 import bpy
 
-from . import keymap, loop_updates, manual, menus, operators, panels, preferences, properties, translations
+from . import header, keymap, loop_updates, manual, menus, operators, panels, preferences, properties, translations
 from .guard import watcher
 from .operators import running
 from .operators.transform import drag_results
@@ -33,11 +33,13 @@ def register() -> None:
     loop_updates.register()
     watcher.register()
     display.register()
+    header.register()
 
 
 def unregister() -> None:
     """Remove everything; a running edit restores its start first."""
     running.cancel(bpy.context)
+    header.unregister()
     display.unregister()
     watcher.unregister()
     loop_updates.unregister()

@@ -23,8 +23,13 @@ def is_busy() -> bool:
 
 
 def show(context: bpy.types.Context, correction: str, problem: Problem | None) -> None:
-    """Show a correction in the status bar for a while; or a problem in status bar, view and sidebar until resolved."""
+    """Show a correction in the status bar for a while; or a problem in status bar, view and sidebar until resolved.
+
+    Known intersections show only in the header and the sidebar.
+    """
     global _alert
+    if problem is not None and problem.known:
+        problem = None
     for area in view_areas(context):
         area.tag_redraw()
     _show_in_view(context, problem)

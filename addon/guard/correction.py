@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads, tests, corrects and restores the scene for the guard, without any interface."""
+"""Tests, corrects and restores the scene for the guard, without any interface."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import bpy
 from .. import stiv_blender
 from ..scene.edit_settings import edit_settings
 from ..translations import translate
-from .problem import Problem, listed
+from .problem import listed
 
 
 @dataclass(frozen=True)
@@ -18,12 +18,16 @@ class Outcome:
     """The outcome of a test or a correction.
 
     Attributes:
-        problem: why the scene is not clear; None if it is.
+        pairs: what intersects now, without excluded pairs.
+        reason: why a change was not corrected; "" otherwise.
+        failed: the scene could not be tested, for this reason.
         wrote: whether anything was written.
         text: the message to the user about it.
     """
 
-    problem: Problem | None = None
+    pairs: tuple[stiv_blender.FacePair, ...] = ()
+    reason: str = ""
+    failed: bool = False
     wrote: bool = False
     text: str = ""
 
@@ -35,32 +39,36 @@ def evaluate_strokes(context: bpy.types.Context) -> None:
 
 
 def test(context: bpy.types.Context) -> Outcome:
-    """Test whether the current scene is clear, except for excluded pairs."""
-    settings = _settings(context)
+    """Find what intersects in the current scene, except for excluded pairs."""
     try:
-        pairs = stiv_blender.without_excluded(stiv_blender.check_scene(context, settings).pairs, settings.excluded)
+        return Outcome(stiv_blender.find_intersections(context, _settings(context)))
     except ValueError as error:
-        return Outcome(Problem(reason=str(error)))
-    return Outcome(Problem(tuple(dict.fromkeys(pairs))) if pairs else None)
+        return Outcome(reason=str(error), failed=True)
 
 
-def correct(context: bpy.types.Context, accepted: stiv_blender.SceneState) -> Outcome:
-    """Edit from the accepted state toward the current scene; changes that no edit can make are only tested."""
-    changes = stiv_blender.compare(accepted, stiv_blender.read_state(context))
-    if changes.unsupported or not changes.changes:
-        return _tested_only(context, changes.unsupported)
+def correct(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Outcome:
+    """Edit from the accepted scene toward the current one, and place new objects."""
     try:
-        followed = stiv_blender.correct_after_tool(context, _settings(context), accepted, changes)
-    except (ValueError, stiv_blender.SceneChangedError) as error:
-        return _tested_only(context, str(error))
-    found = Outcome()
-    if followed.deformers:
-        found = _tested_only(context, translate("{} cannot be corrected").format(listed(followed.deformers, translate)))
-    if not followed.corrected:
-        return found
-    names, blocking = listed(followed.names, translate), listed(followed.blocking, translate)
-    text = translate("corrected {}, blocked by {}").format(names, blocking)
-    return Outcome(found.problem, wrote=True, text=text if blocking else translate("corrected {}").format(names))
+        guarded = stiv_blender.guard_result(context, _settings(context), accepted)
+    except ValueError as error:
+        return Outcome(reason=str(error), failed=True)
+    reason = guarded.reason if guarded.pairs else ""
+    if guarded.pairs and guarded.deformers:
+        reason = translate("{} cannot be corrected").format(listed(guarded.deformers, translate))
+    return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
+
+
+def _text(guarded: stiv_blender.GuardedResult) -> str:
+    texts = []
+    names, blocking = listed(guarded.corrected, translate), listed(guarded.blocking, translate)
+    if blocking:
+        texts.append(translate("corrected {}, blocked by {}").format(names, blocking))
+    elif names:
+        texts.append(translate("corrected {}").format(names))
+    if guarded.placed:
+        text = translate("put {} at the nearest free place")
+        texts.append(text.format(listed(guarded.placed, translate)))
+    return "; ".join(texts)
 
 
 def revert(context: bpy.types.Context, accepted: stiv_blender.SceneState, frame: int) -> tuple[str, ...]:
@@ -77,14 +85,6 @@ def revert(context: bpy.types.Context, accepted: stiv_blender.SceneState, frame:
     except ValueError:
         context.scene.frame_set(current)
         raise
-
-
-def _tested_only(context: bpy.types.Context, reason: str) -> Outcome:
-    """The outcome of a test; if the scene is not clear, with the reason why it was not corrected."""
-    found = test(context)
-    if found.problem is None or not found.problem.pairs or not reason:
-        return found
-    return Outcome(replace(found.problem, reason=reason))
 
 
 def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why the guard leaves a result uncorrected, in the texts of status bar, view and panel."""
+"""What intersects in a guarded scene, and why, in the texts of status bar, view and panel."""
 
 from __future__ import annotations
 
@@ -15,20 +15,27 @@ MAX_NAMES = 3
 
 @dataclass(frozen=True)
 class Problem:
-    """An intersecting scene, or a reason why it could not be tested.
+    """Intersections that the guard leaves alone, or a reason why it could not test the scene.
 
     Attributes:
         pairs: pairs of intersecting elements.
         reason: why they were not corrected; empty if no correction was tried.
+        known: they intersected when the guard was turned on.
     """
 
     pairs: Sequence[stiv_blender.FacePair] = ()
     reason: str = ""
+    known: bool = False
 
     @property
     def names(self) -> list[str]:
         """Names of the intersecting objects."""
         return sorted({each.object for pair in self.pairs for each in (pair.first, pair.second)})
+
+    @property
+    def object_pairs(self) -> list[tuple[str, str]]:
+        """The pairs of intersecting objects."""
+        return sorted({stiv_blender.object_pair(pair) for pair in self.pairs})
 
     def headline(self, translate: Translate = str) -> str:
         """One line for the status bar: the objects, the number of pairs, and the first pair."""

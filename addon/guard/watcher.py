@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import time
-import traceback
 
 import bpy
 from bpy.app.handlers import persistent
 
 from .. import native_module, stiv_blender
 from ..operators import last_edit
+from ..operators.reports import error_text
+from ..translations import translate
 from . import alerts, correction, undo_steps
 from .decision import POLL_INTERVAL, Action, Guard, Observation, decide, is_new_result
-from .problem import Problem
+from .problem import Problem, listed
+from .record import Record
 
 STEP_NAME = "Live Guard"
 
@@ -22,22 +24,19 @@ class Watch:
     """The state of the guard.
 
     Attributes:
-        state: all controls of the last clear scene, at `state_frame`; None before the first.
+        record: the accepted state and its intersections.
         frame: the frame of the last observation.
-        problem: why the scene is not clear; None if it is.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
     """
 
     def __init__(self) -> None:
         """The state before the first observation."""
         self.guard = Guard()
-        self.state: stiv_blender.SceneState | None = None
-        self.state_frame = 0
+        self.record = Record()
         self.frame = 0
         self.updates = 0
         self.seen_updates = -1
         self.own_edits = last_edit.written()
-        self.problem: Problem | None = None
         self.uncorrected = 0
         self.working = False
 
@@ -46,8 +45,16 @@ _watch = Watch()
 
 
 def problem() -> Problem | None:
-    """Why the scene is not clear; None if it is."""
-    return _watch.problem
+    """What intersects, and why; None if nothing does."""
+    return _watch.record.problem
+
+
+def state(context: bpy.types.Context) -> str:
+    """The state for the icon: "off", "guarded", "partial" (known intersections are left alone), or "intersecting"."""
+    if not is_on(context):
+        return "off"
+    found = problem()
+    return "guarded" if found is None else "partial" if found.known else "intersecting"
 
 
 def uncorrected() -> int:
@@ -56,8 +63,13 @@ def uncorrected() -> int:
 
 
 def last_clear_state() -> tuple[stiv_blender.SceneState, int] | None:
-    """The last state without intersections and its frame; None before the first."""
-    return None if _watch.state is None else (_watch.state, _watch.state_frame)
+    """The last state without an uncorrected result, and its frame; None before the first."""
+    return _watch.record.clear
+
+
+def uncorrected_of(outcome: correction.Outcome) -> Problem | None:
+    """What is left of uncorrected results in the outcome of a test; None if nothing is."""
+    return _watch.record.uncorrected_of(outcome)
 
 
 def is_on(context: bpy.types.Context) -> bool:
@@ -100,8 +112,7 @@ def observe_and_act() -> float | None:
         try:
             return _run(context, windows[0])
         except Exception as error:  # Blender would remove a timer that raises
-            traceback.print_exc()
-            _give_up(Problem(reason=str(error) or type(error).__name__))
+            _give_up(Problem(reason=error_text(error)))
             return None
 
 
@@ -140,47 +151,53 @@ def _act(context: bpy.types.Context, window: bpy.types.Window, action: Action, s
     watch = _watch
     if seen.sculpting:
         correction.evaluate_strokes(context)
-    outcome = _test_and_correct(context, watch.state, action)
+    restored = watch.guard.history and action is Action.WRITE
+    outcome = _test_and_correct(context, watch.record, action, restored)
     if outcome.wrote:
-        _record(window, action, seen)
-    if outcome.problem is not None and watch.state is not None and is_new_result(watch.guard, seen, action):
+        _store_in_history(window, action, seen)
+    first = watch.record.accepted is None
+    left = watch.record.accept(context, outcome, restored) or bool(outcome.reason)
+    if left and not first and is_new_result(watch.guard, seen, action):
         watch.uncorrected += 1
-    _settle(context, outcome)
-    alerts.show(context, outcome.text, watch.problem)
+    _settle(context)
+    alerts.show(context, outcome.text or _first_text(first), watch.record.problem)
 
 
-def _test_and_correct(
-    context: bpy.types.Context, accepted: stiv_blender.SceneState | None, action: Action
-) -> correction.Outcome:
-    if accepted is None or action in (Action.ACCEPT, Action.WRITE):
+def _test_and_correct(context: bpy.types.Context, record: Record, action: Action, restored: bool) -> correction.Outcome:
+    if record.accepted is None or action in (Action.ACCEPT, Action.WRITE):
         tested = correction.test(context)
-        if accepted is None or action is Action.ACCEPT or tested.problem is None:
+        if record.accepted is None or action is Action.ACCEPT or record.allows(tested.pairs, restored):
             return tested
-    return correction.correct(context, accepted)
+    return correction.correct(context, record.accepted)
 
 
-def _record(window: bpy.types.Window, action: Action, seen: Observation) -> None:
+def _first_text(first: bool) -> str:
+    """What the guard leaves alone, when it is turned on."""
+    found = problem()
+    if not first or found is None or not found.known:
+        return ""
+    return translate("{} intersect and are left alone; all else is guarded").format(listed(found.names, translate))
+
+
+def _store_in_history(window: bpy.types.Window, action: Action, seen: Observation) -> None:
     if action is Action.REPLACE and seen.step is not None:
         undo_steps.replace_active(window, seen.step[2])
     elif action is Action.PUSH:
         undo_steps.push(window, STEP_NAME)
 
 
-def _settle(context: bpy.types.Context, outcome: correction.Outcome) -> None:
+def _settle(context: bpy.types.Context) -> None:
     watch = _watch
     watch.own_edits = last_edit.written()
     watch.frame = context.scene.frame_current
-    watch.problem = outcome.problem
-    if outcome.problem is None:
-        watch.state, watch.state_frame = stiv_blender.read_state(context), watch.frame
-    watch.guard = watch.guard.settled(undo_steps.active_step(), outcome.problem is None)
+    watch.guard = watch.guard.settled(undo_steps.active_step(), watch.record.accepted is not None)
     # Reading a mesh in Edit Mode marks it as changed; updating here, while working, ignores that change.
     context.view_layer.update()
 
 
 def _give_up(problem: Problem) -> None:
     """Stop until the next change."""
-    _watch.problem = problem
+    _watch.record.problem = problem
     _watch.seen_updates = _watch.updates
     alerts.show(bpy.context, "", problem)
 
@@ -201,8 +218,12 @@ def _note_change() -> None:
 def _on_update(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
     if scene != bpy.context.scene:
         return  # a copy for STIV's evaluations, or a scene of another window
-    if is_on(bpy.context) and any(_may_move_surfaces(each) for each in graph.updates):
+    if not is_on(bpy.context):
+        return
+    if any(_may_move_surfaces(each) for each in graph.updates):
         _note_change()
+    elif not _watch.working:
+        _watch.record.note_selection(bpy.context)
 
 
 def _may_move_surfaces(update: bpy.types.DepsgraphUpdate) -> bool:

@@ -3,7 +3,7 @@
 
 from .check import STIV_PT_check, STIV_PT_overlay, STIV_PT_repair
 from .edit import STIV_PT_edit
-from .guard import STIV_PT_guard
+from .guard import STIV_PT_guard, STIV_PT_guard_state
 from .layout import STIV_PT_layout
 from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
 
@@ -11,6 +11,7 @@ CLASSES = (
     STIV_PT_edit,
     STIV_PT_guard,
     STIV_PT_layout,
+    STIV_PT_guard_state,
     STIV_PT_roles,
     STIV_PT_deformation,
     STIV_PT_loop,

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard: its switch, and the operators for a scene that it could not correct."""
+"""The live guard: its switch, its state, and the operators for what intersects."""
 
 from __future__ import annotations
 
 import bpy
 
 from ..guard import watcher
-from ..guard.problem import Problem
-from ..translations import translate
+from ..guard.problem import Problem, listed
+from ..translations import counted, translate
 from .base import SubPanel, draw_lines
 
-OPERATORS = ("stiv.guard_revert", "stiv.check", "stiv.repair", "stiv.exclude_intersections")
+OPERATORS = ("stiv.check", "stiv.repair", "stiv.exclude_intersections")
+REVERT = "stiv.guard_revert"
 
 
 class STIV_PT_guard(SubPanel, bpy.types.Panel):
@@ -24,16 +25,47 @@ class STIV_PT_guard(SubPanel, bpy.types.Panel):
         self.layout.prop(context.scene.stiv, "live_guard", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """The status of the scene."""
-        layout = self.layout
-        if not context.scene.stiv.live_guard:
-            layout.label(text="Off: results are not corrected")
-        elif (problem := watcher.problem()) is not None:
-            draw_alert(layout, problem)
-        else:
-            layout.label(text="The scene is clear", icon="CHECKMARK")
-        if watcher.uncorrected():
-            layout.label(text=translate("Uncorrected results: {}").format(watcher.uncorrected()))
+        """The state of the scene."""
+        draw_state(self.layout, context)
+
+
+class STIV_PT_guard_state(bpy.types.Panel):
+    """The popover of the icon in the header."""
+
+    bl_idname = "STIV_PT_guard_state"
+    bl_label = "Live Guard"
+    bl_description = "State of the live guard, and what to do about intersections"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_ui_units_x = 15
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The switch and the state."""
+        self.layout.prop(context.scene.stiv, "live_guard")
+        draw_state(self.layout, context)
+
+
+def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The state of the guard, and what to do."""
+    if not context.scene.stiv.live_guard:
+        layout.label(text="Off: results are not corrected")
+    elif (problem := watcher.problem()) is None:
+        layout.label(text="The scene is clear", icon="CHECKMARK")
+    elif problem.known:
+        draw_known(layout, problem)
+    else:
+        draw_alert(layout, problem)
+    if watcher.uncorrected():
+        layout.label(text=translate("Uncorrected results: {}").format(watcher.uncorrected()))
+
+
+def draw_known(layout: bpy.types.UILayout, problem: Problem) -> None:
+    """What intersects and is left alone."""
+    layout.label(text="All but these are guarded", icon="INFO")
+    pairs = [" - ".join(dict.fromkeys(pair)) for pair in problem.object_pairs]
+    draw_lines(layout, listed(pairs, translate))
+    layout.label(text=counted(len(problem.pairs), "1 intersecting face pair", "{} intersecting face pairs"))
+    _draw_operators(layout, OPERATORS)
 
 
 def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:
@@ -45,6 +77,11 @@ def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:
     draw_lines(box, "\n".join(problem.pair_lines(translate)))
     if problem.pairs and problem.reason:
         draw_lines(layout, translate("Not corrected: {}").format(problem.reason))
+    layout.label(text="All else is guarded")
+    _draw_operators(layout, (REVERT, *OPERATORS))
+
+
+def _draw_operators(layout: bpy.types.UILayout, names: tuple[str, ...]) -> None:
     column = layout.column(align=True)
-    for name in OPERATORS:
+    for name in names:
         column.operator(name)

@@ -31,6 +31,7 @@ class Driver:
         from drags import DRAGS
         from grammar import GRAMMAR
         from guard_edit_mode import GUARD_EDIT_MODE
+        from guard_new_geometry import GUARD_NEW_GEOMETRY
         from guard_scenarios import GUARD
         from guard_sculpting import GUARD_SCULPTING
         from guard_switch import GUARD_SWITCH
@@ -48,7 +49,7 @@ class Driver:
 
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
-        guard = GUARD | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
+        guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LANGUAGES | SEQUENCES | PICTURES

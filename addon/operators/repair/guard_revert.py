@@ -9,6 +9,7 @@ from ...guard import correction, watcher
 from ...guard.problem import listed
 from ...native_module import NeedsNativeModule
 from ...translations import translate
+from .. import last_edit
 from ..reports import report_error
 
 
@@ -21,12 +22,12 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """While the guard watches an intersecting scene that was clear before."""
+        """After a result that the guard could not correct."""
         if not watcher.is_on(context) or watcher.last_clear_state() is None:
             cls.poll_message_set(translate("The live guard has seen no clear state yet"))
             return False
-        if watcher.problem() is None:
-            cls.poll_message_set(translate("Nothing intersects"))
+        if watcher.state(context) != "intersecting":
+            cls.poll_message_set(translate("No result is uncorrected"))
             return False
         return True
 
@@ -42,7 +43,8 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
             return report_error(self, error)
         if context.mode == "SCULPT":
             correction.evaluate_strokes(context)
-        remaining = correction.test(context).problem
+        last_edit.note_written(self, context)  # so that the guard accepts it, and starts no edit toward it
+        remaining = watcher.uncorrected_of(correction.test(context))
         if remaining is not None:
             headline = remaining.headline(translate)
             self.report({"WARNING"}, translate("{}; use Undo for other changes").format(headline))

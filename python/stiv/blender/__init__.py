@@ -9,6 +9,7 @@ from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
 from stiv.blender.edit.state_writer import WriteReport
+from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
 from stiv.blender.guard.guarding import GuardedResult, guard_result
@@ -42,6 +43,7 @@ from stiv.blender.verify.untested import unguarded_text
 follow = correct_after_tool  # its name in version 0.1.0
 
 __all__ = [
+    "AcceptedScene",
     "BlenderContraction",
     "BlenderEdit",
     "BlenderExpansion",

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy")
@@ -10,7 +11,8 @@ pytest.importorskip("stiv._native")
 
 from guarding import FURTHEST, box, expect_free, look, move, names_of_steps, watched_scene  # noqa: E402
 
-from stiv_addon.guard import watcher  # noqa: E402
+from stiv_addon.guard import alerts, watcher  # noqa: E402
+from stiv_addon.overlay import display  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -101,16 +103,61 @@ def test_excluded_pairs_may_intersect_and_all_others_are_guarded() -> None:
     assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
 
 
-def test_changed_topology_is_accepted_if_clear_and_reported_if_not() -> None:
+def test_a_new_object_stays_if_clear_and_is_placed_freely_if_not_in_one_step() -> None:
     bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, location=(0, 8, 0))
     look()
-    assert watcher.problem() is None
+    assert tuple(bpy.context.object.location) == (0, 8, 0)
+    steps = names_of_steps()
     bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(0.4, 0, 0))
     look()
-    assert watcher.problem().pairs and "added" in watcher.problem().reason
+    assert watcher.problem() is None and watcher.uncorrected() == 0
+    expect_free()
+    placed = tuple(bpy.data.objects["Cube.001"].location)
+    assert 0.9 < np.linalg.norm(np.array(placed)) < 1.2
+    assert names_of_steps() == [*steps, "Add Cube"]
     bpy.ops.ed.undo()
     look()
-    assert watcher.problem() is None
+    assert "Cube.001" not in bpy.data.objects
+    bpy.ops.ed.redo()
+    look()
+    assert tuple(bpy.data.objects["Cube.001"].location) == placed
+    expect_free()
+
+
+def test_a_duplicate_is_corrected_in_its_own_step() -> None:
+    steps = names_of_steps()
+    bpy.ops.object.duplicate_move("EXEC_DEFAULT", True, TRANSFORM_OT_translate={"value": (7, 0, 0)})
+    look()
+    copy = bpy.data.objects["Box.001"]
+    assert copy.location.x == 7.0  # behind the wall, where it is free
+    bpy.ops.object.duplicate_move("EXEC_DEFAULT", True, TRANSFORM_OT_translate={"value": (-4.4, 0, 0)})
+    look()
+    assert bpy.data.objects["Box.002"].location.x == pytest.approx(3.5, abs=0.02)  # on its original's side
+    expect_free()
+    assert names_of_steps() == [*steps, "Duplicate Objects", "Duplicate Objects"]
+
+
+def test_an_intersecting_scene_is_guarded_but_for_its_intersections() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2.5, 0, 2.5))  # stands in the top of the wall
+    bpy.context.scene.stiv.live_guard = True
+    look()
+    assert watcher.state(bpy.context) == "partial" and watcher.problem().names == ["Cube", "Wall"]
+    assert not display.content().alert and not alerts._alert
+    bpy.ops.object.select_all(action="DESELECT")
+    box().select_set(True)
+    bpy.context.view_layer.objects.active = box()
+    move(7.0)
+    look()
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02) and watcher.state(bpy.context) == "partial"
+    bpy.data.objects["Cube"].location.z = 4.0
+    bpy.ops.ed.undo_push(message="apart")
+    look()
+    assert watcher.state(bpy.context) == "guarded"
+    bpy.ops.ed.undo()
+    look()
+    assert bpy.data.objects["Cube"].location.z == 2.5, "undo restores what the guard left alone"
+    assert watcher.state(bpy.context) == "partial"
 
 
 def test_results_of_the_own_operators_are_not_corrected() -> None:

@@ -154,15 +154,17 @@ def test_the_frame_of_the_clear_state_is_restored() -> None:
 
 
 def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_named() -> None:
-    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(0.4, 0, 0))
+    bpy.ops.object.duplicate("EXEC_DEFAULT", True)
     look()
+    assert watcher.problem().reason == "Box.001: is in the same place as Box; move it"
+    assert watcher.state(bpy.context) == "intersecting"
     box().location.y = 0.1
     bpy.ops.ed.undo_push(message="moved")
     look()
     assert bpy.ops.stiv.guard_revert("EXEC_DEFAULT", True) == {"FINISHED"}
     look()
     assert box().location.y == 0.0
-    assert watcher.problem().names == ["Box", "Cube"]
+    assert watcher.problem().names == ["Box", "Box.001"]
     mesh = box().data
     mesh.vertices.add(1)
     mesh.update()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from building import add_cube, edit_mode, evaluated, select
 
-from stiv.blender import EditSettings, KnownIntersections, check_scene, find_intersections, guard_result, read_state
+from stiv.blender import AcceptedScene, EditSettings, check_scene, find_intersections, guard_result
 
 WALL = 3.0  # where its face is, along x
 
@@ -21,13 +21,10 @@ def add_wall() -> Any:
 def guarded(change: Any, **settings: Any) -> Any:
     """Read the scene, change it, guard the result."""
     chosen = EditSettings(**settings)
-    accepted = read_state(bpy.context)
-    existing = {ob.session_uid for ob in bpy.data.objects}
-    known = KnownIntersections.of(bpy.context, chosen, find_intersections(bpy.context, chosen))
+    accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, chosen))
     change()
     bpy.context.view_layer.update()
-    created = {ob.session_uid for ob in bpy.data.objects} - existing
-    return guard_result(bpy.context, chosen, accepted, known, created)
+    return guard_result(bpy.context, chosen, accepted)
 
 
 def pairs() -> set[tuple[str, str]]:
@@ -200,3 +197,27 @@ def test_new_geometry_of_other_tools_that_intersects_is_named(what: str) -> None
     assert {each.object for pair in outcome.pairs for each in (pair.first, pair.second)} == {"Box", "Wall"}
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_the_nearest_free_place_is_outside_closed_surfaces() -> None:
+    """Inside the block, a twentieth of the way would be free."""
+    add_cube("Block", (0, 0, 0), 4.0)
+    outcome = guarded(lambda: bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, subdivisions=3, location=(3.75, 0, 0)))
+    sphere = bpy.data.objects[outcome.placed[0]]
+    assert sphere.location.x == pytest.approx(4.3, abs=0.01) and pairs() == set()
+
+
+def test_objects_added_together_stay_together() -> None:
+    add_wall()
+    box = add_cube("Box", (-9, 0, 0))
+
+    def append() -> None:
+        first = add_cube("First", (2.5, 0, 0))
+        add_cube("Child", (0, 0, 2.5), parent=first)
+        add_cube("Second", (2.5, 3, 0))
+
+    outcome = guarded(append)
+    places = np.array([bpy.data.objects[name].matrix_world.translation for name in ("First", "Child", "Second")])
+    assert outcome.placed == ["Child", "First", "Second"] and pairs() == set() and box.location.x == -9
+    assert places - places[0] == pytest.approx(np.array([[0, 0, 0], [0, 0, 2.5], [0, 3, 0]]), abs=1e-5)
+    assert places[0] == pytest.approx([2, 0, 0], abs=0.02)

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
 from stiv.blender.guard.extrusion import extruded_from
@@ -23,15 +24,21 @@ from stiv.blender.settings import EditSettings
 FIRST_FRACTIONS = (1 / 16, 1 / 64, 1 / 256)  # of an extrusion, from which its correction starts
 
 
-def find_originals(accepted: SceneState, present: SceneState, new: Collection[int]) -> dict[int, int]:
-    """The object of which each new one is a copy, by session number; objects that are no copies are left out."""
+def find_originals(accepted: AcceptedScene, present: SceneState, new: Collection[int]) -> dict[int, int]:
+    """The object of which each new one is a copy, by session number; objects that are no copies are left out.
+
+    Of several, it is one that was selected, and the nearest.
+    """
     found = {}
     for number in new:
-        candidates = [other for other in accepted if other in present and _is_copy(present[number], accepted[other])]
+        place = present[number].world[:3, 3]
+        candidates = {
+            other: (other not in accepted.selected, float(np.linalg.norm(state.world[:3, 3] - place)))
+            for other, state in accepted.state.items()
+            if other in present and _is_copy(present[number], state)
+        }
         if candidates:
-            place = present[number].world[:3, 3]
-            distance = {other: float(np.linalg.norm(accepted[other].world[:3, 3] - place)) for other in candidates}
-            found[number] = min(candidates, key=lambda other: distance[other])
+            found[number] = min(candidates, key=lambda other: candidates[other])
     return found
 
 
@@ -56,8 +63,7 @@ def is_in_place(copy: ObjectState, original: ObjectState) -> bool:
 def correct_copies(
     context: bpy.types.Context,
     settings: EditSettings,
-    known: KnownIntersections,
-    accepted: SceneState,
+    accepted: AcceptedScene,
     originals: Mapping[int, int],
 ) -> ToolCorrection:
     """Move copies from the places of their originals toward their own. They pass through all originals.
@@ -67,12 +73,14 @@ def correct_copies(
     present = read_state(context)
     base = dict(present)
     for copy, original in originals.items():
-        start = accepted[original]
+        start = accepted.state[original]
         base[copy] = replace(
             present[copy], location=start.location, rotation=start.rotation, scale=start.scale, world=start.world
         )
-    names = {present[copy].reference.name: accepted[original].reference.name for copy, original in originals.items()}
-    left_out = known.left_out(settings, names)
+    names = {
+        present[copy].reference.name: accepted.state[original].reference.name for copy, original in originals.items()
+    }
+    left_out = accepted.known.left_out(settings, names)
     through = tuple((copy, original) for copy in names for original in names.values())
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, *through))
     return correct_after_tool(context, left_out, base, compare(base, present))
@@ -81,15 +89,14 @@ def correct_copies(
 def correct_extrusion(
     context: bpy.types.Context,
     settings: EditSettings,
-    known: KnownIntersections,
-    accepted: SceneState,
+    accepted: AcceptedScene,
     reference: ObjectReference,
 ) -> ToolCorrection | None:
     """Pull an extrusion out again up to where it is blocked; None if the new vertices are no extrusion.
 
     Raises InputError and SceneChangedError, with nothing changed.
     """
-    before, after = accepted[reference.session_uid], read_object(reference.find())
+    before, after = accepted.state[reference.session_uid], read_object(reference.find())
     if before.points is None or after.points is None or reference.find().type != "MESH":
         return None
     extruded = extruded_from(before.points, after.points, read_edges(reference.find().data))
@@ -101,13 +108,13 @@ def correct_extrusion(
         start = replace(after, points=np.where(moved[:, None], points, after.points).astype(np.float32))
         start.restore_points()
         context.view_layer.update()
-        is_free = reference.name not in fresh_objects(context, settings, known)
+        is_free = reference.name not in fresh_objects(context, settings, accepted.known)
         after.restore_points()
         context.view_layer.update()
         if is_free:
             base = {**read_state(context), reference.session_uid: start}
             change = Change(reference, moved=False, turned=False, scaled=False, points=moved)
-            return correct_after_tool(context, known.left_out(settings), base, Changes((change,)))
+            return correct_after_tool(context, accepted.known.left_out(settings), base, Changes((change,)))
     return None
 
 

@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 import bpy
 
 from stiv.blender.scene.elements import FacePair
-from stiv.blender.scene.exclusions import exclude, without_excluded
-from stiv.blender.scene.guarded_evaluations import read_guarded_scene
-from stiv.blender.settings import EditSettings, Exclusions
-from stiv.blender.verify.scene_check import check_scene, tested_names
+from stiv.blender.scene.exclusions import without_excluded
+from stiv.blender.settings import EditSettings
+from stiv.blender.verify.scene_check import check_scene
 
 ObjectPair = tuple[str, str]
 """Names of two objects in ascending order; the same name twice for an object that intersects itself."""
@@ -37,28 +36,13 @@ def object_pair(pair: FacePair) -> ObjectPair:
 
 @dataclass(frozen=True)
 class KnownIntersections:
-    """Pairs that intersect in the accepted state.
+    """Pairs of elements that intersect in the accepted state.
 
-    Two objects that intersect pass through each other until they are apart. Within one object only the intersecting
-    faces are excluded, since the object could not deform with its other faces guarded otherwise.
-
-    Attributes:
-        pairs: the intersecting elements.
-        within: the intersecting faces within one object, as exclusions.
+    Two objects that intersect pass through each other until they are apart. Faces of one object that intersect stay as
+    they are in each edit, and its other faces are guarded.
     """
 
     pairs: tuple[FacePair, ...] = ()
-    within: Exclusions = Exclusions()
-
-    @staticmethod
-    def of(context: bpy.types.Context, settings: EditSettings, pairs: Iterable[FacePair]) -> KnownIntersections:
-        """The pairs of a test of the present scene."""
-        known = tuple(dict.fromkeys(pairs))
-        own = [pair for pair in known if pair.first.object == pair.second.object]
-        if not own:
-            return KnownIntersections(known)
-        scene, _ = read_guarded_scene(context, settings, tested_names(context, settings))
-        return KnownIntersections(known, exclude(own, scene.meshes))
 
     @property
     def objects(self) -> frozenset[ObjectPair]:
@@ -70,16 +54,11 @@ class KnownIntersections:
 
         copies: names of objects that were copied, by the name of the copy; it passes through what the original did.
         """
-        pairs = {pair for pair in self.objects if pair[0] != pair[1] or not self._has_faces_of(pair[0])}
+        pairs = {pair for pair in self.objects if pair[0] != pair[1]}
         for copy, original in (copies or {}).items():
             pairs |= {(copy, other) for pair in pairs for other in pair if original in pair and other != original}
-        own = settings.excluded
-        merged = Exclusions(own.pairs | self.within.pairs, {**own.shapes, **self.within.shapes})
-        return replace(settings, ignored_pairs=(*settings.ignored_pairs, *sorted(pairs)), excluded=merged)
+        return replace(settings, ignored_pairs=(*settings.ignored_pairs, *sorted(pairs)))
 
     def fresh(self, pairs: Iterable[FacePair]) -> tuple[FacePair, ...]:
         """The pairs of objects that did not intersect before."""
         return tuple(pair for pair in pairs if object_pair(pair) not in self.objects)
-
-    def _has_faces_of(self, name: str) -> bool:
-        return any(name in {owner.split("\n")[0] for owner, _ in pair} for pair in self.within.pairs)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the guard knows about the scene: the accepted state, and what intersects in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import bpy
+
+from .. import stiv_blender
+from .correction import Outcome
+from .problem import Problem
+
+Pairs = frozenset[tuple[str, str]]
+
+
+@dataclass
+class Record:
+    """The accepted scene and its intersections, which the guard leaves alone.
+
+    Attributes:
+        accepted: the scene from which the next result is corrected; None before the first test.
+        clear: the last state without an uncorrected result, and its frame; None before the first.
+        problem: what intersects, and why; None if nothing does.
+        seen, uncorrected: pairs of objects that intersected at any time, and those left by an uncorrected result.
+    """
+
+    accepted: stiv_blender.AcceptedScene | None = None
+    clear: tuple[stiv_blender.SceneState, int] | None = None
+    problem: Problem | None = None
+    seen: Pairs = frozenset()
+    uncorrected: Pairs = frozenset()
+
+    def note_selection(self, context: bpy.types.Context) -> None:
+        """Store the selection, which is no change to guard."""
+        if self.accepted is not None:
+            self.accepted = self.accepted.with_selection(context)
+
+    def allows(self, pairs: Iterable[stiv_blender.FacePair], restored: bool) -> bool:
+        """Whether pairs may intersect: they do in the accepted scene, or undo and redo restored them."""
+        known = frozenset() if self.accepted is None else self.accepted.known.objects
+        return objects_of(pairs) <= (self.seen if restored else known)
+
+    def accept(self, context: bpy.types.Context, outcome: Outcome, restored: bool) -> bool:
+        """Accept the current scene with its intersections; returns whether the guard left any that are new.
+
+        restored: undo or redo made the scene, so that pairs seen before are not new.
+        """
+        if outcome.failed:
+            self.problem = Problem(reason=outcome.reason)
+            return True
+        now = objects_of(outcome.pairs)
+        before = now if self.accepted is None else self.accepted.known.objects
+        added = now - before - (self.seen if restored else frozenset())
+        self.seen |= now
+        self.uncorrected |= added
+        self.accepted = stiv_blender.AcceptedScene.read(context, outcome.pairs)
+        self.problem = self._problem(outcome)
+        if self.problem is None or self.problem.known:
+            self.clear = (self.accepted.state, context.scene.frame_current)
+        return bool(added)
+
+    def uncorrected_of(self, outcome: Outcome) -> Problem | None:
+        """What is left of uncorrected results in an outcome; None if nothing is."""
+        if outcome.failed:
+            return Problem(reason=outcome.reason)
+        left = tuple(pair for pair in outcome.pairs if stiv_blender.object_pair(pair) in self.uncorrected)
+        if not left:
+            return None
+        earlier = self.problem.reason if self.problem is not None and not self.problem.known else ""
+        return Problem(left, outcome.reason or earlier)
+
+    def _problem(self, outcome: Outcome) -> Problem | None:
+        left = self.uncorrected_of(outcome)
+        return left or (Problem(outcome.pairs, known=True) if outcome.pairs else None)
+
+
+def objects_of(pairs: Iterable[stiv_blender.FacePair]) -> Pairs:
+    """The pairs of objects of pairs of elements."""
+    return frozenset(map(stiv_blender.object_pair, pairs))
