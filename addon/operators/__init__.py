@@ -4,6 +4,8 @@
 from .check.check import STIV_OT_check
 from .check.measure import STIV_OT_measure
 from .layout.drop import STIV_OT_drop
+from .layout.fit_into import STIV_OT_fit_into
+from .layout.place import STIV_OT_place
 from .layout.push_apart import STIV_OT_push_apart
 from .layout.settle_contact import STIV_OT_settle_contact
 from .repair.contract import STIV_OT_contract
@@ -25,7 +27,9 @@ RESHAPING = (STIV_OT_repair, STIV_OT_contract, STIV_OT_expand, STIV_OT_settle)
 LAYOUT_ICONS = (
     (STIV_OT_drop, "SORT_ASC"),
     (STIV_OT_settle_contact, "SNAP_FACE"),
+    (STIV_OT_place, "OUTLINER_OB_POINTCLOUD"),
     (STIV_OT_push_apart, "FULLSCREEN_ENTER"),
+    (STIV_OT_fit_into, "PACKAGE"),
 )
 LAYOUT = tuple(operator for operator, _ in LAYOUT_ICONS)
 CLASSES = (

@@ -75,7 +75,7 @@ def is_operator(cls: Any) -> bool:
     return issubclass(cls, bpy.types.Operator)
 
 
-SMALL = {"into", "and", "for", "in", "on"}
+SMALL = {"into", "to", "and", "for", "in", "on"}
 
 
 def test_labels_are_short_titles_without_articles() -> None:

@@ -20,6 +20,8 @@ DONE_TEXTS = {
     "stiv.drop": "Dropped {} of {}",
     "stiv.settle_contact": "Settled {} of {}",
     "stiv.push_apart": "Moved {} of {}",
+    "stiv.place": "Placed {} of {}",
+    "stiv.fit_into": "Packed {} of {}",
 }
 REASON_TEXTS = {
     "nothing below": "{}: nothing below; add a floor",

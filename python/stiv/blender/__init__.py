@@ -24,6 +24,8 @@ from stiv.blender.layout.dropping import (
     settle_into_contact,
 )
 from stiv.blender.layout.layout_task import LayoutReport, LayoutTask
+from stiv.blender.layout.packing import FitInto, FitSettings, fit_into
+from stiv.blender.layout.placing import Place, PlaceSettings, place
 from stiv.blender.layout.pushing_apart import PushApart, push_apart
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
@@ -60,6 +62,8 @@ __all__ = [
     "Exclusions",
     "ExpansionSettings",
     "FacePair",
+    "FitInto",
+    "FitSettings",
     "Ghost",
     "GhostSource",
     "Guard",
@@ -72,6 +76,8 @@ __all__ = [
     "LoopSurface",
     "Motion",
     "ObjectState",
+    "Place",
+    "PlaceSettings",
     "PushApart",
     "RepairSettings",
     "ReshapeReport",
@@ -98,10 +104,12 @@ __all__ = [
     "find_exclusions",
     "find_intersections",
     "first_hit",
+    "fit_into",
     "follow",
     "guard_result",
     "nearest_pair",
     "object_pair",
+    "place",
     "push_apart",
     "read_state",
     "read_surface",

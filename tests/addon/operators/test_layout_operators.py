@@ -75,6 +75,30 @@ def test_push_apart_parts_and_reports() -> None:
     assert not check_scene(bpy.context).pairs
 
 
+def test_place_adds_copies_in_one_undo_step() -> None:
+    add_ball("Ball", (0, 0, 4)).scale = (0.5, 0.5, 0.5)
+    bpy.data.objects["Floor"].select_set(True)
+    bpy.ops.ed.undo_push(message="start")
+    assert bpy.ops.stiv.place("EXEC_DEFAULT", True, count=5) == {"FINISHED"}
+    assert bpy.context.window_manager.stiv_check.summary == "Placed 5 of 5" and len(bpy.data.objects) == 7
+    assert not check_scene(bpy.context).pairs
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects) == 2
+
+
+def test_fit_into_names_what_is_left() -> None:
+    bpy.ops.mesh.primitive_cube_add(size=2.2, location=(0, 0, 5))
+    box = bpy.context.object
+    balls = [add_ball("A", (5, 0, 3)), add_ball("B", (8, 0, 3))]
+    for ob in (*balls, box):
+        ob.select_set(True)
+    bpy.context.view_layer.objects.active = box
+    assert bpy.ops.stiv.fit_into() == {"FINISHED"}
+    assert bpy.context.window_manager.stiv_check.summary == "Packed 1 of 2; B: does not fit"
+    bpy.ops.stiv.fit_into(scale=True)
+    assert bpy.context.window_manager.stiv_check.summary.startswith("Packed 2 of 2; scaled by 0.")
+
+
 def test_refusals_name_the_object_and_change_nothing() -> None:
     ball = add_ball("Ball", (0, 0, 0.5))
     with pytest.raises(RuntimeError, match="Ball: intersects Floor; use Push Apart"):

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from stiv.blender.layout.rigid_scene import RigidScene
@@ -39,22 +41,22 @@ def _angles(points: Floats, corners: Floats) -> Floats:
 
 
 def is_outside(scene: RigidScene, mover: int, among: Flags | None = None) -> bool:
-    """Are all vertices of a mover, of a sample, outside closed obstacles?"""
+    """Are all vertices of a mover, of a sample, outside closed obstacles whose normals point outward?"""
     points = scene.positions_of(mover)
-    return _fraction_inside(scene, mover, among, points[:: max(1, len(points) // MAX_POINTS)]) == 0
+    windings = _windings(scene, mover, among, points[:: max(1, len(points) // MAX_POINTS)])
+    return all(bool((each < 0.5).all()) for each in windings)
 
 
 def is_mostly_inside(scene: RigidScene, mover: int, among: Flags | None = None) -> bool:
     """Is most of the box of a mover inside a closed obstacle?"""
     low, high = scene.box(mover)
     grid = np.stack(np.meshgrid(*[[-0.75, -0.25, 0.25, 0.75]] * 3), axis=-1).reshape(-1, 3)
-    return _fraction_inside(scene, mover, among, (low + high) / 2 + grid * (high - low) / 2) >= MOSTLY
+    windings = _windings(scene, mover, among, (low + high) / 2 + grid * (high - low) / 2)
+    return any(float((np.abs(each) > 0.5).mean()) >= MOSTLY for each in windings)
 
 
-def _fraction_inside(scene: RigidScene, mover: int, among: Flags | None, points: Floats) -> float:
-    most = 0.0
+def _windings(scene: RigidScene, mover: int, among: Flags | None, points: Floats) -> Iterator[Floats]:
+    """Winding numbers around points, (n,), of each closed obstacle near a mover."""
     for triangles in scene.bodies_around(mover, among):
         if is_closed(triangles):
-            inside = np.abs(winding_numbers(points, scene.corners(triangles))) > 0.5
-            most = max(most, float(inside.mean()))
-    return most
+            yield winding_numbers(points, scene.corners(triangles))

@@ -56,8 +56,9 @@ class LayoutEdit:
         if not movable:
             raise InputError("nothing movable is selected; select an object with a surface")
         self._settings = replace(settings, interference=False, responders="selected", object_response="slide_and_turn")
-        participants = [Participant(ObjectReference.of(ob), "rigid", True) for ob in movable]
-        self._edit = BlenderEdit.begin_with(context, self._settings, "move", participants)
+        self._participants = [Participant(ObjectReference.of(ob), "rigid", True) for ob in movable]
+        self._scales: dict[str, tuple[float, ...]] = {}
+        self._edit = BlenderEdit.begin_with(context, self._settings, "move", self._participants)
         self.assembly = self._edit.assembly
         self.scene = _rigid_scene(self._edit, self._settings, ground)
 
@@ -83,9 +84,27 @@ class LayoutEdit:
             self._edit.restore()
             raise InputError(reason)
 
+    def write_scaled(self, context: bpy.types.Context, scene: RigidScene, scale: float) -> None:
+        """Scale the objects and write the poses of `scene`, whose movers have this scale. Raises InputError."""
+        if scale == 1:
+            self.scene = scene
+            self.write()
+            return
+        objects = [bpy.data.objects[each.names[0]] for each in self.control_sets]
+        self._scales = {ob.name: tuple(ob.scale) for ob in objects}
+        for ob in objects:
+            ob.scale *= scale
+        context.view_layer.update()
+        self._edit = BlenderEdit.begin_with(context, self._settings, "move", self._participants)
+        self.scene = scene
+        self.write()
+
     def restore(self) -> None:
         """Restore the objects exactly."""
         self._edit.restore()
+        for name, scale in self._scales.items():
+            bpy.data.objects[name].scale = scale
+        bpy.context.view_layer.update()
 
 
 def _rigid_scene(edit: BlenderEdit, settings: EditSettings, ground: bool) -> RigidScene:

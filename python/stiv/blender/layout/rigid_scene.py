@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -129,6 +129,85 @@ class RigidScene:
         """Leave these movers out of all tests, instead of those of the previous call."""
         self._hidden[:] = False
         self._hidden[list(movers)] = True
+
+    def shown_movers(self, mover: int) -> list[int]:
+        """The other movers that are not left out."""
+        return [each for each in range(len(self.movers)) if each != mover and not self._hidden[each]]
+
+    def with_scaled_movers(self, scale: float) -> RigidScene:
+        """A scene in which each mover is scaled about its center, with the same poses as at its start."""
+        movers, positions = [], self._positions.copy()
+        for number, mover in enumerate(self.movers):
+            center = self._poses[number][0]
+            positions[mover.rows] = center + scale * (positions[mover.rows] - center)
+            movers.append(replace(mover, deformation=stiv.rigid(positions[mover.rows])))
+        poses = [stiv.rigid_rest_controls(positions[each.rows]) for each in movers]
+        distances = dict(self._pair_separations)
+        return RigidScene(self._surface, positions, movers, poses, self.separation, distances, self._threads)
+
+    def with_copies(self, mover: int, factors: Floats) -> RigidScene:
+        """A scene with copies of a mover behind all movers, scaled by `factors`, (k,), about its center."""
+        own = self.movers[mover].rows
+        surface, bodies = self._surface, self._bodies[mover]
+        copies, parts = len(factors), [self._positions]
+        place = np.full(len(self._positions), -1, np.int32)
+        place[own] = np.arange(len(own), dtype=np.int32)
+        elements = [each[place[each[:, 0]] >= 0] for each in self._elements[:2]]
+        triangles, edges = [surface.triangles], [surface.loose_edges]
+        numbers, body = {number: k for k, number in enumerate(bodies)}, [surface.vertex_body]
+        movers, poses = list(self.movers), list(self._poses)
+        rest = self.positions_of(mover)
+        center = stiv.rigid_rest_controls(rest)[0]
+        for copy, factor in enumerate(factors):
+            first = np.int32(len(self._positions) + copy * len(own))
+            scaled = center + factor * (rest - center)
+            parts.append(scaled)
+            triangles.append(place[elements[0]] + first)
+            edges.append(place[elements[1]] + first)
+            offset = len(surface.bodies) + copy * len(bodies)
+            body.append(np.array([offset + numbers[each] for each in surface.vertex_body[own].tolist()], np.int32))
+            rows = np.arange(first, first + len(own), dtype=np.int32)
+            movers.append(replace(self.movers[mover], rows=rows, deformation=stiv.rigid(scaled)))
+            poses.append(stiv.rigid_rest_controls(scaled))
+        names = [surface.bodies[number] for _ in range(copies) for number in bodies]
+        larger = stiv.Surface(
+            np.concatenate(triangles),
+            len(self._positions) + copies * len(own),
+            np.concatenate(edges),
+            np.concatenate(body),
+            [*surface.bodies, *names],
+            self._copied_pairs(sorted(self._ignored), bodies, copies),
+        )
+        distances = {
+            pair: h
+            for (a, b), h in self._pair_separations.items()
+            for pair in [(a, b), *self._copied_pairs([(a, b)], bodies, copies)]
+        }
+        return RigidScene(larger, np.concatenate(parts), movers, poses, self.separation, distances, self._threads)
+
+    def _copied_pairs(
+        self, pairs: Sequence[tuple[int, int]], bodies: Sequence[int], copies: int
+    ) -> list[tuple[int, int]]:
+        """Pairs of bodies, with those of copies of some bodies; pairs within these bodies stay within a copy."""
+        count, found = len(self._surface.bodies), list(pairs)
+        for copy in range(copies):
+            number = {body: count + copy * len(bodies) + k for k, body in enumerate(bodies)}
+            found += [(number.get(a, a), number.get(b, b)) for a, b in pairs if a in number or b in number]
+        return found
+
+    def components(self, mover: int) -> Floats:
+        """A vertex, (3,), of each connected component of a mover, (k, 3)."""
+        own = self._mover_of_vertex[self._surface.triangles[:, 0]] == mover
+        label = np.arange(len(self._positions))
+        triangles = self._surface.triangles[own]
+        while len(triangles):
+            least = label[triangles].min(axis=1)
+            if (label[triangles] == least[:, None]).all():
+                break
+            for corner in range(3):
+                np.minimum.at(label, triangles[:, corner], least)
+            label = label[label]
+        return self._positions[np.unique(label[self.movers[mover].rows])]
 
     def box(self, mover: int) -> Floats:
         """Lowest and highest corner of a mover, (2, 3)."""
