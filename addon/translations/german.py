@@ -166,7 +166,6 @@ MESSAGES = {
     "No result is uncorrected": "Kein Ergebnis ist unkorrigiert",
     "No two visible objects to measure": "Keine zwei sichtbaren Objekte zu messen",
     "Not corrected: {}": "Nicht berichtigt: {}",
-    "Nothing intersects": "Nichts schneidet sich",
     "Number of copies": "Anzahl der Kopien",
     "Number of steps; each is twice as strong as the previous one": "Zahl der Schritte; jeder ist doppelt so stark wie der vorige",
     "Number of subdivisions; each splits a triangle into 4": "Zahl der Unterteilungen; jede teilt ein Dreieck in 4",

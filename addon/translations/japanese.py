@@ -166,7 +166,6 @@ MESSAGES = {
     "No result is uncorrected": "未修正の結果はありません",
     "No two visible objects to measure": "測る二つの見えるオブジェクトがありません",
     "Not corrected: {}": "修正できません: {}",
-    "Nothing intersects": "交差はありません",
     "Number of copies": "コピーの数",
     "Number of steps; each is twice as strong as the previous one": "ステップの数。各ステップは前の二倍の強さです",
     "Number of subdivisions; each splits a triangle into 4": "細分割の数。一回ごとに三角形を4つに分けます",

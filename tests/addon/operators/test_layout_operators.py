@@ -86,7 +86,7 @@ def test_place_adds_copies_in_one_undo_step() -> None:
     assert len(bpy.data.objects) == 2
 
 
-def test_fit_into_names_what_is_left() -> None:
+def test_fit_into_names_objects_without_room() -> None:
     bpy.ops.mesh.primitive_cube_add(size=2.2, location=(0, 0, 5))
     box = bpy.context.object
     balls = [add_ball("A", (5, 0, 3)), add_ball("B", (8, 0, 3))]

@@ -64,7 +64,7 @@ class Container:
     Attributes:
         box: lowest and highest corner, (2, 3).
         inside: triangles of the closed mesh whose inside it is, (f, 3); None for the box.
-        floor, ceiling: ends of the vertical room on a grid over the box, (k, k); an infinite floor is no room.
+        floor, ceiling: ends of the vertical room on a grid over the box, (k, k); an infinite floor means no room.
     """
 
     box: Floats
