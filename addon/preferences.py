@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import os
+
 import bpy
 import rna_keymap_ui
 from bpy.props import BoolProperty, IntProperty
@@ -16,6 +18,12 @@ class StivPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     threads: IntProperty(name="Threads", description="Solver threads (0 uses all cores)", default=0, min=0, max=1024)
+    automatic_threads: BoolProperty(
+        name="Auto Threads",
+        description="Use all cores",
+        get=lambda self: self.threads == 0,
+        set=lambda self, automatic: setattr(self, "threads", 0 if automatic else os.cpu_count() or 1),
+    )
     overlay: BoolProperty(
         name="Show Overlay on Startup",
         description="Show contacts, intersecting faces, clearance and speed when Blender starts",
@@ -24,8 +32,13 @@ class StivPreferences(bpy.types.AddonPreferences):
 
     def draw(self, context: bpy.types.Context) -> None:
         """The settings, then the keys as in Blender's own editor."""
-        self.layout.use_property_split = True
-        self.layout.prop(self, "threads")
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
+        if self.automatic_threads:
+            self.layout.row(heading="Threads").prop(self, "automatic_threads", text="Auto", toggle=True)
+        else:
+            row = self.layout.row(align=True)
+            row.prop(self, "threads")
+            row.prop(self, "automatic_threads", text="", icon="X")
         self.layout.prop(self, "overlay")
         draw_keys(context, self.layout.column())
 

@@ -105,7 +105,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
 
     separation: FloatProperty(
         name="Minimum Distance",
-        description="Distance between surfaces; 0 chooses a ten-thousandth of the size of the selection",
+        description="Distance between surfaces; 0 is a ten-thousandth of the selection's size",
         subtype="DISTANCE",
         default=0.0,
         min=0.0,
@@ -207,7 +207,7 @@ class StivObjectSettings(bpy.types.PropertyGroup):
     )
     weight_group: StringProperty(
         name="Weights",
-        description="Vertex group that sets how far points yield; weight 0 and points outside are pinned",
+        description="Vertex group that sets how far points yield; weight 0 pins them",
     )
     weight_invert: BoolProperty(name="Invert", description="Invert vertex group influence")
     weight_axes: BoolVectorProperty(
@@ -224,6 +224,7 @@ class StivCheckResult(bpy.types.PropertyGroup):
     """The result of the last check; not saved."""
 
     summary: StringProperty(name="Check Result", options={"SKIP_SAVE"})
+    intersects: BoolProperty(name="Intersects", options={"SKIP_SAVE", "HIDDEN"})
     left_out: StringProperty(name="Unguarded Objects", options={"SKIP_SAVE"})
 
 

@@ -111,9 +111,9 @@ def turned_text(angle: float, translate: Translate = str) -> str:
 MAX_NAMES = 3
 
 
-def listed(names: Sequence[str], translate: Translate = str) -> str:
+def listed(names: Sequence[str], translate: Translate = str, most: int = MAX_NAMES) -> str:
     """The first names, and the number of the others."""
-    first, others = ", ".join(names[:MAX_NAMES]), len(names) - MAX_NAMES
+    first, others = ", ".join(names[:most]), len(names) - most
     return translate("{} and {} more").format(first, others) if others > 0 else first
 
 

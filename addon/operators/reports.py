@@ -8,9 +8,11 @@ import traceback
 import bpy
 
 from .. import stiv_blender
+from ..intersection_texts import short_name
 from ..modal.drag_loop import DragEnded, restore_after_error
 from ..modal.header_texts import result_text
 from ..translations import translate
+from ..units import length_text
 
 
 def outcome_text(result: stiv_blender.EditResult) -> str:
@@ -55,4 +57,5 @@ def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]
 
 def clearance_text(least: stiv_blender.LeastDistance) -> str:
     """The smallest distance between two objects, as a line."""
-    return translate("{}: clearance {}").format(", ".join(least.bodies), f"{least.distance:.6g}")
+    distance = length_text(least.distance, bpy.context.scene.unit_settings)
+    return translate("{}: clearance {}").format(", ".join(map(short_name, least.bodies)), distance)

@@ -11,6 +11,14 @@ from ..operators.check.measure import STIV_OT_measure
 from ..operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections, excluded_count
 from .base import SubPanel, draw_lines
 
+ICONS = ("MODIFIER", "FULLSCREEN_EXIT", "FULLSCREEN_ENTER", "RECOVER_LAST")  # of the operators in RESHAPING
+BUTTON_TEXTS = {
+    "stiv.repair": "Repair",
+    "stiv.contract": "Contract",
+    "stiv.expand": "Expand",
+    "stiv.settle": "Settle",
+}
+
 
 class STIV_PT_check(SubPanel, bpy.types.Panel):
     """Intersections of the current scene."""
@@ -20,7 +28,10 @@ class STIV_PT_check(SubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """The button, and the result of the last check."""
-        self.layout.operator(STIV_OT_check.bl_idname, text="Check Scene", icon="VIEWZOOM")
+        self.layout.operator(STIV_OT_check.bl_idname, text="Check Scene", icon="VIEWZOOM").select = False
+        if context.window_manager.stiv_check.intersects:
+            select = self.layout.operator(STIV_OT_check.bl_idname, text="Select Intersecting Faces", icon="FACESEL")
+            select.select = True
         draw_lines(self.layout, context.window_manager.stiv_check.summary)
 
 
@@ -34,10 +45,10 @@ class STIV_PT_repair(SubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """A button for each operator; their values are in the redo panel."""
         column = self.layout.column(align=True)
-        for operator in RESHAPING:
-            column.operator(operator.bl_idname)
+        for operator, icon in zip(RESHAPING, ICONS, strict=True):
+            column.operator(operator.bl_idname, text=BUTTON_TEXTS[operator.bl_idname], icon=icon)
         row = self.layout.row(align=True)
-        row.operator(STIV_OT_exclude_intersections.bl_idname)
+        row.operator(STIV_OT_exclude_intersections.bl_idname, icon="GHOST_ENABLED")
         count = excluded_count(context.scene.stiv.excluded)
         if count:
             row.operator(STIV_OT_clear_exclusions.bl_idname, text="", icon="X")
@@ -62,4 +73,4 @@ class STIV_PT_overlay(SubPanel, bpy.types.Panel):
         column.active = switches.show
         for name in ("contacts", "goal", "intersections", "clearance", "while_dragging", "speed"):
             column.prop(switches, name)
-        self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")
+        self.layout.operator(STIV_OT_measure.bl_idname, text="Measure", icon="DRIVER_DISTANCE")

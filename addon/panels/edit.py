@@ -11,6 +11,8 @@ from ..scene.edit_settings import edit_settings
 from ..translations import translate
 from .base import SidebarPanel, draw_lines, draw_problem
 
+ICONS = {"move": "CON_LOCLIKE", "rotate": "CON_ROTLIKE", "scale": "CON_SIZELIKE"}
+LABEL_WIDTH = 0.55  # fraction of the sidebar's default width that the longest label needs
 SETTINGS = ("responders", "object_response", "guard", "smoothness", "constraints")
 
 
@@ -27,8 +29,8 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
             return
         column = self.layout.column(align=True)
         for operator in TRANSFORMS:
-            column.operator(operator.bl_idname, text=operator.bl_label.split()[-1])
-        self.layout.use_property_split = True
+            column.operator(operator.bl_idname, text=operator.bl_label.split()[-1], icon=ICONS[operator.kind])
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
         settings = self.layout.column()
         settings.prop(context.scene.stiv, "interference")
         draw_separation(settings, context.scene.stiv)
@@ -40,12 +42,16 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
 
 def draw_separation(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """The minimum distance: a length, or a button "Auto" in its place."""
+    split = layout.split(factor=LABEL_WIDTH)
+    label = split.row()
+    label.alignment = "RIGHT"
+    label.label(text="Minimum Distance")
+    row = split.row(align=True)
+    row.use_property_split = False
     if settings.automatic_separation:
-        row = layout.row(heading="Minimum Distance")
         row.prop(settings, "automatic_separation", text="Auto", toggle=True)
     else:
-        row = layout.row(align=True)
-        row.prop(settings, "separation")
+        row.prop(settings, "separation", text="")
         row.prop(settings, "automatic_separation", text="", icon="X")
 
 

@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import bpy
 
 from ..guard import watcher
-from ..guard.problem import Problem, listed
-from ..translations import counted, translate
+from ..guard.problem import Problem
+from ..intersection_texts import details
+from ..translations import translate
 from .base import SubPanel, draw_lines
 
-OPERATORS = ("stiv.check", "stiv.repair", "stiv.exclude_intersections")
-REVERT = "stiv.guard_revert"
+OPERATORS = {"stiv.check": "VIEWZOOM", "stiv.repair": "MODIFIER", "stiv.exclude_intersections": "GHOST_ENABLED"}
+REVERT = {"stiv.guard_revert": "LOOP_BACK"}
 
 
 class STIV_PT_guard(SubPanel, bpy.types.Panel):
@@ -62,9 +65,7 @@ def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def draw_known(layout: bpy.types.UILayout, problem: Problem) -> None:
     """What intersects and is left alone."""
     layout.label(text="All but these are guarded", icon="INFO")
-    pairs = [" - ".join(dict.fromkeys(pair)) for pair in problem.object_pairs]
-    draw_lines(layout, listed(pairs, translate))
-    layout.label(text=counted(len(problem.pairs), "1 intersecting face pair", "{} intersecting face pairs"))
+    draw_lines(layout, "\n".join([problem.headline(translate), *details(problem.pairs, translate)]))
     _draw_operators(layout, OPERATORS)
 
 
@@ -78,10 +79,11 @@ def draw_alert(layout: bpy.types.UILayout, problem: Problem) -> None:
     if problem.pairs and problem.reason:
         draw_lines(layout, translate("Not corrected: {}").format(problem.reason))
     layout.label(text="All else is guarded")
-    _draw_operators(layout, (REVERT, *OPERATORS))
+    _draw_operators(layout, REVERT | OPERATORS)
 
 
-def _draw_operators(layout: bpy.types.UILayout, names: tuple[str, ...]) -> None:
+def _draw_operators(layout: bpy.types.UILayout, icons: Mapping[str, str]) -> None:
+    """A button for each operator, by the names of their icons."""
     column = layout.column(align=True)
-    for name in names:
-        column.operator(name)
+    for name, icon in icons.items():
+        column.operator(name, icon=icon)

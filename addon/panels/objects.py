@@ -49,7 +49,7 @@ class STIV_PT_deformation(SubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """The deformation, its handles and the weights."""
         obj = context.active_object
-        self.layout.use_property_split = True
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
         self.layout.prop(obj.stiv, "deformation")
         if obj.stiv.deformation in {"laplacian", "arap"} and obj.type == "MESH":
             _draw_handles(self.layout, obj)
@@ -92,7 +92,7 @@ class STIV_PT_loop(SubPanel, bpy.types.Panel):
         if refined_object(obj) is None:
             self.layout.operator(STIV_OT_loop_add.bl_idname, icon="ADD")
             return
-        self.layout.use_property_split = True
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
         for name in ("levels", "boundary"):
             self.layout.prop(obj.stiv.loop, name)
         self.layout.operator(STIV_OT_loop_refresh.bl_idname, icon="FILE_REFRESH")
@@ -116,4 +116,4 @@ class STIV_PT_separation(SubPanel, bpy.types.Panel):
             row.operator(STIV_OT_separation_remove.bl_idname, text="", icon="REMOVE").index = index
             box.prop(pair, "separation")
         self.layout.operator(STIV_OT_separation_add.bl_idname, icon="ADD")
-        self.layout.operator(STIV_OT_measure.bl_idname, icon="DRIVER_DISTANCE")
+        self.layout.operator(STIV_OT_measure.bl_idname, text="Measure", icon="DRIVER_DISTANCE")

@@ -22,7 +22,7 @@ _REFUSALS = {
     "coincident": "triangles coincide with others; weld, move or delete them",
     "held": "some intersecting triangles have no vertex that may move; let them move",
     "not_freed": "no contraction is free of intersections; the best leaves {fewest_pairs} pairs",
-    "too_far": "the repaired shape deviates by {deviation:.2%} of the size, more than max_deviation allows",
+    "too_far": "the repaired shape deviates by {deviation:.2%}, more than max_deviation allows",
 }
 
 

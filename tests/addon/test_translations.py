@@ -89,7 +89,7 @@ def test_labels_are_short_titles_without_articles() -> None:
 def test_no_text_ends_with_a_full_stop_and_none_is_longer_than_a_line() -> None:
     for text in interface_messages.messages():
         assert not text.endswith("."), text
-        assert len(text) <= 90, text
+        assert len(text) <= 80, text
 
 
 @pytest.mark.parametrize(("code", "expected"), [("de_DE", "Verformung"), ("ja_JP", "変形方法")])

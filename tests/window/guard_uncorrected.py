@@ -12,7 +12,7 @@ from playing import expect_free
 from scenes import WALL_FACE
 from simulation import Steps, Window
 
-BUTTON = "Restore Clear State"
+BUTTON = "Restore Before Collision"
 
 
 def add_mirrored_box() -> object:

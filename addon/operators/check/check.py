@@ -1,77 +1,63 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`stiv.check`: finds intersections in the current scene, and selects the intersecting objects and faces."""
+"""`stiv.check`: finds intersections in the current scene, and may select the intersecting objects and faces."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Sequence
 
 import bpy
+from bpy.props import BoolProperty
 
 from ... import stiv_blender
+from ...intersection_texts import details, headline
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
 from ...translations import counted, translate
 from ..reports import clearance_text, report_error
 
-MAX_PAIRS = 5  # pairs of objects that the summary lists
-
 
 class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
-    """Find intersections of all visible surfaces with an exact test, and select them"""
+    """Find intersections of all visible surfaces with an exact test"""
 
     bl_idname = "stiv.check"
-    bl_label = "Check for Intersections"
+    bl_label = "Collision Check"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
+    select: BoolProperty(
+        name="Select Intersecting Faces",
+        description="Select the objects and faces that intersect, and deselect all others",
+        default=False,
+    )
+
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Check, show, select."""
+        """Check, show, and select if asked to."""
         try:
             found = stiv_blender.check_scene(context, edit_settings(context.scene))
         except ValueError as error:
             return report_error(self, error)
-        pairs = Counter((pair.first.object, pair.second.object) for pair in found.pairs)
-        if pairs and context.mode == "OBJECT":
-            select(context, {name for pair in pairs for name in pair})
-        selected = stiv_blender.select_faces(context, stiv_blender.faces_of(found.pairs)) if pairs else {}
-        lines = [summary(pairs, found.triangle_pairs, selected), "" if pairs else clearance(context), tested(found)]
-        text = "\n".join(filter(None, lines))
-        context.window_manager.stiv_check.summary = text
+        if self.select and found.pairs:
+            select(context, found.pairs)
+        lines = [headline(found.pairs, translate), *details(found.pairs, translate)]
+        text = "\n".join(filter(None, lines)) or translate("No intersections")
+        near = "" if found.pairs else clearance(context)
+        result = context.window_manager.stiv_check
+        result.summary, result.intersects = "\n".join(filter(None, [text, near, *tested(found)])), bool(found.pairs)
         display.show_pairs(context, found.pairs)
-        self.report({"WARNING"} if pairs else {"INFO"}, text.splitlines()[0])
+        self.report({"WARNING"} if found.pairs else {"INFO"}, text.splitlines()[0])
         return {"FINISHED"}
 
 
-def summary(pairs: Counter[tuple[str, str]], triangle_pairs: int, selected: Mapping[str, int]) -> str:
-    """Intersecting pairs of faces and of triangles, the number of selected faces, and the pairs of objects."""
-    if not pairs:
-        return translate("No intersections")
-    faces = counted(pairs.total(), "1 intersecting face pair", "{} intersecting face pairs")
-    if triangle_pairs != pairs.total():
-        faces += f" ({counted(triangle_pairs, '1 triangle pair', '{} triangle pairs')})"
-    objects = counted(len({name for pair in pairs for name in pair}), "1 object", "{} objects")
-    lines = [translate("{} in {}").format(faces, objects)]
-    if selected:
-        lines[0] += ", " + counted(sum(selected.values()), "1 face selected", "{} faces selected")
-    for (first, second), count in pairs.most_common(MAX_PAIRS):
-        itself = translate("{}: {} with itself").format(first, count)
-        lines.append(itself if first == second else f"{first}, {second}: {count}")
-    if len(pairs) > MAX_PAIRS:
-        lines.append(translate("and {} more").format(len(pairs) - MAX_PAIRS))
-    return "\n".join(lines)
-
-
-def tested(found: stiv_blender.SceneCheck) -> str:
-    """The tested objects and triangles, and the objects that were not tested, as a line."""
+def tested(found: stiv_blender.SceneCheck) -> list[str]:
+    """Lines on the tested objects and triangles, and the objects that were not tested."""
     objects = counted(found.objects, "1 object", "{} objects")
     triangles = counted(found.triangles, "1 triangle", "{} triangles")
-    parts = [translate("Tested {}, {}").format(objects, triangles)]
+    lines = [translate("Tested {}, {}").format(objects, triangles)]
     if found.seams:
-        parts.append(counted(found.seams, "1 face pair on seams", "{} face pairs on seams"))
+        lines.append(counted(found.seams, "1 contact on a seam", "{} contacts on seams"))
     if found.untested:
-        parts.append(translate("not tested, {}").format(stiv_blender.untested_text(found.untested)))
-    return "; ".join(parts)
+        lines.append(translate("Not tested: {}").format(stiv_blender.untested_text(found.untested)))
+    return lines
 
 
 def clearance(context: bpy.types.Context) -> str:
@@ -81,7 +67,10 @@ def clearance(context: bpy.types.Context) -> str:
     return "" if least is None else clearance_text(least)
 
 
-def select(context: bpy.types.Context, names: Collection[str]) -> None:
-    """Select the objects with these names, and deselect all others."""
-    for obj in context.view_layer.objects:
-        obj.select_set(obj.name in names)
+def select(context: bpy.types.Context, pairs: Sequence[stiv_blender.FacePair]) -> None:
+    """Select the objects and faces in the pairs, and deselect all others."""
+    if context.mode == "OBJECT":
+        names = {each.object for pair in pairs for each in (pair.first, pair.second)}
+        for obj in context.view_layer.objects:
+            obj.select_set(obj.name in names)
+    stiv_blender.select_faces(context, stiv_blender.faces_of(pairs))

@@ -17,7 +17,7 @@ class STIV_OT_measure(NeedsNativeModule, bpy.types.Operator):
     """Find the two closest visible objects, and show their distance in the 3D view"""
 
     bl_idname = "stiv.measure"
-    bl_label = "Measure Clearance"
+    bl_label = "Collision Clearance"
     bl_options = {"REGISTER"}  # noqa: RUF012 (Blender reads a set)
 
     def execute(self, context: bpy.types.Context) -> set[str]:

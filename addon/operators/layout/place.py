@@ -14,7 +14,7 @@ from .layout_operator import LayoutOperator
 
 
 class STIV_OT_place(LayoutOperator, bpy.types.Operator):
-    """Spread copies of the active object on the selected surfaces or the one under the pointer"""
+    """Spread copies of the active object on the selected surfaces"""
 
     bl_idname = "stiv.place"
     bl_label = "Place"

@@ -10,7 +10,7 @@ from .layout_operator import LayoutOperator
 
 
 class STIV_OT_push_apart(LayoutOperator, bpy.types.Operator):
-    """Move the selected objects by the least way until they no longer intersect or come too near"""
+    """Move the selected objects as little as possible until none intersect"""
 
     bl_idname = "stiv.push_apart"
     bl_label = "Push Apart"

@@ -14,7 +14,7 @@ NEAREST = (("NEAREST", "Nearest Surface", "Toward the nearest surface of each ob
 
 
 class STIV_OT_settle_contact(ViewDirection, LayoutOperator, bpy.types.Operator):
-    """Move the selected objects against the nearest surfaces, and turn them until they rest"""
+    """Move the selected objects against the nearest surfaces until they rest"""
 
     bl_idname = "stiv.settle_contact"
     bl_label = "Settle into Contact"

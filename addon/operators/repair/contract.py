@@ -14,7 +14,7 @@ class STIV_OT_contract(ReshapeOperator, bpy.types.Operator):
     """Shrink the selected meshes toward their skeletons; Expand restores the shape"""
 
     bl_idname = "stiv.contract"
-    bl_label = "Contract"
+    bl_label = "Collision Contract"
 
     steps: IntProperty(
         name="Steps",

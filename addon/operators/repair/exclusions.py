@@ -8,9 +8,10 @@ import functools
 import bpy
 
 from ... import stiv_blender
+from ...intersection_texts import counted_faces, short_name
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
-from ...translations import counted, translate
+from ...translations import translate
 from ..reports import report_error
 
 
@@ -24,7 +25,7 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
     """Allow the current intersections, but no new ones; all other pairs stay guarded"""
 
     bl_idname = "stiv.exclude_intersections"
-    bl_label = "Exclude Intersections"
+    bl_label = "Exclude Collisions"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find all intersecting pairs and store them in the scene, replacing earlier ones."""
@@ -33,10 +34,10 @@ class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
         except ValueError as error:
             return report_error(self, error)
         context.scene.stiv.excluded = excluded.to_json()
-        self.report({"INFO"}, _excluded(len(excluded.pairs)))
+        self.report({"INFO"}, _excluded(excluded))
         if others:
-            text = translate("{}: {} of edges, vertices or hair left. Set its role to No Collision")
-            self.report({"WARNING"}, text.format(others[0].first.object, counted(len(others), "1 pair", "{} pairs")))
+            text = translate("{}: its edges or hair still cut; set its role to No Collision")
+            self.report({"WARNING"}, text.format(short_name(others[0].first.object)))
         return {"FINISHED"}
 
 
@@ -44,7 +45,7 @@ class STIV_OT_clear_exclusions(ExclusionOperator, bpy.types.Operator):
     """Guard all pairs of faces again"""
 
     bl_idname = "stiv.clear_exclusions"
-    bl_label = "Clear Exclusions"
+    bl_label = "Clear Excluded Collisions"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete the exclusions."""
@@ -54,16 +55,17 @@ class STIV_OT_clear_exclusions(ExclusionOperator, bpy.types.Operator):
 
 @functools.lru_cache(maxsize=4)
 def excluded_count(stored: str) -> str:
-    """The number of excluded pairs stored in a scene, as a text; "" for none."""
+    """The number of excluded faces stored in a scene, as a text; "" for none."""
     try:
-        count = len(stiv_blender.Exclusions.from_json(stored).pairs)
+        excluded = stiv_blender.Exclusions.from_json(stored)
     except ValueError as error:
         return str(error)
-    return _excluded(count) if count else ""
+    return _excluded(excluded) if excluded.pairs else ""
 
 
-def _excluded(count: int) -> str:
-    return counted(count, "1 excluded face pair", "{} excluded face pairs")
+def _excluded(excluded: stiv_blender.Exclusions) -> str:
+    faces = {face for pair in excluded.pairs for face in pair}
+    return translate("{} excluded").format(counted_faces(len(faces), translate))
 
 
 def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:

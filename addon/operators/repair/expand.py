@@ -14,11 +14,11 @@ class STIV_OT_expand(ReshapeOperator, bpy.types.Operator):
     """Expand the selected meshes toward their rest shape without intersections"""
 
     bl_idname = "stiv.expand"
-    bl_label = "Expand"
+    bl_label = "Collision Expand"
 
     target: StringProperty(
         name="Target",
-        description="Mesh object with the same vertices whose local shape is the goal; the rest shape if empty",
+        description="Mesh with the same vertices that gives the shape; the rest shape if empty",
     )
     amount: FloatProperty(
         name="Amount", description="Fraction of the way", default=1.0, min=0.0, max=1.0, subtype="FACTOR"

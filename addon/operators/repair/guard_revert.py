@@ -14,10 +14,10 @@ from ..reports import report_error
 
 
 class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
-    """Restore objects, vertices, poses and shape keys to the last state without intersections"""
+    """Restore the last state without intersections, poses and shape keys included"""
 
     bl_idname = "stiv.guard_revert"
-    bl_label = "Restore Clear State"
+    bl_label = "Restore Before Collision"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod

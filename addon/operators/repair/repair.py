@@ -14,11 +14,11 @@ class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
     """Contract the selected meshes until nothing intersects, then expand them again"""
 
     bl_idname = "stiv.repair"
-    bl_label = "Repair Intersections"
+    bl_label = "Collision Repair"
 
     max_deviation: FloatProperty(
         name="Max Deviation",
-        description="Reject results whose mean distance from the shape is larger, relative to its size",
+        description="Reject results that deviate more on average, relative to the object's size",
         default=0.05,
         min=0.0,
         soft_max=0.2,

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Sequence
 from typing import Any
 
 import bpy
 
 from ... import stiv_blender
+from ...intersection_texts import as_message, counted_faces, details, headline
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
@@ -21,7 +21,6 @@ from ..reports import report_error
 
 TICK = 0.05  # seconds between two looks at the worker
 REPORTED_PAIRS = 100  # pairs in the report for scripts
-NAMED_PAIRS = 3  # pairs in a message
 MODES = {"OBJECT", "EDIT_MESH"}
 
 
@@ -155,12 +154,13 @@ class ReshapeOperator(NeedsNativeModule):
 
     def _finish(self, context: bpy.types.Context, report: Any) -> set[str]:
         context.window_manager.stiv_last_edit = describe(report)
-        context.window_manager.stiv_check.summary = outcome(report)
+        lines = outcome(report)
+        context.window_manager.stiv_check.summary = "\n".join(lines)
         display.show_pairs(context, report.pairs)
         if report.status in ("refused", "budget") or (report.status == "blocked" and not report.changed):
-            self.report({"ERROR"}, outcome(report))
+            self.report({"ERROR"}, as_message(lines))
             return {"CANCELLED"}
-        self.report({"WARNING"} if report.pairs or report.message else {"INFO"}, outcome(report))
+        self.report({"WARNING"} if report.pairs or report.message else {"INFO"}, as_message(lines))
         return {"FINISHED"} if report.changed else {"CANCELLED"}
 
 
@@ -177,29 +177,17 @@ _OUTCOME_TEXTS = {
 }
 
 
-def outcome(report: stiv_blender.ReshapeReport) -> str:
-    """One line: the outcome, the reason, and the first of the pairs that still intersect."""
+def outcome(report: stiv_blender.ReshapeReport) -> list[str]:
+    """Lines: the outcome, the reason, and what still intersects."""
     if report.status == "repaired":
-        text = _repaired(report.pairs_before, f"{report.deviation:.2%}")
+        faces = counted_faces(report.faces_before, translate)
+        text = translate("Resolved {}, mean deviation {}").format(faces, f"{report.deviation:.2%}")
     else:
         text = translate(_OUTCOME_TEXTS.get(report.status, report.status))
-    parts = [text, report.message] if report.message and report.status != "cancelled" else [text]
-    if report.pairs:
-        named = _named(report.pairs[:NAMED_PAIRS]) + " ..." * (len(report.pairs) > NAMED_PAIRS)
-        parts.append(_intersecting(len(report.pairs), named))
-    return "; ".join(parts)
-
-
-def _repaired(count: int, deviation: str) -> str:
-    if count == 1:
-        return translate("Resolved 1 intersection, mean deviation {}").format(deviation)
-    return translate("Resolved {} intersections, mean deviation {}").format(count, deviation)
-
-
-def _intersecting(count: int, named: str) -> str:
-    if count == 1:
-        return translate("1 pair intersects: {}").format(named)
-    return translate("{} pairs intersect: {}").format(count, named)
+    message = report.message if report.status != "cancelled" else ""
+    pairs = report.pairs
+    first = (message, text) if report.status == "refused" else (text, message)
+    return [line for line in (*first, headline(pairs, translate), *details(pairs, translate)) if line]
 
 
 def describe(report: stiv_blender.ReshapeReport) -> str:
@@ -219,12 +207,4 @@ def describe(report: stiv_blender.ReshapeReport) -> str:
             "rounds": 0,
             **solved,
         }
-    )
-
-
-def _named(pairs: Sequence[stiv_blender.FacePair]) -> str:
-    return ", ".join(
-        f'"{pair.first.object}" {pair.first.kind} {pair.first.number} and '
-        f'"{pair.second.object}" {pair.second.kind} {pair.second.number}'
-        for pair in pairs
     )

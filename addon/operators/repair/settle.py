@@ -16,7 +16,7 @@ class STIV_OT_settle(ReshapeOperator, bpy.types.Operator):
     """Solve again toward the rest shape, as long as the meshes get closer"""
 
     bl_idname = "stiv.settle"
-    bl_label = "Settle"
+    bl_label = "Collision Settle"
 
     rounds: IntProperty(name="Rounds", description="Maximum number of rounds", default=4, min=1, soft_max=16, max=64)
     smoothness: FloatProperty(

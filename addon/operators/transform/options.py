@@ -60,6 +60,14 @@ class TransformOptions:
     response: EnumProperty(name="Response", items=RESPONSES, default=OF_SCENE, options={"SKIP_SAVE"})
     outcome: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
 
+    def applies(self, name: str, context: bpy.types.Context) -> bool:
+        """Whether a property has an effect now."""
+        if name in ("responders", "response"):
+            return self.request(context.scene).interference and (name == "responders" or context.mode == "OBJECT")
+        if name.startswith("proportional"):
+            return context.mode != "OBJECT" and (name == "proportional" or self.proportional)
+        return True
+
     def influence(self) -> stiv_blender.Influence | None:
         """The influence of proportional editing, None without it."""
         settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)

@@ -88,7 +88,7 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         self.layout.use_property_split, self.layout.use_property_decorate = True, False
         described = self.properties.bl_rna.properties
         for name in (*type(self).__annotations__, *TransformOptions.__annotations__):
-            if name in described and not described[name].is_hidden:
+            if name in described and not described[name].is_hidden and self.applies(name, context):
                 self.layout.prop(self, name)
 
     def _applied(

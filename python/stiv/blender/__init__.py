@@ -31,7 +31,7 @@ from stiv.blender.repair.contraction import BlenderContraction, ContractionSetti
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
-from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.ray_casting import first_hit
@@ -97,6 +97,7 @@ __all__ = [
     "contact_region",
     "contract_scene",
     "correct_after_tool",
+    "count_faces",
     "drop",
     "enable",
     "expand_scene",

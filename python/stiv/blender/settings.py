@@ -116,7 +116,7 @@ class Exclusions:
             pairs = frozenset(((str(a), int(i)), (str(b), int(j))) for a, i, b, j in data["pairs"])
             return Exclusions(pairs, {str(name): str(shape) for name, shape in data["shapes"].items()})
         except (ValueError, TypeError, KeyError, AttributeError) as error:
-            raise InputError("the scene's excluded pairs cannot be read; use Clear Exclusions") from error
+            raise InputError("the scene's excluded pairs cannot be read; use Clear Excluded Collisions") from error
 
     def to_json(self) -> str:
         """Text for a property of the scene; "" for no pairs."""
@@ -176,9 +176,7 @@ class EditSettings(SharedOptions):
         _require("object_response", self.object_response, OBJECT_RESPONSES)
         for first, second, distance in self.pair_separations:
             if not 0 < distance < float("inf"):
-                raise InputError(
-                    f'separation of objects "{first}" and "{second}": {distance!r} is not a positive number'
-                )
+                raise InputError(f"{first}, {second}: the minimum distance {distance!r} is not a positive number")
         for name, role in self.roles.items():
             _require(f'role of object "{name}"', role, ROLES)
         for name, deformation in self.deformations.items():

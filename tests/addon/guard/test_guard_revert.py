@@ -83,10 +83,9 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored(change: A
     assert watcher.uncorrected() == 1
     labels, buttons, is_red = shown_in_status_bar()
     assert is_red and buttons == ["stiv.guard_revert"]
-    first = problem.pairs[0]
-    expected = f"Box, Wall: {len(problem.pairs)} intersecting face pairs"
-    assert labels == [f"Live guard: {expected}, first {first.first.number} and {first.second.number}"]
-    assert display.content().alert[0].startswith(expected) and len(display.content().intersecting)
+    faces = {(each.object, each.number) for pair in problem.pairs for each in (pair.first, pair.second)}
+    assert labels == [f"Live guard: Box cuts Wall, {len(faces)} faces"]
+    assert display.content().alert[0] == f"Box cuts Wall, {len(faces)} faces" and len(display.content().intersecting)
     move(0.1)
     look()
     assert watcher.uncorrected() == 2
@@ -98,7 +97,7 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored(change: A
     expect_free()
     assert watcher.problem() is None and watcher.uncorrected() == 2
     assert not display.content().alert and not alerts._alert
-    assert names_of_steps() == [*steps, "Move", "Move", "Restore Clear State"]
+    assert names_of_steps() == [*steps, "Move", "Move", "Restore Before Collision"]
     bpy.ops.ed.undo()
     look()
     assert np.array_equal(positions(), moved)
@@ -129,7 +128,7 @@ def test_a_pose_and_a_placement_are_restored_in_one_step() -> None:
     bpy.data.objects["Rig"].pose.bones["Bone"].location.x = 2.0
     bpy.ops.ed.undo_push(message="pose")
     look()
-    assert "the pose or shape keys of object" in watcher.problem().reason
+    assert "another pose or other shape keys" in watcher.problem().reason
     box().location.y = 1.0
     bpy.ops.ed.undo_push(message="move")
     look()

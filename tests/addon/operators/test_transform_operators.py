@@ -179,19 +179,19 @@ def test_the_role_of_an_object_is_respected(wall: Any) -> None:
 def test_the_check_finds_and_selects_what_intersects() -> None:
     box("Box", (1.5, 0.0, 0.0), (0.5, 0.5, 0.5))
     box("Far", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
-    assert bpy.ops.stiv.check() == {"FINISHED"}
+    assert bpy.ops.stiv.check(select=True) == {"FINISHED"}
     assert {obj.name for obj in bpy.context.selected_objects} == {"Wall", "Box"}
     summary = bpy.context.window_manager.stiv_check.summary
-    assert "4 intersecting face pairs" in summary and "Wall" in summary and "Far" not in summary
+    assert summary.splitlines()[0] == "Box cuts Wall, 5 faces" and "Far" not in summary
 
 
 def test_the_check_reports_tested_and_untested_objects(wall: Any) -> None:
     box("Hidden", (9.0, 0.0, 0.0), (0.5, 0.5, 0.5)).hide_set(True)
     box("Box", (-5.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     bpy.ops.stiv.check()
-    line = bpy.context.window_manager.stiv_check.summary.splitlines()[-1]
+    lines = bpy.context.window_manager.stiv_check.summary.splitlines()[-2:]
     triangles = 12 + sum(len(face.vertices) - 2 for face in wall.data.polygons)
-    assert line == f'Tested 2 objects, {triangles} triangles; not tested, hidden: 1 ("Hidden")'
+    assert lines == [f"Tested 2 objects, {triangles} triangles", 'Not tested: hidden: 1 ("Hidden")']
 
 
 @pytest.mark.parametrize("constraints", ["per_patch", "single"])
@@ -246,7 +246,7 @@ def test_an_object_without_a_surface_is_reported_and_shown_in_the_panel(wall: An
     assert bpy.context.window_manager.stiv_check.left_out == said
     assert said in capfd.readouterr().out
     bpy.ops.stiv.check()
-    assert 'not tested, point clouds: 1 ("Dust")' in bpy.context.window_manager.stiv_check.summary
+    assert 'Not tested: point clouds: 1 ("Dust")' in bpy.context.window_manager.stiv_check.summary
     bpy.data.objects.remove(bpy.data.objects["Dust"])
     bpy.ops.stiv.move(value=(1, 0, 0))
     assert bpy.context.window_manager.stiv_check.left_out == ""

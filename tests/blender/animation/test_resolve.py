@@ -136,9 +136,9 @@ def test_unsupported_animations_are_refused_by_name(tmp_path: Path, capsys, case
         key(curve, "scale", [(1, 1, 1), (2, 2, 2)])
     resolved(tmp_path, 2, *(["--hold", "Nobody"] if case == "hold" else []), code=2)
     said = {
-        "hold": 'object "Nobody": does not move',
-        "array": 'object "Cube": has 8 vertices at frame 1 and 16 at frame 2',
-        "text": 'object "Words": a text that deforms',
+        "hold": "Nobody: does not move",
+        "array": "Cube: other vertices at frame 2",
+        "text": "Words: a text that deforms",
     }
     assert said[case] in capsys.readouterr().err
     assert not (tmp_path / "out.blend").exists()

@@ -189,9 +189,9 @@ def start_rendered() -> None:
 
 
 REFUSED = [
-    (hooked, 2, 'object "Cube": moves differently when rendered; '),
-    (only_rendered_shape, 2, 'object "Cube": deforms and is only rendered; '),
-    (animated_levels, 2, 'object "Cube": is rendered differently at frame '),
+    (hooked, 2, "Cube: moves differently when rendered; "),
+    (only_rendered_shape, 2, "Cube: deforms and is only rendered; "),
+    (animated_levels, 2, "Cube: is rendered differently at frame "),
     (start_rendered, 4, "only the render intersects; "),
 ]
 

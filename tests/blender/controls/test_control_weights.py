@@ -133,7 +133,7 @@ def test_a_missing_group_is_named() -> None:
         select(ob)
         with pytest.raises(stiv.InputError, match=f'{ob.name}: there is no vertex group "No"'):
             begin(weights={ob.name: WeightGroup("No")})
-    with pytest.raises(stiv.InputError, match='object "Nobody", which the scene does not have'):
+    with pytest.raises(stiv.InputError, match="Nobody: the settings name it"):
         begin(weights={"Nobody": WeightGroup("No")})
 
 

@@ -57,8 +57,8 @@ def test_curves_have_no_controls() -> None:
 
 def test_unknown_names_in_settings() -> None:
     select(add_cube("Cube"))
-    refused('object "Nobody"', EditSettings(roles={"Nobody": "rigid"}))
-    refused('object "Nobody"', EditSettings(ignored_pairs=(("Cube", "Nobody"),)))
+    refused("Nobody: ", EditSettings(roles={"Nobody": "rigid"}))
+    refused("Nobody: ", EditSettings(ignored_pairs=(("Cube", "Nobody"),)))
 
 
 @pytest.mark.parametrize("choice", [{"responders": "x"}, {"object_response": "x"}, {"roles": {"a": "x"}}])
@@ -280,4 +280,4 @@ def test_obstacles_may_be_anything() -> None:
 
 def test_triangles_without_area_are_counted() -> None:
     select(add("Sliver", mesh("Sliver", [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])))
-    assert "1 participating triangles have no area" in accepted().summary.warnings
+    assert "1 triangle has no area" in accepted().summary.warnings

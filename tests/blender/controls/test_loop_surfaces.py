@@ -172,7 +172,7 @@ def test_hidden_and_removed_objects() -> None:
     before = sorted(bpy.data.meshes.keys())
     remove_refined(refined)
     assert sorted(bpy.data.meshes.keys()) == [name for name in before if name != "Cage.loop"]
-    with pytest.raises(stiv.InputError, match=r'"Cage\.loop", which the scene does not have'):
+    with pytest.raises(stiv.InputError, match=r"Cage\.loop: the settings name it"):
         begin(settings)
 
 

@@ -143,7 +143,7 @@ def test_a_seam_stays_closed_where_one_side_of_it_is_moved(way: str, levels: int
     centre = next(v.index for v in ob.data.vertices if v.co.length < 1e-6)
     select_vertices(ob, lambda vertex: vertex.index == centre or (abs(vertex.co.x) > 0.99 and way != "vertices"))
     edit = BlenderEdit.begin(bpy.context, EditSettings(deformations={ob.name: way}), "move")
-    note = any("follow those selected on their seams" in text for text in edit.summary.warnings)
+    note = any("on its seams" in text for text in edit.summary.warnings)
     assert note == held
     result = edit.apply(shift(z=3))
     assert edit.write().passed

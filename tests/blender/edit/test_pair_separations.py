@@ -71,5 +71,5 @@ def test_values_and_names_are_checked() -> None:
     select(add_cube("Cube"))
     with pytest.raises(stiv.InputError, match="-1 is not a positive number"):
         EditSettings(pair_separations=(("Cube", "Cube", -1),))
-    with pytest.raises(stiv.InputError, match='"Nobody", which the scene does not have'):
+    with pytest.raises(stiv.InputError, match="Nobody: the settings name it"):
         begin(pair_separations=(("Cube", "Nobody", 1.0),))

@@ -265,7 +265,7 @@ def test_errors_name_the_object_and_change_nothing() -> None:
     before = snapshot()
     with pytest.raises(stiv.InputError, match="Ball: it has no rest shape"):
         expand_scene(bpy.context)
-    with pytest.raises(stiv.InputError, match='there is no mesh object "Nobody"'):
+    with pytest.raises(stiv.InputError, match="Nobody: is not a mesh of this file"):
         expand_scene(bpy.context, ExpansionSettings(target="Nobody"))
     add_modifier(ball, "SOLIDIFY", "Thick")
     with pytest.raises(stiv.InputError, match='Ball: Solidify "Thick" is not supported'):

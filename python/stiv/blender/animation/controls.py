@@ -69,7 +69,7 @@ def stored_placement(ob: bpy.types.Object, matrix: Floats) -> tuple[mathutils.Ve
     parts: tuple[mathutils.Vector, ...] = mathutils.Matrix(matrix.tolist()).decompose()
     rebuilt = as_matrix(mathutils.Matrix.LocRotScale(*parts))
     if np.abs(rebuilt - matrix).max() > SHEAR * np.abs(matrix).max():
-        raise InputError(f'object "{ob.name}": its parent shears it; apply its transform, or clear the parent')
+        raise InputError(f"{ob.name}: its parent shears it; apply its transform, or clear the parent")
     return parts
 
 

@@ -69,11 +69,11 @@ def _check_alike(group: Sequence[Track]) -> None:
         or any(track.kind == group[0].kind == "rigid" and not move_alike(group[0], track) for track in others)
     ):
         raise InputError(
-            f'object "{group[0].mesh.owner.name}": moves differently when rendered; show the same modifiers, {WAY_OUT}'
+            f"{group[0].mesh.owner.name}: moves differently when rendered; show the same modifiers, {WAY_OUT}"
         )
 
 
 def _check_shown(track: Track) -> None:
     ob = track.mesh.owner.find()
     if not ob.visible_get():
-        raise InputError(f'object "{ob.name}": deforms and is only rendered; show it in the viewport, {WAY_OUT}')
+        raise InputError(f"{ob.name}: deforms and is only rendered; show it in the viewport, {WAY_OUT}")

@@ -68,17 +68,17 @@ def check_movable(tracks: Sequence[Track], hold: Collection[str]) -> None:
     moving = {track.mesh.owner.name for track in tracks if track.kind != "still"}
     unknown = sorted(set(hold) - moving)
     if unknown:
-        raise InputError(f'object "{unknown[0]}": does not move in these frames; remove it from --hold')
+        raise InputError(f"{unknown[0]}: does not move in these frames; remove it from --hold")
     for track in tracks:
         if track.kind == "still":
             continue
         ob = track.mesh.owner.find()
         if track.mesh.is_instance:
-            raise InputError(f'object "{ob.name}": shows instances that move; make them real')
+            raise InputError(f"{ob.name}: shows instances that move; make them real")
         if ob.library is not None or (ob.data is not None and ob.data.library is not None):
-            raise InputError(f'object "{ob.name}": is linked from another file and moves; make it local')
+            raise InputError(f"{ob.name}: is linked from another file and moves; make it local")
         if track.kind == "shape" and ob.type != "MESH":
-            raise InputError(f'object "{ob.name}": a {type_name(ob)} that deforms; convert it to a mesh')
+            raise InputError(f"{ob.name}: a {type_name(ob)} that deforms; convert it to a mesh")
 
 
 _Identity = tuple[int, str, frozenset[str]]  # identifies a mesh over all frames; instances may share it
@@ -105,25 +105,21 @@ def _check_same(first: Sequence[VisibleMesh], meshes: Sequence[VisibleMesh], sta
             raise InputError(_missing(mesh, meshes, start, frame))
         if len(other.local) != len(mesh.local) or len(other.triangles) != len(mesh.triangles):
             raise InputError(
-                f'object "{mesh.owner.name}": has {len(mesh.local)} vertices at frame {start:g} and '
-                f"{len(other.local)} at frame {frame:g}; apply the modifier that changes them"
+                f"{mesh.owner.name}: other vertices at frame {frame:g}; apply the modifier that changes them"
             )
     for key, mesh in now.items():
         if key not in names:
             raise InputError(_missing(mesh, first, frame, start))
     if Counter(map(_identity, first)) != Counter(map(_identity, meshes)):
-        raise InputError(f"the number of instances changes between frames {start:g} and {frame:g}; make them real")
+        raise InputError(f"the number of instances changes at frame {frame:g}; make them real")
 
 
 def _missing(mesh: VisibleMesh, others: Sequence[VisibleMesh], here: float, there: float) -> str:
     """Message about a mesh that exists at only one of two frames."""
     name = mesh.owner.name
     if any(_identity(mesh)[:2] == _identity(other)[:2] for other in others):
-        return (
-            f'object "{name}": is rendered differently at frame {there:g} than at frame {here:g}; '
-            "keep its render settings the same, or use --guard viewport"
-        )
-    return f'object "{name}": is visible at frame {here:g}, but not at frame {there:g}'
+        return f"{name}: is rendered differently at frame {there:g}; keep its render settings, or use --guard viewport"
+    return f"{name}: is visible at frame {here:g}, but not at frame {there:g}"
 
 
 def _kind(track: Track) -> str:

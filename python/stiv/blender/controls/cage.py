@@ -141,7 +141,7 @@ def cage_writer(
 
 def _write_local(ob: bpy.types.Object, local: Singles) -> None:
     if len(local) != _vertex_count(ob):
-        raise SceneChangedError(f'object "{ob.name}" changed its number of vertices')
+        raise SceneChangedError(f"{ob.name} changed its number of vertices")
     if ob.mode == "EDIT":
         _write_edit_mesh(ob.data, local)
     else:

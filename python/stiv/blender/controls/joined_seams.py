@@ -75,7 +75,8 @@ def join_rows(rows: Indices, control_seams: Seams | None) -> Indices:
 def seam_message(name: str, selected: Flags, control_seams: Seams) -> str:
     """Message about vertices that follow selected copies on a seam, (n,); "" if there are none."""
     follow = int(((np.bincount(control_seams.index, selected) > 0)[control_seams.index] & ~selected).sum())
-    return f'object "{name}": {follow} vertices follow those selected on their seams' if follow else ""
+    counted = "1 vertex follows" if follow == 1 else f"{follow:,} vertices follow"
+    return f"{name}: {counted} on its seams" if follow else ""
 
 
 def _selection_weights(index: Indices, count: int) -> stiv.Weights:

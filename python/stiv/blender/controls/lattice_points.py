@@ -82,6 +82,6 @@ class LatticeWriter:
 def _write_local(ob: bpy.types.Object, local: Singles) -> None:
     lattice = ob.data
     if len(lattice.points) != len(local):
-        raise SceneChangedError(f'object "{ob.name}" changed its number of points')
+        raise SceneChangedError(f"{ob.name} changed its number of points")
     lattice.points.foreach_set("co_deform", local.ravel())
     lattice.update_tag()

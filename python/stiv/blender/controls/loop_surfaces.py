@@ -142,7 +142,7 @@ def _is_stale(shown: Singles, wanted: Singles) -> bool:
 
 def _write(refined: bpy.types.Object, local: Singles) -> None:
     if len(refined.data.vertices) != len(local):
-        raise SceneChangedError(f'object "{refined.name}" changed its number of vertices')
+        raise SceneChangedError(f"{refined.name} changed its number of vertices")
     refined.data.vertices.foreach_set("co", local.ravel())
     refined.data.update()
 

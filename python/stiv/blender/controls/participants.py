@@ -51,7 +51,7 @@ def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:
     known = set(context.scene.objects.keys())
     for name in settings.named_objects():
         if name not in known:
-            raise InputError(f'settings name object "{name}", which the scene does not have')
+            raise InputError(f"{name}: the settings name it, but the scene does not have it")
 
 
 def _in_edit_mode(context: bpy.types.Context, objects: list[bpy.types.Object]) -> list[bpy.types.Object]:

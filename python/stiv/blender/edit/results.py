@@ -68,4 +68,4 @@ def intersecting_objects(pairs: Indices, surface: stiv.Surface) -> str:
     """Names of the objects in pairs of triangles, (k, 2), of a surface; "surfaces" if it has no bodies."""
     vertices = surface.triangles[np.unique(pairs)][:, 0]
     names = {surface.bodies[int(body)].name for body in np.unique(np.asarray(surface.vertex_body)[vertices])}
-    return "objects " + ", ".join(f'"{name}"' for name in sorted(names)) if names else "surfaces"
+    return ", ".join(sorted(names)) if names else "surfaces"

@@ -62,4 +62,5 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
 def _warnings(assembly: Assembly) -> tuple[str, ...]:
     a, b, c = (assembly.positions[assembly.surface.triangles[:, corner]] for corner in range(3))
     flat = int((np.cross(b - a, c - a) == 0).all(axis=1).sum())
-    return (f"{flat} participating triangles have no area",) if flat else ()
+    counted = "1 triangle has" if flat == 1 else f"{flat:,} triangles have"
+    return (f"{counted} no area",) if flat else ()

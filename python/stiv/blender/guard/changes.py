@@ -55,11 +55,9 @@ def compare(before: SceneState, after: SceneState) -> Changes:
     """Find the changes from `before` to `after`."""
     found, rebuilt, reasons = [], [], []
     added = [state.reference for number, state in after.items() if number not in before]
-    reasons += [f'object "{each.name}" was added or shown' for each in added]
+    reasons += [f"{each.name} was added or shown" for each in added]
     reasons += [
-        f'object "{state.reference.name}" was removed or hidden'
-        for number, state in before.items()
-        if number not in after
+        f"{state.reference.name} was removed or hidden" for number, state in before.items() if number not in after
     ]
     for number, state in after.items():
         if number not in before:
@@ -67,12 +65,12 @@ def compare(before: SceneState, after: SceneState) -> Changes:
         reference = state.reference
         if state.kind != before[number].kind:
             rebuilt.append(reference)
-            reasons.append(f'the structure of object "{reference.name}" was changed')
+            reasons.append(f"{reference.name} has another structure")
             continue
         change = _compare(before[number], state)
         if change.placed and change.points is not None:
             rebuilt.append(reference)
-            reasons.append(f'object "{reference.name}" was transformed and deformed at once')
+            reasons.append(f"{reference.name} was transformed and deformed at once")
         elif change.placed or change.points is not None:
             found.append(change)
     if not found and not reasons:
@@ -84,7 +82,7 @@ def _posed(before: SceneState, after: SceneState) -> str:
     """The pose or shape keys that changed; "" for none. Drivers may change them together with controls."""
     for number, state in after.items():
         if state.pose != before[number].pose:
-            return f'the pose or shape keys of object "{state.reference.name}" were changed'
+            return f"{state.reference.name} has another pose or other shape keys"
     return ""
 
 

@@ -168,7 +168,7 @@ def _target_of(ob: bpy.types.Object, target: str) -> Singles:
     if target:
         other = bpy.data.objects.get(target)
         if other is None or other.type != "MESH":
-            raise InputError(f'target: there is no mesh object "{target}"')
+            raise InputError(f"{target}: is not a mesh of this file; choose another target")
         if other.mode == "EDIT":
             other.update_from_editmode()
         local = read_cage(other)

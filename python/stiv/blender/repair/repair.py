@@ -18,7 +18,7 @@ from stiv.blender.repair.reshaping import (
 from stiv.blender.repair.rest_shape import store_rest_shape
 from stiv.blender.repair.welding import WeldedMeshes, weld_copies
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import FacePair, count_faces
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 
@@ -113,7 +113,9 @@ class BlenderRepair:
         for writer in self._snapshot.writers:
             store_rest_shape(writer.reference.find(), writer.original)
         deviation = self._snapshot.deviation(controls)
-        return ReshapeReport("repaired", True, "", (), len(self._before), deviation, self._result.contracted)
+        before, faces = len(self._before), count_faces(self._before)
+        contracted = self._result.contracted
+        return ReshapeReport("repaired", True, "", (), before, deviation, contracted, faces_before=faces)
 
     def _refused(self, message: str) -> ReshapeReport:
         assert self._result is not None

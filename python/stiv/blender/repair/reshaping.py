@@ -60,6 +60,7 @@ class ReshapeReport:
         deviation: root mean square distance from the start, in diagonals of the moving surface.
         contracted: the objects that a repair contracted.
         result: merged result of an expansion's edits; None for the others.
+        faces_before: number of faces that intersected at the start of a repair that succeeded.
     """
 
     status: str
@@ -70,6 +71,7 @@ class ReshapeReport:
     deviation: float = 0.0
     contracted: str = ""
     result: stiv.EditResult | None = None
+    faces_before: int = 0
 
 
 @dataclass(frozen=True)

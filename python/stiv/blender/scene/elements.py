@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Elements of evaluated meshes as messages and reports name them, and pairs of elements that intersect."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from stiv.blender.scene.evaluations import SHOWN
@@ -26,3 +27,9 @@ class FacePair:
     first: Element
     second: Element
     triangle_pairs: int = field(default=1, compare=False)
+
+
+def count_faces(pairs: Iterable[FacePair]) -> int:
+    """Number of different faces in the pairs: of those that are shown, if there are any."""
+    faces = {each for pair in pairs for each in (pair.first, pair.second) if each.kind == "face"}
+    return sum(each.evaluation == SHOWN for each in faces) or len(faces)

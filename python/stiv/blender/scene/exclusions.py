@@ -62,9 +62,8 @@ def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exc
         return excluded, ""
     pairs = frozenset(pair for pair in excluded.pairs if not {name for name, _ in pair} & stale)
     shapes = {name: shape for name, shape in excluded.shapes.items() if name not in stale}
-    names = ", ".join(f'"{name}"' for name in sorted(stale))
-    count = len(excluded.pairs) - len(pairs)
-    return Exclusions(pairs, shapes), f"dropped {count} excluded pairs: the faces of {names} have changed"
+    names = ", ".join(sorted(stale))
+    return Exclusions(pairs, shapes), f"{names}: the faces have changed, so their exclusions are dropped"
 
 
 def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> Indices:

@@ -37,11 +37,11 @@ class ObjectReference:
         for other in bpy.data.objects:
             if other.session_uid == self.session_uid:
                 return other
-        raise SceneChangedError(f'object "{self.name}" is gone')
+        raise SceneChangedError(f"{self.name} is gone")
 
     def find_in_mode(self, mode: str) -> bpy.types.Object:
         """The object, if it is still in this mode ("OBJECT", "EDIT"). Raises SceneChangedError."""
         ob = self.find()
         if ob.mode != mode:
-            raise SceneChangedError(f'object "{self.name}" has left {mode.title()} Mode')
+            raise SceneChangedError(f"{self.name} has left {mode.title()} Mode")
         return ob

@@ -28,11 +28,11 @@ def select(step: EditStep) -> None:
 def _select_points(obj: bpy.types.Object, step: EditStep) -> None:
     count = {"MESH": lambda: len(obj.data.vertices), "LATTICE": lambda: len(obj.data.points)}.get(obj.type)
     if count is None:
-        raise InputError(f'object "{obj.name}" is neither a mesh nor a lattice and has no points to select')
+        raise InputError(f"{obj.name}: has no points to select; choose a mesh or a lattice")
     chosen = np.zeros(count(), bool)
     indices = np.arange(len(chosen)) if step.points is None else np.array(step.points, np.int64)
     if len(indices) and indices.max() >= len(chosen):
-        raise InputError(f'object "{obj.name}" has {len(chosen)} points; there is no point {indices.max()}')
+        raise InputError(f"{obj.name}: has {len(chosen)} points; there is no point {indices.max()}")
     chosen[indices] = True
     bpy.ops.object.mode_set(mode="EDIT")
     if obj.type == "LATTICE":

@@ -174,7 +174,7 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
         whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
         difference = float(np.abs(meshes[number] - whole).max(initial=0.0))
         if not difference <= evaluation_tolerance(accepted[control_set]):
-            return f'object "{mesh.owner.name}": Blender shows it {difference:.3g} away from the solved position'
+            return f"{mesh.owner.name}: Blender shows it {difference:.3g} away from the solved position"
     return ""
 
 
