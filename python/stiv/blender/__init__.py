@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edits, tests and repairs scenes in Blender; the only part of STIV that imports `bpy`."""
 
+from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.edit.blender_edit import BlenderEdit
@@ -64,6 +65,7 @@ __all__ = [
     "FacePair",
     "FitInto",
     "FitSettings",
+    "FreeDirections",
     "Ghost",
     "GhostSource",
     "Guard",

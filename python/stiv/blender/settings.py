@@ -140,6 +140,7 @@ class EditSettings(SharedOptions):
         object_response: how objects respond in Object Mode: "slide" (default; Move never rotates an object),
             "slide_and_turn", or "deform" (selected objects by the vertices of their cage or the points of a lattice,
             all others slide). "rigid", of version 0.1.0, is "slide_and_turn".
+        slide_out_of_axis: contact may move the selection along locked axes (`Motion.free`) too.
         deformations: how an object deforms on contact, by name: "auto" (see `object_response`), "vertices" (of its
             cage, or points of a lattice), "laplacian" or "arap" (handles of a mesh), "lattice" (points of the lattice
             that deforms it), or "rigid". Edit Mode uses only "laplacian" and "arap".
@@ -158,6 +159,7 @@ class EditSettings(SharedOptions):
     interference: bool = True
     responders: str = "selected"
     object_response: str = "slide"
+    slide_out_of_axis: bool = False
     deformations: Mapping[str, str] = field(default_factory=dict)
     handles: Mapping[str, Handles] = field(default_factory=dict)
     weights: Mapping[str, WeightGroup] = field(default_factory=dict)

@@ -10,7 +10,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.control_weights import ControlWeights, axes_of_weights, control_weights, response_weights
+from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.controls.points import PointGoal, to_stored
@@ -39,7 +39,7 @@ def make_cage_set(
     frame, local = open_cage(ob)
     found = control_weights(ob, settings)
     max_weights = found.max_weights
-    writer = cage_writer(participant.reference, ob, frame, local, settings, found)
+    writer = cage_writer(participant.reference, ob, frame, local, settings)
     deformation = subdivision_in(ob, scene, writer, evaluations) or stiv.identity(len(local))
     selected = selected_vertices(ob, participant.selected) & found.movable
     controls = transform_points(frame, local)
@@ -101,21 +101,17 @@ def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:
 
 @dataclass(frozen=True)
 class CageWriter:
-    """Writes cage vertices.
-
-    `original` are the local positions at the start, (m, 3); `pinned` flags the pinned coordinates, (m, 3).
-    """
+    """Writes cage vertices. `original` are the local positions at the start, (m, 3)."""
 
     reference: ObjectReference
     mode: str
     frame: Floats
     original: Singles
     refined: RefinedWriter | None = None
-    pinned: Flags | None = None
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3), to the cage and to the object that shows it."""
-        local = to_stored(self.frame, controls, self.original, self.pinned)
+        local = to_stored(self.frame, controls, self.original)
         _write_local(self.reference.find_in_mode(self.mode), local)
         if self.refined is not None:
             self.refined.write(transform_points(self.frame, local))
@@ -133,10 +129,9 @@ def cage_writer(
     frame: Floats,
     local: Singles,
     settings: EditSettings,
-    weights: ControlWeights,
 ) -> CageWriter:
     """Writer of a cage at local positions, (m, 3), in its present mode. Raises InputError."""
-    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings), weights.pinned_coordinates)
+    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings))
 
 
 def _write_local(ob: bpy.types.Object, local: Singles) -> None:

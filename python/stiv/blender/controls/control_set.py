@@ -4,11 +4,10 @@
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.controls.motion import Motion
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.references import ObjectReference
 from stiv.seams import Seams
@@ -46,8 +45,14 @@ class GoalRule(Protocol):
         `controls` are those at the start. `last` is the previous goal, which allows rotations beyond half a turn.
         """
 
-    def affected(self, influence: Influence | None) -> NDArray[np.bool_]:
-        """Flags of the controls, (m,), that a motion with this influence moves."""
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """What `limited` depends on, for comparison; () if the motion limits nothing."""
+
+    def limited(self, control_set: "ControlSet", motion: Motion, weight: float) -> "ControlSet":
+        """The control set as it was made, with the response that a motion allows.
+
+        weight: response weight of what the motion moves.
+        """
 
     def turned(self, controls: Floats, goal: Floats) -> float:
         """Angle in radians by which moving controls, (m, 3), rotate though their goal does not; 0 for points."""

@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 
 from stiv.blender.controls.control_set import Participant
-from stiv.blender.controls.points import FreeDirections, PinnedDirections, point_weights
+from stiv.blender.controls.directions import FreeDirections
+from stiv.blender.controls.points import PinnedDirections, point_weights
 from stiv.blender.scene.arrays import Flags, Floats, as_matrix
 from stiv.blender.scene.vertex_groups import group_weights
 from stiv.blender.settings import EditSettings
@@ -21,12 +22,10 @@ class ControlWeights:
         max_weights: (m,) for all axes, or (m, 3) along `directions`; 0 pins.
         directions: directions to which the vertex group does not apply are free, with weight 1; None if it applies to
             all.
-        local_axes: (3,) flags of the local coordinates to which it applies.
     """
 
     max_weights: Floats
     directions: FreeDirections | None
-    local_axes: Flags
 
     @property
     def movable(self) -> Flags:
@@ -38,12 +37,6 @@ class ControlWeights:
         """The controls that move only in the free directions; None if the weights have no directions."""
         return pinned_directions(self.max_weights, self.directions)
 
-    @property
-    def pinned_coordinates(self) -> Flags | None:
-        """Flags of the local coordinates, (m, 3), that pins keep; None if the weights have no directions."""
-        pinned = self.pinned
-        return None if pinned is None else np.asarray(pinned.points[:, None] & self.local_axes)
-
 
 def control_weights(ob: bpy.types.Object, settings: EditSettings) -> ControlWeights:
     """Read the weights of an object's controls; 1 without a vertex group.
@@ -53,14 +46,14 @@ def control_weights(ob: bpy.types.Object, settings: EditSettings) -> ControlWeig
     chosen = settings.weights.get(ob.name)
     if chosen is None:
         count = len(ob.data.vertices if ob.type == "MESH" else ob.data.points)
-        return ControlWeights(np.ones(count), None, np.ones(3, np.bool_))
+        return ControlWeights(np.ones(count), None)
     weights = group_weights(ob, chosen.name, "weights")
     max_weights = np.asarray(1.0 - weights if chosen.inverted else weights, np.float64)
     axes = np.array(chosen.axes, np.bool_)
     if axes.all():
-        return ControlWeights(max_weights, None, axes)
+        return ControlWeights(max_weights, None)
     directions = free_directions_of(as_matrix(ob.matrix_world)[:3, :3], axes)
-    return ControlWeights(np.where(directions.free, 1.0, max_weights[:, None]), directions, axes)
+    return ControlWeights(np.where(directions.free, 1.0, max_weights[:, None]), directions)
 
 
 def response_weights(participant: Participant, moving: Flags, max_weights: Floats, settings: EditSettings) -> Floats:

@@ -52,7 +52,7 @@ def make_handle_sets(
     pull = chosen.pull * found.strength if chosen.pull > 0 else None
     mesh = make(rest, join_rows(triangles, control_seams), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
-    writer = cage_writer(participant.reference, ob, frame, local, settings, limits)
+    writer = cage_writer(participant.reference, ob, frame, local, settings)
     subdivision = subdivision_in(ob, scene, writer, evaluations)
     shown = cage if control_seams is None else copy_to_seams(cage, control_seams)
     max_weights, controls = found.max_weights, rest[found.vertices]

@@ -35,7 +35,7 @@ def make_lattice_set(
     return ControlSet(
         (ob.name,), "lattice", surfaces, deformation, controls, weights, max_weights, frame,
         PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], found.movable, found.pinned),
-        LatticeWriter(participant.reference, ob.mode, frame, local, found.pinned_coordinates),
+        LatticeWriter(participant.reference, ob.mode, frame, local),
         weight_axes=axes_of_weights(max_weights, found.directions),
     )  # fmt: skip
 
@@ -58,20 +58,16 @@ def _selected(ob: bpy.types.Object, participant: Participant) -> Flags:
 
 @dataclass(frozen=True)
 class LatticeWriter:
-    """Writes lattice points; in Edit Mode Blender updates the edited lattice from them.
-
-    `pinned` flags the pinned local coordinates, (m, 3).
-    """
+    """Writes lattice points; in Edit Mode Blender updates the edited lattice from them."""
 
     reference: ObjectReference
     mode: str
     frame: Floats
     original: Singles
-    pinned: Flags | None = None
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3)."""
-        local = to_stored(self.frame, controls, self.original, self.pinned)
+        local = to_stored(self.frame, controls, self.original)
         _write_local(self.reference.find_in_mode(self.mode), local)
 
     def restore(self) -> None:

@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv import InputError
-from stiv.blender.controls.rotations import is_rotation, rotation_vector
+from stiv.blender.controls.directions import FreeDirections
+from stiv.blender.controls.rotations import fixed_point, is_rotation, rotation_vector
 from stiv.blender.scene.arrays import Floats, transform_points
 
+ROUNDING = 1e-9  # relative error of the matrix of a motion
+AXIS_DECIMALS = 9  # of an axis that is computed from a matrix, so that rounding does not change it
 FALLOFFS = ("SMOOTH", "SPHERE", "ROOT", "INVERSE_SQUARE", "SHARP", "LINEAR", "CONSTANT", "RANDOM")
 
 
@@ -57,6 +60,7 @@ class Motion:
         individual: each object, island of vertices or lattice uses its own origin as pivot.
         influence: proportional editing; None for none.
         rotation: (3,) rotation vector of the matrix if it exceeds half a turn; otherwise None.
+        free: directions in which an axis lock lets points and objects move; None without one.
     """
 
     matrix: Floats
@@ -64,6 +68,7 @@ class Motion:
     individual: bool = False
     influence: Influence | None = None
     rotation: Floats | None = None
+    free: FreeDirections | None = None
 
     @staticmethod
     def of(max_weights: "Motion | ArrayLike") -> "Motion":
@@ -74,7 +79,29 @@ class Motion:
         matrix = np.asarray(motion.matrix, np.float64)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not np.isfinite(motion.pivot).all():
             raise InputError("transform: must be a matrix of 4 x 4 finite numbers")
-        return replace(motion, matrix=matrix)
+        pivot = motion.pivot if isinstance(max_weights, Motion) else fixed_point(matrix)
+        return replace(motion, matrix=matrix, pivot=pivot)
+
+    @property
+    def axis(self) -> Floats | None:
+        """Unit axis, (3,), of a rotation about the pivot, in either sense; None for any other motion."""
+        size = np.abs(self.pivot).max() + np.abs(self.matrix[:3, 3]).max()
+        if not is_rotation(self.linear) or np.abs(self.shift).max() > ROUNDING * size:
+            return None
+        vector = rotation_vector(self.linear) if self.rotation is None else self.rotation
+        length = float(np.linalg.norm(vector))
+        if length == 0:
+            return None
+        unit = np.round(vector / length, AXIS_DECIMALS)
+        unit *= np.sign(unit[np.flatnonzero(unit)[0]]) / np.linalg.norm(unit)
+        axis: Floats = unit + 0.0  # no -0
+        return axis
+
+    @property
+    def is_uniform(self) -> bool:
+        """Does the linear part scale alike in all directions?"""
+        factor = self.linear[0, 0]
+        return bool(np.abs(self.linear - factor * np.eye(3)).max() <= ROUNDING * abs(factor))
 
     @property
     def linear(self) -> Floats:

@@ -1,34 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Controls that are points: vertices of a cage, points of a lattice."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.controls.response import Response
 from stiv.blender.controls.selection_distances import distances_along, island_centres, nearest_distances
 from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, transform_points
-
-
-@dataclass(frozen=True)
-class FreeDirections:
-    """Orthonormal directions in world space, with flags of those that locks or pins leave free.
-
-    Attributes:
-        axes: (3, 3), a direction in each column.
-        free: (3,) flags.
-    """
-
-    axes: Floats
-    free: Flags
-
-    def along(self, displacement: Floats) -> Floats:
-        """Component of world displacements, (..., 3), along the free directions."""
-        basis = self.axes[:, self.free]
-        allowed: Floats = displacement @ basis @ basis.T
-        return allowed
-
 
 ROUNDING = 1e-11  # relative error of the conversions between local and world space during an edit
 
@@ -39,6 +22,10 @@ class PinnedDirections:
 
     points: Flags
     directions: FreeDirections
+
+    def within(self, free: FreeDirections | None) -> "PinnedDirections":
+        """The same points, pinned to the free directions too."""
+        return replace(self, directions=self.directions.within(free))
 
     def limited(self, start: Floats, goal: Floats) -> Floats:
         """Restrict a goal, (m, 3), to the displacements that the pins allow."""
@@ -72,7 +59,9 @@ class PointGoal:
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the points, (m, 3)."""
         goal = self._unrestricted(controls, motion)
-        return goal if self.pinned is None else self.pinned.limited(controls, goal)
+        if motion.free is not None:
+            goal = controls + motion.free.along(goal - controls)
+        return goal if self.pinned is None else self.pinned.within(motion.free).limited(controls, goal)
 
     def _unrestricted(self, controls: Floats, motion: Motion) -> Floats:
         goal = controls.copy()
@@ -88,6 +77,20 @@ class PointGoal:
     def affected(self, influence: Influence | None) -> Flags:
         """Flags of the points that the transform moves, (m,)."""
         return self.selected if influence is None else self.shares(influence) > 0
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """Proportional editing and an axis lock decide which points respond, and in which directions."""
+        if motion.influence is None and motion.free is None:
+            return ()
+        return motion.influence, None if motion.free is None else motion.free.key
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """Points that the motion moves respond with this weight, along the axes of its lock."""
+        moving = self.affected(motion.influence)
+        response = Response(weight * control_set.max_weights, control_set.weight_axes)
+        if motion.free is not None:
+            response = response.along(motion.free)
+        return Response(control_set.weights, control_set.weight_axes).replaced(moving, response).given_to(control_set)
 
     def turned(self, controls: Floats, goal: Floats) -> float:
         """0: points have no rotation."""
@@ -123,18 +126,15 @@ def point_weights(selected: Flags, of_selected: float, of_others: float, max_wei
     return np.asarray(chosen.reshape(-1, *(1 for _ in max_weights.shape[1:])) * max_weights, np.float64)
 
 
-def to_stored(frame: Floats, world: Floats, original: Singles, pinned: Flags | None = None) -> Singles:
+def to_stored(frame: Floats, world: Floats, original: Singles) -> Singles:
     """Convert world positions to stored local coordinates, (m, 3), in single precision.
 
-    Points at their start, given by `original`, (m, 3), keep their coordinates exactly, because conversion loses digits
-    of small coordinates. So do the coordinates flagged in `pinned`, (m, 3), if they differ only by rounding.
+    Coordinates that differ from those at the start, given by `original`, (m, 3), only by rounding keep them exactly:
+    conversion loses digits of small coordinates, and locked ones may not change at all.
     """
     local = to_single(frame, world)
-    resting = (world == transform_points(frame, original)).all(axis=1)
+    resting = _is_rounding(frame, world, original)
     local[resting] = original[resting]
-    if pinned is not None:
-        restored = pinned & _is_rounding(frame, world, original)
-        local[restored] = original[restored]
     return local
 
 

@@ -74,6 +74,20 @@ def is_rotation(matrix: Floats, tolerance: float = 1e-5) -> bool:
     return bool(np.abs(matrix @ matrix.T - np.eye(3)).max() <= tolerance and np.linalg.det(matrix) > 0)
 
 
+def fixed_point(matrix: Floats) -> Floats:
+    """The point nearest to the origin, (3,), that an affine map, (4, 4), keeps; the origin if it keeps none.
+
+    Rounded to ten digits, so that all rotations about one axis give the same point.
+    """
+    moves = np.eye(3) - matrix[:3, :3]
+    point: Floats = np.linalg.pinv(moves, rcond=1e-9) @ matrix[:3, 3]
+    residual = np.abs(moves @ point - matrix[:3, 3]).max()
+    largest = float(np.abs(point).max())
+    if largest == 0 or residual > 1e-9 * np.abs(matrix[:3, 3]).max():
+        return np.zeros(3)
+    return np.round(point, 10 - int(np.ceil(np.log10(largest)))) + 0.0  # no -0
+
+
 def affine_about(centre: Floats, linear: Floats, target: Floats) -> Floats:
     """The affine map, (4, 4), with a given linear part, that maps `centre` to `target`."""
     matrix = np.eye(4)

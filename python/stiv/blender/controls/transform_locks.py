@@ -12,8 +12,8 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
+from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.object_transform import ObjectTransform
-from stiv.blender.controls.points import FreeDirections
 
 AXES = "XYZ"
 
@@ -80,10 +80,7 @@ def find_free_directions(
     normals = np.concatenate(rows)
     if len(normals) == 0:
         return None
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    _, sizes, directions = np.linalg.svd(normals)
-    locked = int((sizes > 1e-6).sum())
-    return FreeDirections(directions.T.astype(np.float64), np.arange(3) >= locked)
+    return FreeDirections.of_normals(normals)
 
 
 def restore_locked(ob: bpy.types.Object, start: ObjectTransform) -> None:

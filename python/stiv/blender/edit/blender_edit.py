@@ -10,11 +10,11 @@ from typing import Any
 
 import bpy
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.increments import Path, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
@@ -45,15 +45,14 @@ class BlenderEdit:
         settings = snapshot.settings
         self.dropped_exclusions, self.start_digest = snapshot.dropped_exclusions, snapshot.digest
         self.guard, self.carried = snapshot.guard, snapshot.carried
-        self._hidden, self._control_sets = snapshot.hidden, snapshot.control_sets
-        self._selected_weight = settings.response_weight(True)
-        self._influence: Influence | None = None
-        self._start = stack_controls([each.controls for each in self._control_sets])
+        self._hidden, self._made, self._settings = snapshot.hidden, snapshot.control_sets, settings
+        self._limits: list[tuple[object, ...]] = [()] * len(self._made)
+        self._start = stack_controls([each.controls for each in self._made])
         self._goal = self._start
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
-        self._solver = EditSolver(snapshot.assembly, self._control_sets, self._start, settings)
-        self._writer = StateWriter(self._control_sets, self._solver, settings)
+        self._solver = EditSolver(snapshot.assembly, self._made, self._start, settings)
+        self._writer = StateWriter(self._made, self._solver, settings)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -83,7 +82,7 @@ class BlenderEdit:
     @property
     def summary(self) -> Summary:
         """The participants and their warnings. Examines every triangle, so a drag does not call it."""
-        summary = summarise(self.assembly, self._control_sets, self._hidden, self.guard)
+        summary = summarise(self.assembly, self.control_sets, self._hidden, self.guard)
         return replace(summary, warnings=(*self.start_notes, *summary.warnings))
 
     @property
@@ -95,7 +94,7 @@ class BlenderEdit:
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:
         """The moving and yielding control sets, in the order of the controls."""
-        return self._control_sets
+        return self._solver.control_sets
 
     @property
     def controls(self) -> Floats:
@@ -105,7 +104,7 @@ class BlenderEdit:
     @property
     def turned(self) -> float:
         """Largest angle, in radians, by which contact has turned a moving object whose goal has no rotation."""
-        sets = self._control_sets
+        sets = self.control_sets
         rows = zip(sets, split_controls(self.controls, sets), split_controls(self._goal, sets), strict=True)
         return max((each.rule.turned(present, goal) for each, present, goal in rows), default=0.0)
 
@@ -135,8 +134,10 @@ class BlenderEdit:
         return self._goal
 
     def goal_of(self, motion: Motion | ArrayLike) -> Floats:
-        """Goal, (m, 3), for a motion. Raises InputError as `drag` does."""
-        return self._goal_of(Motion.of(motion))
+        """Goal, (m, 3), for a motion, which decides how the controls respond. Raises InputError as `drag` does."""
+        chosen_motion = self._motion_of(motion)
+        self._limit(chosen_motion)
+        return self._goal_of(chosen_motion)
 
     def moving_points(self, controls: Floats) -> Floats:
         """The points of the surface, (n, 3), that follow the controls, (m, 3)."""
@@ -144,7 +145,7 @@ class BlenderEdit:
 
     @cached_property
     def _moving_vertices(self) -> Indices:
-        return find_moving_vertices(self.assembly, self._control_sets)
+        return find_moving_vertices(self.assembly, self.control_sets)
 
     @property
     def moving(self) -> frozenset[str]:
@@ -152,19 +153,21 @@ class BlenderEdit:
         meshes = self.assembly.meshes
         return frozenset(
             meshes[index].owner.name
-            for control_set in self._control_sets
+            for control_set in self.control_sets
             if control_set.rule.moves
             for index in control_set.surfaces
         )
 
-    def resume_from(self, controls: ArrayLike) -> bool:
-        """Resume from controls, (m, 3), that an edit with the same start accepted.
+    def resume_from(self, controls: ArrayLike, motion: Motion | ArrayLike | None = None) -> bool:
+        """Resume from controls, (m, 3), that an edit with the same start accepted for a motion.
 
         Returns False, with nothing changed, if they intersect in this edit.
         """
         accepted = np.asarray(controls, np.float64)
         if accepted.shape != self._start.shape:
             return False
+        if motion is not None:
+            self._limit(self._motion_of(motion))
         if self._unguarded is not None:
             self._unguarded = accepted
             return True
@@ -214,11 +217,11 @@ class BlenderEdit:
 
         `cancel` and `progress` are those of stiv.EditSession. Raises InputError if the matrix is not finite.
         """
-        chosen_motion = Motion.of(motion)
-        self._apply_influence(chosen_motion.influence)
+        chosen_motion = self._motion_of(motion)
+        self._limit(chosen_motion)
         self._goal = self._goal_of(chosen_motion)
         if self._unguarded is not None:
-            self._unguarded = round_to_storage(self._control_sets, split_controls(self._goal, self._control_sets))
+            self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
         return self._solver.solve(self._goal, **execution)
 
@@ -233,7 +236,7 @@ class BlenderEdit:
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
         results = []
-        for increment in split_motion(Motion.of(motion), path, self.assembly.positions[self._moving_vertices]):
+        for increment in split_motion(self._motion_of(motion), path, self.assembly.positions[self._moving_vertices]):
             results.append(self.drag(increment, **execution))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
@@ -264,7 +267,7 @@ class BlenderEdit:
 
         Collisions are off again if the edit began with them off.
         """
-        restore_controls(self._control_sets)
+        restore_controls(self.control_sets)
         self._goal = self._start
         if self._unguarded is not None or not self._began_free:
             self._unguarded = self._start
@@ -273,31 +276,24 @@ class BlenderEdit:
         else:
             self._solver.discard_session()
 
-    def _apply_influence(self, influence: Influence | None) -> None:
-        """Give points within the influence the response weight of selected points."""
-        if influence != self._influence:
-            self._influence = influence
-            self._solver.set_weights(
-                [
-                    _merge_weights(
-                        control_set.rule.affected(influence),
-                        self._selected_weight * control_set.max_weights,
-                        control_set.weights,
-                    )
-                    for control_set in self._control_sets
-                ]
-            )
+    def _motion_of(self, motion: Motion | ArrayLike) -> Motion:
+        """The motion, without its axis lock if the user lets contact leave it."""
+        chosen = Motion.of(motion)
+        return replace(chosen, free=None) if self._settings.slide_out_of_axis else chosen
+
+    def _limit(self, motion: Motion) -> None:
+        """Let the controls respond as the motion allows: its axis lock, pivot and proportional editing."""
+        limits = [each.rule.limits(motion) for each in self._made]
+        if limits != self._limits:
+            self._limits = limits
+            weight = self._settings.response_weight(True)
+            self._solver.change_response([each.rule.limited(each, motion, weight) for each in self._made])
 
     def _goal_of(self, motion: Motion) -> Floats:
-        last = split_controls(self._goal, self._control_sets)
+        last = split_controls(self._goal, self.control_sets)
         return stack_controls(
             [
                 control_set.rule.goal(control_set.controls, old, motion)
-                for control_set, old in zip(self._control_sets, last, strict=True)
+                for control_set, old in zip(self.control_sets, last, strict=True)
             ]
         )
-
-
-def _merge_weights(affected: NDArray[np.bool_], weights: Floats, others: Floats) -> Floats:
-    """`weights` for affected controls, (m,), and `others` for the rest; (m,) or (m, 3)."""
-    return np.asarray(np.where(affected.reshape(-1, *(1 for _ in weights.shape[1:])), weights, others), np.float64)

@@ -49,6 +49,7 @@ class CulledEdit:
         participants = find_participants(context, settings)
         self._edit = BlenderEdit.begin_with(context, settings, kind, participants, culling=culling)
         self._written = self._edit.controls
+        self._motion: Motion | ArrayLike | None = None
         self._widened = 0
 
     def __getattr__(self, name: str) -> Any:
@@ -62,7 +63,7 @@ class CulledEdit:
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
         """See BlenderEdit."""
-        goal = self._edit.goal_of(motion)
+        self._motion, goal = motion, self._edit.goal_of(motion)
         if self._edit.interference and not self._is_within_box([goal]):
             self._widen([goal])
         result = self._edit.drag(motion, **execution)
@@ -126,7 +127,7 @@ class CulledEdit:
         participants = find_participants(bpy.context, self._settings)
         self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, participants, culling=culling)
         self._culling = culling
-        if self._edit.resume_from(shown):
+        if self._edit.resume_from(shown, self._motion):
             self._edit.write()
         self._written = self._edit.controls
 

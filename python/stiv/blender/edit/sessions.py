@@ -39,20 +39,18 @@ def make_session(
     deformation: stiv.Deformation,
     control_sets: Sequence[ControlSet],
     controls: ArrayLike,
-    weights: Sequence[Floats],
     settings: EditSettings,
 ) -> stiv.EditSession:
     """Make a session of all control sets, from their stacked controls, (m, 3).
 
-    deformation: of `deformation_of`. weights: response weights of each control set, (m,) or (m, 3). Raises InputError,
-    StartIntersectsError.
+    deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
     """
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         **settings.shared(),
         pair_separations=body_separations(assembly, settings),
-        weights=weights_of_all(weights),
+        weights=weights_of_all([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
         single_precision=bool(frames),

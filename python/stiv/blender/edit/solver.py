@@ -7,7 +7,7 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.edit.sessions import deformation_of, make_session
+from stiv.blender.edit.sessions import axes_of_all, deformation_of, make_session, stack_controls, weights_of_all
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -17,7 +17,7 @@ from stiv.blender.settings import EditSettings
 
 
 class EditSolver:
-    """Attributes: `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
+    """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
 
     excluded: the excluded pairs of the settings, and those of objects that intersected themselves at the start.
     """
@@ -29,10 +29,9 @@ class EditSolver:
 
         Raises InputError, StartIntersectsError.
         """
-        self._control_sets = control_sets
+        self.control_sets = tuple(control_sets)
         self._settings = settings
         self.excluded = settings.excluded
-        self._weights = [each.weights for each in control_sets]
         self._session: stiv.EditSession | None = None
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)
@@ -62,14 +61,22 @@ class EditSolver:
         """Close the session: no state is known to be free of intersections."""
         self._session = None
 
-    def set_weights(self, weights: Sequence[Floats]) -> None:
-        """Continue from the accepted state with other response weights, (m,) for each control set."""
-        self._weights = list(weights)
-        if self._session is None:
+    def change_response(self, control_sets: Sequence[ControlSet]) -> None:
+        """Continue with the same controls and another response; from their start if they deform in another way."""
+        pairs = zip(self.control_sets, control_sets, strict=True)
+        deforms_alike = all(before.deformation is after.deformation for before, after in pairs)
+        self.control_sets = tuple(control_sets)
+        if deforms_alike:
+            if self._session is not None:
+                weights = weights_of_all([each.weights for each in control_sets])
+                self._session.set_weights(weights, axes_of_all(control_sets))
             return
-        accepted, goal = self.session.controls, self.trail.goal_at(self.trail.states()[-1])
-        self._open_session(self.assembly, accepted)
-        self.session.restore(accepted, goal)
+        start = stack_controls([each.controls for each in control_sets])
+        self.trail = Trail(start, start)
+        if self._session is None:
+            self.deformation = deformation_of(self.assembly, control_sets)
+        else:
+            self._open_session(self._at_start, start)
 
     def restart_from(self, controls: Floats, goal: Floats) -> None:
         """Start a new trail at accepted controls, which may be older than the present extra triangles.
@@ -113,7 +120,7 @@ class EditSolver:
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> None:
         """Open a session. Objects may intersect themselves at its first start."""
-        deformation = deformation_of(assembly, self._control_sets)
+        deformation = deformation_of(assembly, self.control_sets)
         try:
             session = self._make_session(assembly, deformation, controls)
         except stiv.StartIntersectsError as error:
@@ -125,4 +132,4 @@ class EditSolver:
 
     def _make_session(self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats) -> stiv.EditSession:
         settings = replace(self._settings, excluded=self.excluded)
-        return make_session(assembly, deformation, self._control_sets, controls, self._weights, settings)
+        return make_session(assembly, deformation, self.control_sets, controls, settings)

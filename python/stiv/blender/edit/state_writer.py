@@ -44,7 +44,6 @@ class StateWriter:
 
     def __init__(self, control_sets: Sequence[ControlSet], solver: EditSolver, settings: EditSettings) -> None:
         """Take the control sets of an edit in their present state, and its solver."""
-        self._control_sets = control_sets
         self._start = stack_controls([each.controls for each in control_sets])
         self._solver = solver
         self._settings = settings
@@ -83,7 +82,7 @@ class StateWriter:
 
     def write(self, controls: Floats) -> None:
         """Write controls, (m, 3), and update Blender's evaluation; nothing is tested."""
-        write_controls(self._control_sets, controls, self._start)
+        write_controls(self._solver.control_sets, controls, self._start)
 
     def _new_verifier(self) -> Verifier:
         def is_step_free(start: Floats, end: Floats) -> bool:

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the placement of a rigid group follows a motion, and how it may respond: by rows of its controls, (2, 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+import stiv
+from stiv import InputError
+from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.directions import ALL_FREE, NONE_FREE, FreeDirections
+from stiv.blender.controls.motion import Motion
+from stiv.blender.controls.placement_writer import PlacementWriter
+from stiv.blender.controls.response import Response
+from stiv.blender.controls.rotations import nearest_equivalent, nearest_rotation, rotation_vector
+from stiv.blender.scene.arrays import Floats
+
+SLANT = 1e-6  # cosine below which a scaled axis is perpendicular to one of the object's own
+UNIFORM = FreeDirections(  # of three equal factors
+    np.array([[1, 1, 1], [1, -1, 0], [1, 1, -2]]).T / np.sqrt([3, 2, 6]), np.array([True, False, False])
+)
+
+
+@dataclass(frozen=True)
+class PlacementGoal:
+    """Centre and rotation vector of a group that a motion moves.
+
+    Attributes:
+        selected: whether the motion moves the group.
+        turns: whether the group may rotate.
+        origin: (3,) that of the first root, the pivot for individual origins.
+        free: directions that location locks leave free, None for all.
+    """
+
+    selected: bool
+    turns: bool
+    origin: Floats
+    free: FreeDirections | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Is the group selected?"""
+        return self.selected
+
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of centre and second row, (2, 3)."""
+        if not self.selected:
+            return controls
+        centre = motion.about(controls[0], self.origin) if motion.individual else motion.whole(controls[:1])[0]
+        for free in (self.free, motion.free):
+            centre = centre if free is None else controls[0] + free.along(centre - controls[0])
+        return np.array([centre, self.second_goal(controls, last, motion)])
+
+    def second_goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of the rotation vector, (3,)."""
+        if not self.turns:
+            return np.zeros(3)
+        return nearest_equivalent(rotation_vector(nearest_rotation(motion.linear)), last[1])
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """The axis lock."""
+        return () if motion.free is None or not self.selected else motion.free.key
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """The centre responds along the axes of a lock, and the group does not turn then."""
+        if not self.limits(motion):
+            return control_set
+        assert motion.free is not None
+        place = motion.free.within(self.free)
+        return respond(control_set, place, NONE_FREE, weight)
+
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """Angle in radians by which a selected group rotates though its goal does not."""
+        return float(np.linalg.norm(controls[1])) if self.selected and not goal[1].any() else 0.0
+
+
+class PivotDeformation:
+    """Rotation of a group about the pivot of a drag; kept while the pivot stays. `rest`, (n, 3), is its surface."""
+
+    def __init__(self, rest: Floats) -> None:
+        self._rest = rest
+        self._made: tuple[bytes, stiv.Deformation] | None = None
+
+    def about(self, pivot: Floats) -> stiv.Deformation:
+        """The deformation for a pivot, (3,); the same object for the same pivot."""
+        if self._made is None or self._made[0] != pivot.tobytes():
+            self._made = pivot.tobytes(), stiv.rigid(self._rest, pivot)
+        return self._made[1]
+
+
+@dataclass(frozen=True)
+class RotationGoal(PlacementGoal):
+    """Rotates about the pivot of the motion, and responds by nothing else.
+
+    Attributes:
+        about: makes the deformation for a pivot.
+        free_axis: whether contact may change the axis if the user did not choose it.
+        pivoting: whether the deformation is that about the pivot.
+        axis: (3,) that the goal keeps; None for any.
+    """
+
+    about: PivotDeformation = field(kw_only=True)
+    free_axis: bool = False
+    pivoting: bool = False
+    axis: Floats | None = None
+
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of centre and rotation vector, (2, 3); the centre is that at the start, since the pivot is fixed."""
+        if not self.pivoting:
+            return super().goal(controls, last, motion)
+        turn = self.second_goal(controls, last, motion)
+        return np.array([controls[0], turn if self.axis is None else self.axis * (turn @ self.axis)])
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """Axis and pivot of the rotation, and whether the axis was chosen."""
+        if not self.selected or not self.turns or motion.axis is None:
+            return ()
+        return motion.axis.tobytes(), self._pivot(motion).tobytes(), motion.free is not None
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """The angle responds; the axis too if objects may turn on contact and none was chosen."""
+        axis, pivot = motion.axis, self._pivot(motion)
+        if not self.limits(motion) or axis is None:
+            return control_set
+        turning = ALL_FREE if self.free_axis and motion.free is None else FreeDirections.line(axis)
+        assert isinstance(control_set.writer, PlacementWriter)
+        return replace(
+            respond(control_set, NONE_FREE, turning, weight),
+            deformation=self.about.about(pivot),
+            rule=replace(self, axis=None if turning is ALL_FREE else axis, pivoting=True),
+            writer=replace(control_set.writer, pivot=pivot),
+        )
+
+    def _pivot(self, motion: Motion) -> Floats:
+        return self.origin if motion.individual else motion.pivot
+
+
+@dataclass(frozen=True)
+class ScaleGoal(PlacementGoal):
+    """Centre and scale factors along `axes`, (3, 3)."""
+
+    axes: Floats = field(kw_only=True)
+
+    def second_goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of the factors, (3,). Raises InputError for factors of 0."""
+        factors: Floats = np.einsum("ki,kl,li->i", self.axes, motion.linear, self.axes)
+        if not factors.all():
+            raise InputError("a scale of 0 would flatten objects; choose another factor")
+        return np.full(3, factors.mean()) if motion.is_uniform else factors
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """The chosen axes, or whether the scale is uniform."""
+        return () if not self.selected else (motion.is_uniform, *(() if motion.free is None else motion.free.key))
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """A uniform scale stays uniform; with chosen axes, each of their factors responds."""
+        if not self.selected:
+            return control_set
+        place = ALL_FREE if motion.free is None else motion.free
+        return respond(control_set, place.within(self.free), self._factors(motion), weight)
+
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """0: scaled groups do not turn."""
+        return 0.0
+
+    def _factors(self, motion: Motion) -> FreeDirections:
+        if motion.free is None:
+            return UNIFORM if motion.is_uniform else ALL_FREE
+        chosen = np.abs(self.axes.T @ motion.free.axes[:, motion.free.free]).max(axis=1, initial=0.0)
+        return FreeDirections(np.eye(3), chosen > SLANT)
+
+
+def respond(control_set: ControlSet, first: FreeDirections, second: FreeDirections, weight: float) -> ControlSet:
+    """The control set of a placement whose rows respond in these directions with a weight."""
+    weights = weight * np.array([first.free, second.free], np.float64)
+    axes = np.array([first.axes, second.axes])
+    return Response(weights, None if (axes == np.eye(3)).all() else axes).given_to(control_set)
