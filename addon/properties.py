@@ -139,6 +139,11 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         items=OBJECT_RESPONSES,
         default="slide",
     )
+    slide_out_of_axis: BoolProperty(
+        name="Slide out of Axis",
+        description="Let contact move the selection off the chosen axes",
+        default=False,
+    )
     guard: EnumProperty(
         name="Guard", description="Evaluation that stays free of intersections", items=GUARDS, default="auto"
     )

@@ -19,13 +19,14 @@ from ...native_module import Mixin
 from ...overlay import display
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame
 from ...scene.tool_settings import read_proportional, read_snap, store_proportional, unsupported_settings
-from ...transform import requested_transform
+from ...transform import Transform, requested_transform
 from ...transform.view import Vector
 from ...translations import translate
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
+from .constraint import constraint_of
 from .move import STIV_OT_move
 from .options import changed_options, make_influence
 from .rotate import STIV_OT_rotate
@@ -89,12 +90,16 @@ class DragOperator(Mixin):
         self._drag = DragLoop(
             begin,
             lambda state: requested_transform(state, self._frame, self._readers, self._snap),
-            lambda transform, state: make_motion(transform, self._frame, make_influence(state.proportional)),
+            self._motion,
             state,
         )
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
         running.begin(self)
+
+    def _motion(self, transform: Transform, state: State) -> stiv_blender.Motion:
+        influence, constraint = make_influence(state.proportional), constraint_of(state, self._frame)
+        return make_motion(transform, self._frame, influence, constraint)
 
     def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> Effect:
         if context.mode != self._mode:
@@ -152,7 +157,9 @@ class DragOperator(Mixin):
         """Call the operator of the drag's final kind with its values, which makes the undo step."""
         drag = self._drag
         values = OPERATORS[drag.state.kind].arguments(drag.transform)
-        values |= changed_options(drag.state.request, drag.state.proportional, context.scene)
+        values |= changed_options(
+            drag.state.request, drag.state.proportional, constraint_of(drag.state, self._frame), context.scene
+        )
         edit, result, report = drag.edit, drag.result, drag.report
         if drag.progress is Progress.FINISHED and result is not None and report is not None:
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)

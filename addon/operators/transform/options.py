@@ -4,11 +4,20 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+import numpy as np
+from bpy.props import (
+    BoolProperty,
+    BoolVectorProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+)
 
 from ... import stiv_blender
 from ...modal.proportional import FALLOFFS, Proportional
 from ...modal.request import Request
+from .constraint import Constraint
 
 OF_SCENE = "SCENE"
 RESPONDERS = (
@@ -37,6 +46,14 @@ class TransformOptions:
     """Mixin of the operators."""
 
     kind: str
+    constraint_axis: BoolVectorProperty(
+        name="Constraint Axis",
+        description="Axes along which the selection may move; none for all",
+        size=3,
+        subtype="XYZ",
+        options={"SKIP_SAVE"},
+    )
+    orient_matrix: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
     proportional: BoolProperty(
         name="Proportional Editing", description="Move points near the selection with it, in Edit Mode"
     )
@@ -80,10 +97,14 @@ class TransformOptions:
         response = scene.stiv.object_response if self.response == OF_SCENE else self.response
         return Request(self.kind, responders, on, response)
 
+    def constraint(self) -> Constraint:
+        """The chosen axes."""
+        return Constraint(tuple(self.constraint_axis), np.array(self.orient_matrix).reshape(3, 3))
+
     def option_values(self) -> tuple[object, ...]:
         """The values of all options, for comparison."""
         settings = (self.proportional_size, self.proportional_falloff, self.proportional_connected)
-        chosen = (self.responders, self.interference, self.response)
+        chosen = (self.responders, self.interference, self.response, *self.constraint_axis, *self.orient_matrix)
         return (*chosen, *((self.proportional, *settings) if self.proportional else ()))
 
 
@@ -94,13 +115,17 @@ def make_influence(proportional: Proportional) -> stiv_blender.Influence | None:
     return stiv_blender.Influence(proportional.size, proportional.falloff, proportional.connected)
 
 
-def changed_options(request: Request, proportional: Proportional, scene: bpy.types.Scene) -> dict[str, object]:
+def changed_options(
+    request: Request, proportional: Proportional, constraint: Constraint, scene: bpy.types.Scene
+) -> dict[str, object]:
     """The options at the end of a drag that differ from the defaults."""
     found: dict[str, object] = {}
     if request.interference != scene.stiv.interference:
         found["interference"] = "ON" if request.interference else "OFF"
     if request.responders != scene.stiv.responders:
         found["responders"] = request.responders
+    if constraint.active:
+        found["constraint_axis"], found["orient_matrix"] = constraint.chosen, constraint.axes.ravel().tolist()
     if request.response != scene.stiv.object_response:
         found["response"] = request.response
     if proportional.active:

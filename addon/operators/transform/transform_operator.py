@@ -17,6 +17,7 @@ from ...transform.frame import Frame
 from .. import last_edit, running
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
+from .constraint import Constraint, free_directions
 from .options import TransformOptions
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
@@ -63,7 +64,8 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
             if context.window_manager.stiv_check.left_out:
                 self.report({"INFO"}, context.window_manager.stiv_check.left_out)
             same = dragged if dragged is not None and dragged.values == self._values() else None
-            result, report = _reused(edit, same) or self._applied(edit, transform, frame)
+            motion = self._motion(transform, frame)
+            result, report = _reused(edit, same, motion) or _applied(edit, motion, transform, frame)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
@@ -91,23 +93,26 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
             if name in described and not described[name].is_hidden and self.applies(name, context):
                 self.layout.prop(self, name)
 
-    def _applied(
-        self, edit: stiv_blender.BlenderEdit, transform: Transform, frame: Frame
-    ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
-        motion = make_motion(transform, frame, self.influence())
-        result = edit.apply(motion, path=lambda fraction: transform.fraction(fraction).matrix(frame))
-        report = edit.write()
-        return report.result or result, report
+    def _motion(self, transform: Transform, frame: Frame) -> stiv_blender.Motion:
+        return make_motion(transform, frame, self.influence(), self.constraint())
 
     def _values(self) -> tuple[object, ...]:
         return (*self.own_values(), *self.option_values())
 
 
+def _applied(
+    edit: stiv_blender.BlenderEdit, motion: stiv_blender.Motion, transform: Transform, frame: Frame
+) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
+    result = edit.apply(motion, path=lambda fraction: transform.fraction(fraction).matrix(frame))
+    report = edit.write()
+    return report.result or result, report
+
+
 def _reused(
-    edit: stiv_blender.BlenderEdit, dragged: drag_results.DragResult | None
+    edit: stiv_blender.BlenderEdit, dragged: drag_results.DragResult | None, motion: stiv_blender.Motion
 ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport] | None:
     """The result of a drag, written again; None if it began from another state or is not clear here."""
-    if dragged is None or dragged.start != edit.start_digest or not edit.resume_from(dragged.controls):
+    if dragged is None or dragged.start != edit.start_digest or not edit.resume_from(dragged.controls, motion):
         return None
     report = edit.write()
     if report.passed:
@@ -116,10 +121,13 @@ def _reused(
     return None
 
 
-def make_motion(transform: Transform, frame: Frame, influence: stiv_blender.Influence | None) -> stiv_blender.Motion:
+def make_motion(
+    transform: Transform, frame: Frame, influence: stiv_blender.Influence | None, constraint: Constraint
+) -> stiv_blender.Motion:
     """The motion that an edit takes for a transform in its frame."""
     matrix = transform.matrix(frame)
-    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, rotation=transform.rotation)
+    free = free_directions(transform, constraint)
+    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free)
 
 
 def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.BlenderEdit:

@@ -28,8 +28,21 @@ pytestmark = pytest.mark.usefixtures("registered")
 class Motion(SimpleNamespace):
     """Replaces that of `stiv.blender`."""
 
-    def __init__(self, matrix: Any, pivot: Any, individual: bool, influence: Any, rotation: Any) -> None:
-        super().__init__(matrix=matrix, pivot=pivot, individual=individual, influence=influence, rotation=rotation)
+    def __init__(self, matrix: Any, pivot: Any, individual: bool, influence: Any, rotation: Any, free: Any) -> None:
+        super().__init__(
+            matrix=matrix, pivot=pivot, individual=individual, influence=influence, rotation=rotation, free=free
+        )
+
+
+class FreeDirections(SimpleNamespace):
+    """Replaces that of `stiv.blender`."""
+
+    def __init__(self, axes: Any, free: Any) -> None:
+        super().__init__(axes=axes.tolist(), free=free.tolist())
+
+    @staticmethod
+    def line(direction: Any) -> Any:
+        return SimpleNamespace(opposite=("across", direction.tolist()))
 
 
 class RecordingEdit:
@@ -53,7 +66,7 @@ class RecordingEdit:
 
     start_digest = "start"
 
-    def resume_from(self, controls: Any) -> bool:
+    def resume_from(self, controls: Any, motion: Any) -> bool:
         self.matrix = controls
         return True
 
@@ -81,7 +94,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add(location=(1.0, 2.0, 3.0))
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
-    plain |= {"Motion": Motion, "Influence": lambda *given: given}
+    plain |= {"Motion": Motion, "FreeDirections": FreeDirections, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     plain |= {"unguarded_text": lambda context, evaluations, carried: ""}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
@@ -95,6 +108,25 @@ def test_move_takes_world_values(scene: Any) -> None:
     assert bpy.ops.stiv.move(value=(0.5, 0.0, -1.0)) == {"FINISHED"}
     np.testing.assert_allclose(scene.location, (1.5, 2.0, 2.0), atol=1e-6)
     assert RecordingEdit.begun.kind == "move"
+
+
+def test_chosen_axes_limit_the_motion(scene: Any) -> None:
+    first = (True, False, False)
+    tilted = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    chosen = {"constraint_axis": first}
+    cases: list[tuple[str, dict[str, Any], Any]] = [
+        ("move", {"value": (1, 2, 3)}, None),
+        ("move", {"value": (6, 0, 0), **chosen}, FreeDirections(np.eye(3), np.array(first))),
+        ("move", {**chosen, "orient_matrix": tilted.ravel()}, FreeDirections(tilted, np.array(first))),
+        ("scale", {"value": (2, 2, 2)}, None),
+        ("scale", {"value": (2, 1, 3)}, FreeDirections(np.eye(3), np.array([True, False, True]))),
+        ("scale", {"value": (2, 1, 1), **chosen}, FreeDirections(np.eye(3), np.array(first))),
+        ("rotate", {"angle": 1.0, "axis": (0, 2, 0)}, None),
+        ("rotate", {"angle": 1.0, "axis": (0, 2, 0), **chosen}, ("across", [0, 1, 0])),
+    ]
+    for name, values, free in cases:
+        getattr(bpy.ops.stiv, name)(**values)
+        assert RecordingEdit.begun.motion.free == free, (name, values)
 
 
 def test_scripts_can_read_the_last_edit() -> None:
