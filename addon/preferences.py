@@ -10,6 +10,7 @@ import rna_keymap_ui
 from bpy.props import BoolProperty, IntProperty
 
 from . import keymap
+from .automatic import AutomaticProperty, draw_automatic
 
 
 class StivPreferences(bpy.types.AddonPreferences):
@@ -18,11 +19,8 @@ class StivPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     threads: IntProperty(name="Threads", description="Solver threads (0 uses all cores)", default=0, min=0, max=1024)
-    automatic_threads: BoolProperty(
-        name="Auto Threads",
-        description="Use all cores",
-        get=lambda self: self.threads == 0,
-        set=lambda self, automatic: setattr(self, "threads", 0 if automatic else os.cpu_count() or 1),
+    automatic_threads: AutomaticProperty(
+        of="threads", start=os.cpu_count() or 1, name="Auto Threads", description="Use all cores"
     )
     overlay: BoolProperty(
         name="Show Overlay on Startup",
@@ -33,12 +31,7 @@ class StivPreferences(bpy.types.AddonPreferences):
     def draw(self, context: bpy.types.Context) -> None:
         """The settings, then the keys as in Blender's own editor."""
         self.layout.use_property_split, self.layout.use_property_decorate = True, False
-        if self.automatic_threads:
-            self.layout.row(heading="Threads").prop(self, "automatic_threads", text="Auto", toggle=True)
-        else:
-            row = self.layout.row(align=True)
-            row.prop(self, "threads")
-            row.prop(self, "automatic_threads", text="", icon="X")
+        draw_automatic(self.layout, self, "threads", "automatic_threads", "Threads")
         self.layout.prop(self, "overlay")
         draw_keys(context, self.layout.column())
 

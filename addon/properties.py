@@ -14,6 +14,7 @@ from bpy.props import (
 )
 
 from . import loop_updates
+from .automatic import AutomaticProperty
 from .operators.last_edit import note_written
 from .operators.transform.options import OBJECT_RESPONSES
 
@@ -60,14 +61,6 @@ GUARDS = (
 )
 
 
-def _is_separation_automatic(settings: bpy.types.PropertyGroup) -> bool:
-    return bool(settings.separation == 0.0)
-
-
-def _set_separation_automatic(settings: bpy.types.PropertyGroup, automatic: bool) -> None:
-    settings.separation = 0.0 if automatic else CHOSEN_SEPARATION
-
-
 def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     from .guard import watcher  # which imports this module
 
@@ -112,11 +105,11 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         soft_max=1.0,
         precision=4,
     )
-    automatic_separation: BoolProperty(
+    automatic_separation: AutomaticProperty(
+        of="separation",
+        start=CHOSEN_SEPARATION,
         name="Auto Distance",
         description="Choose the minimum distance from the size of the selection",
-        get=_is_separation_automatic,
-        set=_set_separation_automatic,
     )
     pair_separations: CollectionProperty(type=StivPairSeparation, name="Pair Distances")
     interference: BoolProperty(

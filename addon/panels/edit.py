@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from .. import native_module, stiv_blender
+from ..automatic import draw_automatic
 from ..operators import TRANSFORMS
 from ..scene.edit_settings import edit_settings
 from ..translations import translate
@@ -33,26 +34,12 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
         self.layout.use_property_split, self.layout.use_property_decorate = True, False
         settings = self.layout.column()
         settings.prop(context.scene.stiv, "interference")
-        draw_separation(settings, context.scene.stiv)
+        scene = context.scene.stiv
+        draw_automatic(settings, scene, "separation", "automatic_separation", "Minimum Distance", LABEL_WIDTH)
         for name in SETTINGS:
             settings.prop(context.scene.stiv, name)
         draw_lines(settings, automatic_guard(context))
         draw_lines(self.layout, context.window_manager.stiv_check.left_out)
-
-
-def draw_separation(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """The minimum distance: a length, or a button "Auto" in its place."""
-    split = layout.split(factor=LABEL_WIDTH)
-    label = split.row()
-    label.alignment = "RIGHT"
-    label.label(text="Minimum Distance")
-    row = split.row(align=True)
-    row.use_property_split = False
-    if settings.automatic_separation:
-        row.prop(settings, "automatic_separation", text="Auto", toggle=True)
-    else:
-        row.prop(settings, "separation", text="")
-        row.prop(settings, "automatic_separation", text="", icon="X")
 
 
 def automatic_guard(context: bpy.types.Context) -> str:

@@ -133,6 +133,7 @@ MESSAGES = {
     "Layout": "Anordnen",
     "Let contact move the selection off the chosen axes": "Kontakt darf die Auswahl von den gewählten Achsen ablenken",
     "Let copies share the data of the object": "Kopien teilen sich die Daten des Objekts",
+    "Let each object go as far as its own size": "Jedes Objekt höchstens um seine eigene Größe bewegen",
     "Levels": "Stufen",
     "Linked": "Verknüpft",
     "Live Guard": "Wächter",

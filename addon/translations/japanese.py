@@ -133,6 +133,7 @@ MESSAGES = {
     "Layout": "レイアウト",
     "Let contact move the selection off the chosen axes": "接触により選択物が選んだ軸から外れることを許可",
     "Let copies share the data of the object": "コピーがオブジェクトのデータを共有する",
+    "Let each object go as far as its own size": "各オブジェクトを自身の大きさまで移動",
     "Levels": "レベル",
     "Linked": "リンク",
     "Live Guard": "ライブガード",

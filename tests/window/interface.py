@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import subprocess
+from typing import Any
 
 import bpy
+import extension
 import scenes
-from playing import INTO_WALL, click, prepared, start
+from playing import FURTHEST, INTO_WALL, NEAR, box_x, click, expect_near, prepared, start
+from scenes import WALL_FACE
 from simulation import Steps, Window
 
 SMALL = (960, 600)
@@ -21,7 +24,7 @@ def resized(window: Window, width: int, height: int) -> Steps:
     yield from window.settle(10)
 
 
-def in_small_window(scenario: object) -> object:
+def in_small_window(scenario: Any) -> Any:
     """The scenario in a window of 960 by 600 pixels."""
 
     def small(window: Window) -> Steps:
@@ -36,39 +39,99 @@ def in_small_window(scenario: object) -> object:
     return small
 
 
-def blender_headers(window: Window) -> Steps:
-    """Blender's own headers, to compare by eye."""
-    yield from prepared(window, scenes.add_box, "Box")
-    for key in "GRS":
-        window.key(key)
-        yield from window.settle()
-        yield from window.glide(window.pixel((0.7, 0.4, 0.0)))
-        window.picture(f"blender_{key}")
-        window.key("X")
-        yield from window.settle()
-        window.picture(f"blender_{key}_x")
-        window.key("ESC")
-        yield from window.settle()
-
-
 def headers(window: Window) -> Steps:
-    """Ours: free, along an axis, typed, and blocked by two objects with long names."""
+    """Free, along an axis, and typed: no part of the header and no important key is left out."""
     yield from prepared(window, scenes.add_box, "Box")
     bpy.data.objects["Wall"].name = "The Wall Beside the Stairs of the House"
-    for kind, key in {"move": "M", "rotate": "R", "scale": "E"}.items():
-        yield from window.rest_at((0.0, 0.0, 0.0))
-        yield from start(window, key)
-        yield from window.glide(window.pixel(INTO_WALL))
-        window.picture(f"header_{kind}_{window.handle.width}")
-        window.key("X")
-        yield from window.settle()
-        window.picture(f"header_{kind}_x_{window.handle.width}")
-        yield from window.type("1.5")
-        yield from window.settle()
-        window.picture(f"header_{kind}_typed_{window.handle.width}")
-        yield from click(window, "ESC")
+    io, lines, hints = extension.module("operators.window_io"), [], []
+    fitted, hints_that_fit = io.fitted, io.hints_that_fit
+
+    def record_line(parts: Any, fits: Any) -> str:
+        lines.append((len(parts), fitted(parts, fits)))
+        return str(lines[-1][1])
+
+    def record_hints(given: Any, *others: Any) -> Any:
+        hints.append((len(given), hints_that_fit(given, *others)))
+        return hints[-1][1]
+
+    io.fitted, io.hints_that_fit = record_line, record_hints
+    try:
+        for kind, key in {"move": "M", "rotate": "R", "scale": "E"}.items():
+            yield from drag_with_pictures(window, kind, key)
+    finally:
+        io.fitted, io.hints_that_fit = fitted, hints_that_fit
+    assert lines and hints
+    for count, line in lines:
+        assert line.count("  |  ") == count - 1, (count, line)
+    for count, shown in hints:
+        assert len(shown) >= min(count, 6), (count, shown)
 
 
-_BOTH = (headers,)
+def drag_with_pictures(window: Window, kind: str, key: str) -> Steps:
+    """A cancelled drag into the wall, along X, and by a typed value."""
+    yield from window.rest_at((0.0, 0.0, 0.0))
+    yield from start(window, key)
+    yield from window.glide(window.pixel(INTO_WALL))
+    window.picture(f"header_{kind}_{window.handle.width}")
+    window.key("X")
+    yield from window.settle()
+    window.picture(f"header_{kind}_x_{window.handle.width}")
+    yield from window.type("1.5")
+    yield from window.settle()
+    window.picture(f"header_{kind}_typed_{window.handle.width}")
+    yield from click(window, "ESC")
+
+
+def overlay(window: Window) -> Steps:
+    """Contacts, clearance and ghost: only while the box that is drawn touches the wall, and at its place."""
+    yield from prepared(window, scenes.add_box, "Box")
+    scenes.look_from_corner(window.area)
+    yield from window.settle()
+    yield from window.rest_at((0.0, 0.0, 0.0))
+    display = extension.module("overlay.display")
+    yield from start(window)
+    window.key("X")
+    for place in (0.8, 1.3, 2.2, 3.2):
+        yield from window.glide(window.pixel((place, 0.0, 0.0)))
+        yield from window.until(lambda: display.content().milliseconds is not None, "a step of the drag")
+        found = display.content()
+        lit = found.contacts is not None and len(found.contacts.triangles) > 0
+        assert lit == (place > FURTHEST), (place, lit)
+        if lit:
+            expect_near(box_x(), FURTHEST, NEAR, "the box that is drawn")
+            where = found.contacts.triangles[found.contacts.strengths > 0.5][:, 0]
+            assert abs(where - WALL_FACE).max() < 0.1, where
+            assert found.ghost.points[:, 0].mean() > box_x() + 0.5, found.ghost
+            assert 0.0 < found.clearance.distance < NEAR, found.clearance
+    window.picture(f"overlay_{window.handle.width}")
+    yield from click(window, "ESC")
+    assert not display.content()
+
+
+def sidebar(window: Window) -> Steps:
+    """The tab at its default width, after a check of a scene that intersects, and the redo panel of the check."""
+    yield from prepared(window, scenes.add_box, "Box")
+    bpy.data.objects["Box"].location.x = WALL_FACE
+    selected = [obj.name for obj in bpy.context.selected_objects]
+    window.area.spaces.active.show_region_ui = True
+    yield from window.settle()
+    region = next(region for region in window.area.regions if region.type == "UI")
+    region.active_panel_category = "STIV"
+    with window.override():
+        bpy.ops.ed.undo_push(message="moved")
+        assert bpy.ops.stiv.check("EXEC_DEFAULT", True) == {"FINISHED"}
+    assert [obj.name for obj in bpy.context.selected_objects] == selected
+    assert bpy.context.window_manager.stiv_check.summary.startswith("Box cuts Wall, "), "the summary"
+    yield from window.settle(10)
+    window.picture(f"sidebar_{window.handle.width}")
+    yield from window.rest_at((-1.0, 0.0, 0.0))
+    window.key("F9")
+    yield from window.settle(10)
+    window.picture(f"redo_check_{window.handle.width}")
+    window.key("ESC")
+    window.area.spaces.active.show_region_ui = False
+    yield from window.settle()
+
+
+_BOTH = (headers, overlay, sidebar)
 INTERFACE = {scenario.__name__: scenario for each in _BOTH for scenario in (each, in_small_window(each))}
-INTERFACE |= {"blender_headers": blender_headers}

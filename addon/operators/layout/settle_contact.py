@@ -7,6 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from ... import stiv_blender
+from ...automatic import AutomaticProperty, draw_automatic
 from .direction import DIRECTIONS, ViewDirection
 from .layout_operator import LayoutOperator
 
@@ -28,9 +29,21 @@ class STIV_OT_settle_contact(ViewDirection, LayoutOperator, bpy.types.Operator):
         default=0.0,
         min=0.0,
     )
+    automatic_distance: AutomaticProperty(
+        of="max_distance", start=1.0, name="Auto Distance", description="Let each object go as far as its own size"
+    )
 
     def begin(self, context: bpy.types.Context) -> stiv_blender.SettleIntoContact:
         """Read the scene."""
         direction = self.chosen_direction(context)
         settings = stiv_blender.SettleSettings(self.settings(context), direction, self.turn, self.max_distance)
         return stiv_blender.SettleIntoContact(context, settings)
+
+    def shown_properties(self) -> tuple[str, ...]:
+        """The distance has a row of its own."""
+        return ("direction", "turn")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The redo panel."""
+        super().draw(context)
+        draw_automatic(self.layout, self, "max_distance", "automatic_distance", "Max Distance")
