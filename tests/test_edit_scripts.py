@@ -69,6 +69,7 @@ def test_the_plant_takes_at_least_sixty_edits():
         ({"mode": "EDIT", "points": [-1]}, 'neither "all" nor a list of indices'),
         ({"mode": "EDIT", "points": [True]}, 'neither "all" nor a list of indices'),
         ({"values": {"angle": 1}}, "move takes the values value, not angle"),
+        ({"values": {"value": [0, 0, 1], "constraint_axis": [1, 0, 0]}}, "constraint_axis: three of true or false"),
         ({"values": {"value": [0, 0]}}, "step 0: value: 3 finite numbers expected"),
         ({"values": {"value": [0, 0, float("nan")]}}, "step 0: value: 3 finite numbers expected"),
         ({"values": {"value": [0, 0, 10**400]}}, "step 0: value: 3 finite numbers expected"),

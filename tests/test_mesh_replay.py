@@ -87,6 +87,10 @@ def test_rotation_and_scaling_use_the_mean_as_centre():
             "axis: the zero vector has no direction",
         ),
         (
+            {"operator": "move", "objects": ["Below"], "values": {"value": [0, 0, 1], "constraint_axis": [True] * 3}},
+            "mesh files do not support constraint_axis",
+        ),
+        (
             {"operator": "repair", "objects": ["Below"]},
             "mesh files only support move, scale, rotate; run `stiv repair`",
         ),

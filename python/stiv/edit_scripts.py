@@ -20,6 +20,7 @@ TRANSFORMS = {
     "scale": {"value": 3},
     "rotate": {"angle": 1, "axis": 3},
 }  #: all values are required
+CONSTRAINT = "constraint_axis"  #: optional for all of them: three flags, the world axes that contact may not leave
 RESHAPES: dict[str, dict[str, type]] = {
     "contract": {"steps": int, "smoothing": float, "until_free": bool},
     "expand": {"amount": float},
@@ -141,9 +142,16 @@ def _points(data: object, mode: str, where: str) -> tuple[int, ...] | None:
 def _values(data: object, operator: str, where: str) -> dict[str, Any]:
     values = _mapping(data, f"{where}: values")
     wanted = TRANSFORMS[operator]
-    if set(values) != set(wanted):
+    if set(values) - {CONSTRAINT} != set(wanted):
         raise InputError(f"{where}: {operator} takes the values {', '.join(wanted)}, not {', '.join(values) or 'none'}")
-    return {name: _numbers(values[name], count, f"{where}: {name}") for name, count in wanted.items()}
+    numbers: dict[str, Any] = {name: _numbers(values[name], n, f"{where}: {name}") for name, n in wanted.items()}
+    return numbers | ({CONSTRAINT: _flags(values[CONSTRAINT], where)} if CONSTRAINT in values else {})
+
+
+def _flags(data: object, where: str) -> tuple[bool, ...]:
+    if not isinstance(data, list) or len(data) != 3 or not all(isinstance(flag, bool) for flag in data):
+        raise InputError(f"{where}: {CONSTRAINT}: three of true or false expected, not {data!r}")
+    return tuple(data)
 
 
 def _choices(data: object, operator: str, where: str) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
+from stiv.edit_scripts import CONSTRAINT, TRANSFORMS, EditScript, EditStep
 from stiv.mesh_files import Mesh
 
 Floats = NDArray[np.float64]
@@ -60,6 +60,8 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
     begin = time.perf_counter()
     if step.operator not in TRANSFORMS:
         raise InputError(f"mesh files only support {', '.join(TRANSFORMS)}; run `stiv repair` to repair them")
+    if CONSTRAINT in step.values:
+        raise InputError(f"mesh files do not support {CONSTRAINT}; leave it out")
     chosen = _objects(step, mesh)
     members = np.flatnonzero(np.isin(owners, chosen)).astype(np.int32)
     moved = members if step.points is None else members[_points(step, members)]

@@ -45,6 +45,7 @@ DEFORMATIONS: dict[str, tuple[Callable[[], stiv.Deformation], Floats]] = {
     "rigid, turned": (lambda: stiv.rigid(POINTS), turned(2.0)),
     "rigid, half a turn": (lambda: stiv.rigid(POINTS), turned(np.pi)),
     "rigid, a full turn": (lambda: stiv.rigid(POINTS), turned(2 * np.pi)),
+    "rigid, about a pivot": (lambda: stiv.rigid(POINTS, (1, 2, 3)), turned(2.0)),
     "scaling": (lambda: stiv.scaling(POINTS, np.eye(3)[[1, 2, 0]]), np.array([[0, 0, 1], [1, 2, -0.5]])),
     "side by side": (side_by_side, np.concatenate([turned(1.0), POINTS[:7]])),
     "subdivision": (lambda: stiv.catmull_clark(stiv.Cage.of_faces(mixed_strip().faces), 1)[0], mixed_strip().vertices),
@@ -116,6 +117,22 @@ def test_rigid_motion_keeps_distances(values: list[float]) -> None:
     assert np.abs(before - after).max() < 1e-12
 
 
+def test_a_rotation_about_a_pivot_keeps_it() -> None:
+    """The rest controls are those of any rigid motion, and the metric of the rotation is that of its Jacobian."""
+    pivot = np.array([1.0, 2, 3])
+    points = np.concatenate([POINTS, [pivot]])
+    f, start = stiv.rigid(points, pivot), stiv.rigid_rest_controls(points)
+    assert np.abs(f.surface(start)[:-1] - POINTS).max() < 1e-14
+    turn = start + [[0, 0, 0], [0.3, -0.8, 0.5]]
+    assert np.abs(f.surface(turn)[-1] - pivot).max() < 1e-14
+    rotation = jacobian(f, start)[:, 3:]
+    gram = rotation.T @ rotation
+    gram += 0.1 * np.diag(np.diag(gram))
+    g = np.array([[0.0, 0, 0], [0.4, -0.2, 0.7]])
+    found = f.apply_inverse_metric(start, g, 0.1, np.array([0.0, 1.0]))
+    assert found[1] == pytest.approx(np.linalg.solve(gram, g[1]), rel=1e-10)
+
+
 def test_rest_controls_move_nothing() -> None:
     assert np.abs(stiv.rigid(POINTS).surface(stiv.rigid_rest_controls(POINTS)) - POINTS).max() < 1e-14
     scaling = stiv.scaling(POINTS, np.eye(3))
@@ -180,6 +197,7 @@ def test_compose_applies_one_deformation_after_the_other() -> None:
         (lambda: stiv.compose(stiv.linear(MATRIX), stiv.rigid(POINTS)), "only linear"),
         (lambda: stiv.compose(stiv.linear(MATRIX), stiv.linear(MATRIX)), "5 controls, the inner one moves 9"),
         (lambda: stiv.rigid([[0, 0, np.nan]]), "vertices, row 0"),
+        (lambda: stiv.rigid(POINTS, (0, 0, np.inf)), "pivot"),
         (lambda: stiv.scaling(POINTS, 2 * np.eye(3)), "not a rotation"),
         (lambda: stiv.concatenate([(stiv.identity(2), [0, 0])], POINTS), "vertex 0: already in component 0"),
         (lambda: stiv.concatenate([(stiv.identity(2), [0, 11])], POINTS), "index 11"),

@@ -53,6 +53,29 @@ def test_progress_is_called_and_its_exception_propagates(session: stiv.EditSessi
     assert session.edit(edit.goal).status == "corrected"
 
 
+def test_weights_change_within_a_session(session: stiv.EditSession, edit: families.Edit) -> None:
+    """As in a new session with these weights that begins at the accepted state."""
+    half = (edit.controls + edit.goal) / 2
+    session.drag(half)
+    accepted = session.controls
+    axes = np.broadcast_to(np.linalg.qr([[1.0, 2, 0], [0, 1, 1], [1, 0, 3]])[0], (len(accepted), 3, 3))
+    weights = np.ones((len(accepted), 3)) * [1, 0, 0.5]
+    options = stiv.EditOptions(weights=weights, weight_axes=axes)
+    other = stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
+    other.restore(accepted, half)
+    session.set_weights(weights, axes)
+    assert np.array_equal(session.controls, accepted)
+    assert np.array_equal(session.drag(edit.goal).controls, other.drag(edit.goal).controls)
+    assert not np.array_equal(session.controls, accepted)
+    for bad, message in ((np.ones(3), "3 entries for"), (-weights, "not negative"), (np.ones((3, 2)), "shape")):
+        with pytest.raises(stiv.InputError, match=message):
+            session.set_weights(bad)
+    session.set_weights(None)
+    session.restore(edit.controls)
+    fresh = stiv.EditSession(edit.surface, edit.deformation, edit.controls)
+    assert np.array_equal(session.edit(edit.goal).controls, fresh.edit(edit.goal).controls)
+
+
 def test_cancelling_restores_the_previous_state(session: stiv.EditSession, edit: families.Edit) -> None:
     token = stiv.CancelToken()
     result = session.edit(edit.goal, cancel=token, progress=lambda phase, fraction: token.cancel())

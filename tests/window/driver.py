@@ -43,6 +43,7 @@ class Driver:
         from proportional_editing import PROPORTIONAL_EDITING
         from real_events import REAL_EVENTS
         from redo_panel import REDO_PANEL
+        from responses import RESPONSES
         from sequences import SEQUENCES
         from simulation import Window
         from snapping_and_pivots import SNAPPING_AND_PIVOTS
@@ -50,7 +51,7 @@ class Driver:
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
-        drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS
+        drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES | REAL_EVENTS)[name] for name in names} or usual

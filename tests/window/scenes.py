@@ -23,7 +23,8 @@ def clear() -> None:
         bpy.data.objects.remove(obj)
     scene = bpy.context.scene
     scene.stiv.live_guard = False
-    for name in ("separation", "responders", "object_response", "interference", "smoothness", "constraints"):
+    response = "responders", "object_response", "slide_out_of_axis", "smoothness", "constraints"
+    for name in ("separation", "interference", *response):
         scene.stiv.property_unset(name)
     tools = scene.tool_settings
     tools.transform_pivot_point, tools.snap_target, tools.snap_elements = "MEDIAN_POINT", "CLOSEST", {"INCREMENT"}

@@ -10,6 +10,9 @@ bpy = pytest.importorskip("bpy")
 
 import bmesh  # noqa: E402
 
+from stiv.blender.scripts.replaying import replay  # noqa: E402
+from stiv.edit_scripts import parse_edit_script  # noqa: E402
+
 pytestmark = pytest.mark.usefixtures("registered")
 
 
@@ -250,3 +253,40 @@ def test_an_object_without_a_surface_is_reported_and_shown_in_the_panel(wall: An
     bpy.data.objects.remove(bpy.data.objects["Dust"])
     bpy.ops.stiv.move(value=(1, 0, 0))
     assert bpy.context.window_manager.stiv_check.left_out == ""
+
+
+@pytest.mark.parametrize("chosen", [(True, False, False), (False, False, False)])
+def test_scripts_choose_the_axes_that_contact_may_not_leave(chosen: tuple) -> None:
+    """Through the operator and its redo, and by an edit script."""
+    moving = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    moving.rotation_euler = (0.3, 0.2, 0.5)
+    bpy.data.objects["Wall"].rotation_euler.z = 0.6
+    values = {"value": [6.0, 0.0, 0.0], "constraint_axis": list(chosen)}
+    step = {"operator": "move", "objects": ["Box"], "values": values}
+    script = parse_edit_script({"schema": "stiv-edits", "version": 1, "steps": [step]})
+    for apply in (
+        lambda: bpy.ops.stiv.move(value=(6.0, 0.0, 0.0), constraint_axis=chosen),
+        lambda: replay(script),
+    ):
+        moving.location = (0.0, 0.0, 0.0)
+        bpy.ops.object.select_all(action="DESELECT")
+        moving.select_set(True)
+        bpy.context.view_layer.objects.active = moving
+        bpy.context.view_layer.update()
+        apply()
+        x, y, z = moving.location
+        assert tuple(moving.rotation_euler) == pytest.approx((0.3, 0.2, 0.5), abs=1e-7)
+        assert (y == z == 0.0) == any(chosen)
+        assert x > (0.2 if any(chosen) else 1.0)
+
+
+def test_files_of_the_first_version_keep_their_response() -> None:
+    """`rigid` in an edit script turns; the number 1 in a .blend was Deform, 0 becomes the new default."""
+    moving = box("Box", (0.0, 0.0, 0.0), (0.2, 1.2, 0.2))
+    bpy.data.objects["Wall"].location.y = 2.6
+    step = {"operator": "move", "objects": ["Box"], "values": {"value": [2.0, 0.0, 0.0]}}
+    head = {"schema": "stiv-edits", "version": 1, "settings": {"object_response": "rigid"}}
+    replay(parse_edit_script({**head, "steps": [step]}))
+    assert moving.rotation_euler.z != 0
+    items = bpy.context.scene.stiv.bl_rna.properties["object_response"].enum_items
+    assert {name: items[name].value for name in items.keys()} == {"slide": 0, "deform": 1, "slide_and_turn": 2}

@@ -10,6 +10,7 @@ import numpy as np
 from stiv.blender.controls.rotations import euler_angles, is_rotation, nearest_rotation
 from stiv.blender.scene.arrays import Floats, as_matrix
 
+ROUNDING = 2.0**-48  # relative error of a location in the parent's space
 ROTATION_PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
 
@@ -49,7 +50,7 @@ def read_transform(ob: bpy.types.Object) -> ObjectTransform:
     """Read the object's transform; its scale must not be zero."""
     world, basis = as_matrix(ob.matrix_world), as_matrix(ob.matrix_basis)
     name = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
-    parent_matrix = world @ np.linalg.inv(basis)
+    parent_matrix = np.eye(4) if np.array_equal(world, basis) else world @ np.linalg.inv(basis)
     return ObjectTransform(
         tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis
     )
@@ -62,6 +63,8 @@ def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats
     """
     inner = np.linalg.inv(start.parent_matrix) @ motion @ start.parent_matrix
     shift = (inner @ start.basis)[:3, 3] - start.basis[:3, 3]
+    size = max(float(np.abs(each[:3, 3]).max()) for each in (motion, start.basis, start.parent_matrix))
+    shift[np.abs(shift) <= ROUNDING * size] = 0.0
     ob.location = np.asarray(start.location) + shift
     ob.scale = np.asarray(start.scale) * factors
     if np.array_equal(factors, np.ones(3)) and not np.array_equal(motion[:3, :3], np.eye(3)):
