@@ -289,4 +289,4 @@ def test_files_of_the_first_version_keep_their_response() -> None:
     replay(parse_edit_script({**head, "steps": [step]}))
     assert moving.rotation_euler.z != 0
     items = bpy.context.scene.stiv.bl_rna.properties["object_response"].enum_items
-    assert {name: items[name].value for name in items.keys()} == {"slide": 0, "deform": 1, "slide_and_turn": 2}
+    assert {item.identifier: item.value for item in items} == {"slide": 0, "deform": 1, "slide_and_turn": 2}
