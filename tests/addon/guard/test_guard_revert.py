@@ -155,7 +155,7 @@ def test_the_frame_of_the_clear_state_is_restored() -> None:
 def test_changed_topology_is_refused_by_name_and_an_added_object_is_left_and_named() -> None:
     bpy.ops.object.duplicate("EXEC_DEFAULT", True)
     look()
-    assert watcher.problem().reason == "Box.001: is in the same place as Box; move it"
+    assert watcher.problem().reason == "Box.001: is in the place of Box; move it"
     assert watcher.state(bpy.context) == "intersecting"
     box().location.y = 0.1
     bpy.ops.ed.undo_push(message="moved")

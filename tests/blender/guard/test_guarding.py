@@ -90,7 +90,7 @@ def test_a_copy_that_overlaps_its_original_goes_to_the_nearest_free_place() -> N
 def test_a_copy_in_the_place_of_its_original_stays_and_is_named() -> None:
     box = add_cube("Box")
     outcome = guarded(lambda: duplicate(box))
-    assert not outcome.wrote and outcome.reason == "Box.001: is in the same place as Box; move it"
+    assert not outcome.wrote and outcome.reason == "Box.001: is in the place of Box; move it"
     assert outcome.pairs
 
 
@@ -221,3 +221,27 @@ def test_objects_added_together_stay_together() -> None:
     assert outcome.placed == ["Child", "First", "Second"] and pairs() == set() and box.location.x == -9
     assert places - places[0] == pytest.approx(np.array([[0, 0, 0], [0, 0, 2.5], [0, 3, 0]]), abs=1e-5)
     assert places[0] == pytest.approx([2, 0, 0], abs=0.02)
+
+
+def test_a_separated_part_stays_where_it_touches_the_rest() -> None:
+    box = add_cube("Box")
+    edit_mode(box)
+
+    def separate() -> None:
+        bpy.ops.mesh.select_all(action="DESELECT")
+        content = bmesh.from_edit_mesh(box.data)
+        content.faces.ensure_lookup_table()
+        content.faces[0].select_set(True)
+        bmesh.update_edit_mesh(box.data)
+        bpy.ops.mesh.separate()
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+    outcome = guarded(separate)
+    assert not outcome.wrote and outcome.pairs
+    assert outcome.reason == "Box.001: is in the place of Box; move it"
+
+
+def test_new_objects_that_intersect_only_each_other_stay() -> None:
+    add_wall()
+    outcome = guarded(lambda: (add_cube("First", (-5, 0, 0)), add_cube("Second", (-5.5, 0, 0))))
+    assert not outcome.wrote and pairs() == {("First", "Second")} and outcome.reason and outcome.pairs

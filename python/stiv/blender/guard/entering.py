@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import bpy
@@ -13,10 +13,11 @@ from mathutils import Matrix, Vector
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
-from stiv.blender.guard.extrusion import extruded_from
+from stiv.blender.guard.extrusion import extruded_from, is_among
 from stiv.blender.guard.free_place import find_free_place
-from stiv.blender.guard.known_intersections import KnownIntersections, fresh_objects
+from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, fresh_objects
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_object, read_state
+from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
@@ -44,8 +45,8 @@ def find_originals(accepted: AcceptedScene, present: SceneState, new: Collection
 
 def _is_copy(state: ObjectState, other: ObjectState) -> bool:
     """Do the objects have the same name up to its number, the same kind of data, and the same vertices?"""
-    first, second = state.reference.find(), other.reference.find()
-    if first.type != second.type or _base_name(first.name) != _base_name(second.name):
+    first, second = state.reference.find(), bpy.data.objects.get(other.reference.name)
+    if second is None or first.type != second.type or _base_name(first.name) != _base_name(second.name):
         return False
     return state.kind == other.kind and state.has_same_points(other)
 
@@ -55,9 +56,22 @@ def _base_name(name: str) -> str:
     return base if base and number.isdigit() else name
 
 
-def is_in_place(copy: ObjectState, original: ObjectState) -> bool:
-    """Is a copy exactly where its original is?"""
-    return copy.placement == original.placement
+def find_in_place(accepted: AcceptedScene, present: SceneState, new: Collection[int]) -> tuple[str, str] | None:
+    """Names of a new object and of the accepted one in whose place it is: a copy, or a part that was separated."""
+    for number in new:
+        state = present[number]
+        for original in accepted.state.values():
+            same_place = np.array_equal(state.world, original.world)
+            if same_place and (_is_copy(state, original) or _is_part(state, original)):
+                return state.reference.name, original.reference.name
+    return None
+
+
+def _is_part(state: ObjectState, original: ObjectState) -> bool:
+    """Are all vertices those of another object?"""
+    if state.points is None or original.points is None or len(state.points) >= len(original.points):
+        return False
+    return bool(len(state.points)) and bool(is_among(state.points, original.points).all())
 
 
 def correct_copies(
@@ -118,6 +132,11 @@ def correct_extrusion(
     return None
 
 
+def touches_others(pairs: Iterable[FacePair], names: Collection[str]) -> bool:
+    """Does any pair join one of the named objects and another object?"""
+    return any((pair.first.object in names) != (pair.second.object in names) for pair in pairs)
+
+
 def place_freely(
     context: bpy.types.Context, settings: EditSettings, known: KnownIntersections, names: Collection[str]
 ) -> bool:
@@ -132,7 +151,7 @@ def place_freely(
     for ob in roots:
         ob.matrix_world = Matrix.Translation(Vector(translation)) @ ob.matrix_world
     context.view_layer.update()
-    if not fresh_objects(context, settings, known).isdisjoint(names):
+    if touches_others(known.fresh(find_intersections(context, settings)), names):
         for state in before:
             state.restore_placement()
         context.view_layer.update()

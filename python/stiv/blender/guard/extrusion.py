@@ -19,7 +19,7 @@ def extruded_from(before: Singles, after: Singles, edges: Indices) -> tuple[Floa
     Each extruded vertex has one edge to the vertex from which it was pulled, which did not move. Vertices inside an
     extruded region have none; they moved like their neighbors. Returns None if the new vertices come from elsewhere.
     """
-    moved = ~_is_among(after, before)
+    moved = ~is_among(after, before)
     if not moved.any():
         return None
     steps, known = _along_sides(after, edges, moved)
@@ -32,7 +32,7 @@ def extruded_from(before: Singles, after: Singles, edges: Indices) -> tuple[Floa
     return after - steps, moved
 
 
-def _is_among(points: Singles, others: Singles) -> Flags:
+def is_among(points: Singles, others: Singles) -> Flags:
     """Which points are exactly among others, (n,)."""
     stored = {row.tobytes() for row in np.ascontiguousarray(others, np.float32) + np.float32(0)}
     return np.array([row.tobytes() in stored for row in np.ascontiguousarray(points, np.float32) + np.float32(0)])

@@ -27,7 +27,7 @@ DIRECTIONS = sorted(
 FIRST_STEP, GROWTH = 1 / 64, 1.5  # of the new objects' diagonal; each step out is longer
 BISECTIONS = 8
 MARGIN = 1e-3  # added to the shortest free distance
-TIME_LIMIT = 3.0  # seconds; then the best place so far is returned
+TIME_LIMIT = 2.0  # seconds; then the best place so far is returned
 
 
 def find_free_place(context: bpy.types.Context, settings: EditSettings, names: Collection[str]) -> Floats | None:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
 import bpy
@@ -12,11 +11,18 @@ from stiv import InputError
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
-from stiv.blender.guard.entering import correct_copies, correct_extrusion, find_originals, is_in_place, place_freely
-from stiv.blender.guard.known_intersections import find_intersections, fresh_objects
+from stiv.blender.guard.entering import (
+    correct_copies,
+    correct_extrusion,
+    find_in_place,
+    find_originals,
+    place_freely,
+    touches_others,
+)
+from stiv.blender.guard.known_intersections import find_intersections, object_pair
 from stiv.blender.guard.scene_state import SceneState, read_state
 from stiv.blender.scene.elements import FacePair
-from stiv.blender.scene.references import ObjectReference, SceneChangedError
+from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.settings import EditSettings
 
 
@@ -59,11 +65,13 @@ def guard_result(context: bpy.types.Context, settings: EditSettings, accepted: A
     result = GuardedResult(reason=changes.unsupported)
     start = accepted.state
     if changes.unsupported:
+        result.pairs = find_intersections(context, settings)
         _guard_new_geometry(context, settings, accepted, changes, result)
         start = _start_of(changes, accepted.state, read_state(context))
     if changes.changes:
         _guard_moved(context, settings, accepted, start, changes, result)
-    if changes.unsupported or not changes.changes or result.reason or result.deformers or accepted.known.pairs:
+    tested = changes.unsupported and not changes.changes and not result.wrote
+    if not tested and (not changes.changes or result.reason or result.deformers or accepted.known.pairs):
         result.pairs = find_intersections(context, settings)
     return result
 
@@ -99,14 +107,17 @@ def _guard_new_geometry(
     changes: Changes,
     result: GuardedResult,
 ) -> None:
-    fresh = fresh_objects(context, settings, accepted.known)
-    created = [each for each in changes.added if each.session_uid not in accepted.objects]
+    """Correct extrusions and new objects that intersect, by the pairs of the result."""
+    fresh = accepted.known.fresh(result.pairs)
+    names = {name for pair in fresh for name in object_pair(pair)}
+    created = {each.name: each for each in changes.added if each.session_uid not in accepted.objects}
     try:
         for reference in changes.rebuilt:
-            if reference.name in fresh:
+            if reference.name in names:
                 result.add(correct_extrusion(context, settings, accepted, reference))
-        if not fresh.isdisjoint({each.name for each in created}):
-            _guard_new_objects(context, settings, accepted, created, fresh, result)
+        if touches_others(fresh, created):
+            entering = [created[name].session_uid for name in sorted(names & created.keys())]
+            _guard_new_objects(context, settings, accepted, set(created), entering, result)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
 
@@ -115,22 +126,24 @@ def _guard_new_objects(
     context: bpy.types.Context,
     settings: EditSettings,
     accepted: AcceptedScene,
-    created: Collection[ObjectReference],
-    fresh: set[str],
+    created: set[str],
+    entering: list[int],
     result: GuardedResult,
 ) -> None:
-    """Correct copies from the places of their originals, then place new objects that still intersect."""
-    present, names = read_state(context), {each.name for each in created}
-    entering = [each for each in created if each.name in fresh]
-    originals = find_originals(accepted, present, [each.session_uid for each in entering])
-    for copy, original in originals.items():
-        if is_in_place(present[copy], accepted.state[original]):
-            first, second = present[copy].reference.name, accepted.state[original].reference.name
-            result.reason = f"{first}: is in the same place as {second}; move it"
-            return
+    """Correct copies from the places of their originals, then place new objects that still intersect.
+
+    created: names of all new objects. entering: session numbers of those that intersect.
+    """
+    present = read_state(context)
+    in_place = find_in_place(accepted, present, entering)
+    if in_place is not None:
+        result.reason = "{}: is in the place of {}; move it".format(*in_place)
+        return
+    originals = find_originals(accepted, present, entering)
     if originals:
         result.add(correct_copies(context, settings, accepted, originals))
-        fresh = fresh_objects(context, settings, accepted.known)
-    if not fresh.isdisjoint(names) and place_freely(context, settings, accepted.known, names):
+        if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
+            return
+    if place_freely(context, settings, accepted.known, created):
         result.wrote = True
-        result.placed += sorted(each.name for each in entering)
+        result.placed += [present[number].reference.name for number in entering]
