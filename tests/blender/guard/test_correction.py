@@ -162,7 +162,7 @@ def test_changes_that_no_motion_reproduces_are_named(what: str) -> None:
         box.data.vertices[0].co.z = 1.0
     obstacle = compare(accepted, read_state(bpy.context)).unsupported
     words = {"added": "added", "removed": "removed", "structure": "structure", "both": "at once"}
-    assert words[what] in obstacle and ('"New"' if what == "added" else '"Box"') in obstacle
+    assert words[what] in obstacle and ("New" if what == "added" else "Box") in obstacle
 
 
 def test_selecting_changes_nothing() -> None:

@@ -8,18 +8,28 @@ from dataclasses import dataclass, replace
 
 import bpy
 
+from stiv.blender.scene.assembly import assemble_with_seams
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.exclusions import without_excluded
+from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
-from stiv.blender.verify.scene_check import check_scene
+from stiv.blender.verify.scene_check import find_pairs, tested_names
+
+MOST = 1000  # pairs of triangles; a copy of a large mesh in the place of its original has millions
 
 ObjectPair = tuple[str, str]
 """Names of two objects in ascending order; the same name twice for an object that intersects itself."""
 
 
 def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tuple[FacePair, ...]:
-    """All intersecting pairs of the present scene that are not excluded. Raises InputError."""
-    return tuple(dict.fromkeys(without_excluded(check_scene(context, settings).pairs, settings.excluded)))
+    """The intersecting pairs of the present scene that are not excluded, at most `MOST` of each two objects.
+
+    Raises InputError.
+    """
+    scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
+    assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs)
+    pairs = find_pairs(assembly, settings.threads, 0 if settings.excluded.pairs else MOST)
+    return tuple(dict.fromkeys(without_excluded(pairs, settings.excluded)))
 
 
 def fresh_objects(context: bpy.types.Context, settings: EditSettings, known: KnownIntersections) -> set[str]:

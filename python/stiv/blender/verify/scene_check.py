@@ -109,9 +109,25 @@ def tested_names(
     return is_counted
 
 
-def find_pairs(assembly: Assembly, threads: int = 0) -> tuple[FacePair, ...]:
-    """All intersecting pairs between bodies of the assembly, without seams."""
-    return find_pairs_and_seams(assembly, threads)[0]
+def find_pairs(assembly: Assembly, threads: int = 0, most: int = 0) -> tuple[FacePair, ...]:
+    """All intersecting pairs between bodies of the assembly, without seams.
+
+    most: number of triangle pairs to name for each two meshes; 0: all.
+    """
+    triangles = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
+    triangles = triangles[~_edge_contacts(assembly, triangles)]
+    chosen = _first_of_each(assembly, triangles, most) if most else triangles
+    return find_face_pairs(assembly, assembly.positions, threads, chosen)
+
+
+def _first_of_each(assembly: Assembly, pairs: Indices, most: int) -> Indices:
+    """The first pairs of triangles, (k, 2), of each two meshes."""
+    count = len(assembly.meshes)
+    mesh = np.repeat(np.arange(count), [len(each.triangles) for each in assembly.meshes])[pairs]
+    keys = mesh[:, 0] * count + mesh[:, 1]
+    order = np.argsort(keys, kind="stable")
+    rank = np.arange(len(order)) - np.searchsorted(keys[order], keys[order])
+    return np.asarray(pairs[np.sort(order[rank < most])], np.int32)
 
 
 def find_pairs_and_seams(
