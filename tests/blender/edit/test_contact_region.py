@@ -35,11 +35,21 @@ def test_both_sides_are_lit_where_they_touch_and_fade_out(direction: int) -> Non
     on_wall = np.abs(x).max(axis=1) < 1e-6
     assert on_wall.any() and (x.min(axis=1) > 1e-6).any()
     assert region.strengths.min() >= 0.0 and region.strengths.max() > 0.9
-    radius = GLOW * 2.0
+    radius = 2.0 * GLOW * 2.0  # of a box of edge 2
     lit = region.triangles[region.strengths > 0]
     beyond = np.maximum(np.abs(lit[:, 1:]) - 1.0, 0.0)  # the box touches the wall within |y|, |z| <= 1
     assert np.linalg.norm(beyond, axis=1).max() <= radius * 1.01
     assert np.abs(heights(region, direction)[region.strengths > 0]).max() <= radius * 1.01
+
+
+def test_the_area_between_the_contacts_is_lit_too() -> None:
+    """Corners alone touch; what holds the box up is its whole face."""
+    edit, result = pressed(1)
+    region = contact_region(edit.assembly, result)
+    middle = np.linalg.norm(region.triangles[..., 1:], axis=2) < 0.3
+    assert middle.any() and region.strengths[middle].min() > 0.15
+    for side in (np.abs(heights(region, 1)) < 1e-6, heights(region, 1) > 1e-6):
+        assert (middle & side).any()
 
 
 def test_the_closest_contact_joins_both_sides() -> None:

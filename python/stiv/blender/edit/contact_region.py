@@ -14,11 +14,13 @@ from stiv.blender.scene.assembly import Assembly
 
 MAX_POINTS = 32  # contacts; an even selection fades out if there are more
 MAX_TRIANGLES = 3000
-DENSE = 600  # touching triangles: from here on the region has these alone, which needs no distances
-GLOW = 0.08  # radius of the region around a contact, relative to the size of the smallest object in contact
+DENSE = 300  # touching vertices: from here on the region has their triangles alone, which needs no distances
+GLOW = 0.08  # least radius of the region around a contact, relative to the smallest object in contact; at most twice
 SAMPLE = 2000  # vertices that give the size of an object
 REACH = 0.03  # contacts whose sides are further apart are not shown, relative to the same size
-FINENESS = 0.5  # edges longer than this many radii are split, so that the region fades out within large faces
+SPACING = 0.75  # of the points between contacts, in radii
+MAX_STEPS = 8  # radii along a side of the area between contacts
+FINENESS = 1.6  # edges longer than this many radii are split, so that the region fades out within large faces
 MAX_SPLITS = 9
 
 
@@ -52,17 +54,20 @@ def contact_region(assembly: Assembly, result: stiv.EditResult) -> ContactRegion
     near = gaps <= REACH * size
     if not near.any():
         return NO_REGION
-    touching = np.zeros(len(surface), np.bool_)
-    touching[events.vertices[near]] = True
-    triangles = _triangles_with(touching, assembly)
     closest = sides[:, int(np.argmin(gaps))]
-    if len(triangles) <= DENSE:
-        radius, points = GLOW * size, np.unique(_sampled(sides[:, near].reshape(-1, 3)), axis=0)
-        around = _triangles_with(touching | _in_box(assembly, surface, meshes, points, radius), assembly)
+    vertices = np.unique(events.vertices[near])
+    marked = np.zeros(len(surface), np.bool_)
+    marked[vertices] = True
+    if len(vertices) <= DENSE:
+        extent = float(np.ptp(sides[:, near].reshape(-1, 3), axis=0).max())
+        radius = min(max(GLOW * size, extent / MAX_STEPS), 2.0 * GLOW * size)
+        points = _areas(assembly, events.vertices[near], sides[:, near], radius)
+        around = _triangles_with(marked | _in_box(assembly, surface, meshes, points, radius), assembly)
         if len(around) <= MAX_TRIANGLES:
             return ContactRegion(*_faded(surface[around], points, radius), closest)
+    triangles = _triangles_with(marked, assembly)
     triangles = triangles[:: len(triangles) // MAX_TRIANGLES + 1]
-    return ContactRegion(surface[triangles], touching[triangles].astype(np.float64), closest)
+    return ContactRegion(surface[triangles], marked[triangles].astype(np.float64), closest)
 
 
 def _sides(events: stiv.Events, surface: Floats) -> Floats:
@@ -75,9 +80,58 @@ def _sides(events: stiv.Events, surface: Floats) -> Floats:
     return np.asarray(np.einsum("skc,kcx->skx", weights, corners))
 
 
+def _areas(assembly: Assembly, vertices: Indices, sides: Floats, radius: float) -> Floats:
+    """Points, (k, 3), of the contacts, and of the area between those of each pair of meshes."""
+    numbers = np.searchsorted(assembly.starts, vertices[:, [0, 3]], side="right")
+    found = []
+    for pair in np.unique(numbers, axis=0):
+        chosen = sides[:, (numbers == pair).all(axis=1)].reshape(-1, 3)
+        points = np.unique(_sampled(chosen), axis=0)
+        found += [points, _between(points, radius)]
+    return np.concatenate(found)
+
+
 def _sampled(points: Floats) -> Floats:
     chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), 2 * MAX_POINTS)).astype(int))
     return np.asarray(points[chosen])
+
+
+def _between(points: Floats, radius: float) -> Floats:
+    """Points of a grid inside the convex hull of points that lie in a plane; none for other points."""
+    origin = points.mean(axis=0)
+    _, extents, axes = np.linalg.svd(points - origin, full_matrices=False)
+    if len(points) < 3 or extents[2] > radius or extents[1] < radius:
+        return np.empty((0, 3))
+    flat = (points - origin) @ axes[:2].T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    steps = np.clip(np.ceil((high - low) / (SPACING * radius)), 1, 2 * MAX_STEPS).astype(int)
+    grid = np.stack(np.meshgrid(*(np.linspace(low[k], high[k], steps[k] + 1) for k in range(2))), axis=-1).reshape(
+        -1, 2
+    )
+    hull = _hull(flat)
+    edges = np.roll(hull, -1, axis=0) - hull
+    offsets = grid[:, None] - hull
+    inside = (edges[:, 0] * offsets[..., 1] >= edges[:, 1] * offsets[..., 0]).all(axis=1)
+    return np.asarray(origin + grid[inside] @ axes[:2])
+
+
+def _hull(points: Floats) -> Floats:
+    """Corners of the convex hull of points, (k, 2), counterclockwise (Andrew's monotone chain)."""
+    ordered = sorted(map(tuple, points.tolist()))
+
+    def chain(remaining: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+        done: list[tuple[float, ...]] = []
+        for x, y in remaining:
+            while len(done) > 1 and _turn(done[-2], done[-1], (x, y)) <= 0.0:
+                done.pop()
+            done.append((x, y))
+        return done[:-1]
+
+    return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _meshes_of(assembly: Assembly, vertices: Indices) -> list[int]:
@@ -144,6 +198,6 @@ def _split(corners: Floats) -> Floats:
 def _distances(positions: Floats, points: Floats) -> NDArray[np.float64]:
     """Distance from each position, (n, 3), to the closest of the points, (k, 3)."""
     origin = points.mean(axis=0)  # digits are lost far from the world's origin
-    p, q = positions - origin, points - origin
+    p, q = (positions - origin).astype(np.float32), (points - origin).astype(np.float32)
     squares = (p * p).sum(axis=1)[:, None] - 2.0 * (p @ q.T) + (q * q).sum(axis=1)
-    return np.asarray(np.sqrt(np.maximum(squares.min(axis=1), 0.0)))
+    return np.asarray(np.sqrt(np.maximum(squares.min(axis=1), 0.0)), np.float64)
