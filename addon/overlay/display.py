@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 import traceback
 from collections.abc import Callable, Sequence
@@ -77,7 +78,8 @@ def show_edit(edit: stiv_blender.Edit, result: stiv_blender.EditResult, matrix: 
     _content.contacts = stiv_blender.contact_region(edit.assembly, result) if switches.contacts else None
     _content.clearance = _contact_clearance(_content.contacts)
     if switches.while_dragging:
-        _content.clearance = clearance_of(edit.least_distance())
+        with contextlib.suppress(ValueError):  # the next solve has begun already: the next result is measured
+            _content.clearance = clearance_of(edit.least_distance())
     _content.milliseconds = 1000.0 * result.timings["total"]
     _content.frames = 1.0 / (now - _last_step) if 0.0 < now - _last_step < 1.0 else None
     _last_step = now

@@ -17,7 +17,7 @@ from .content import Content, Shape, Switches, shapes_of, texts_of
 LINE_WIDTH = 2.0
 CORNER = (20, 60)  # pixels from the lower left corner, beside the toolbar
 TEXT_SIZE = 12
-LABEL_OFFSET = 8  # pixels from the middle of a line to its distance
+LABEL_OFFSET = 12  # pixels from the middle of a line to its distance
 
 _batches: dict[str, tuple[object, gpu.types.GPUBatch]] = {}  # by shape, each with the points that it was made of
 

@@ -79,6 +79,12 @@ SMALL = {"and", "for", "in", "into", "of", "on", "out", "to"}
 LONG = {"Show Overlay on Startup", "Slide out of Axis"}
 
 
+@pytest.mark.parametrize("group", ["transform", "check", "repair"])
+def test_a_search_for_collision_finds_the_operators(group: str) -> None:
+    found = [cls.bl_label for cls in CLASSES if is_operator(cls) and f".operators.{group}." in cls.__module__]
+    assert found and all("Collision" in label for label in found), found
+
+
 def test_labels_are_short_titles_without_articles() -> None:
     for label in filter(None, labels()):
         words = label.split()
