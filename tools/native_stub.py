@@ -26,6 +26,7 @@ from numpy import float64, int32
 from numpy.typing import ArrayLike, NDArray
 
 class InputError(ValueError): ...
+class CancelledError(RuntimeError): ...
 class StartIntersectsError(InputError):
     pairs: NDArray[int32]
 """  # the module makes the exceptions at run time, as names of `stiv`

@@ -3,13 +3,17 @@
 
 #include <pybind11/native_enum.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "calls.hpp"
 #include "conversions.hpp"
+#include "job.hpp"
 #include "module.hpp"
 
 namespace stiv::bindings {
@@ -68,32 +72,74 @@ class InUse {
   std::atomic<bool>& flag_;
 };
 
+using SurfacePointer = std::shared_ptr<const Surface>;
+using DeformationPointer = std::shared_ptr<const Deformation>;
+using SessionCall = std::function<EditResult(EditSession&, Execution&)>;
+
+SessionCall edit_to(const DoubleArray& goal) {
+  return [to = controls_from(goal, "goal")](EditSession& session, Execution& execution) {
+    return session.edit(to, execution);
+  };
+}
+
+SessionCall drag_to(const DoubleArray& goal, const std::optional<double>& time_budget) {
+  if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
+    throw InputError("time_budget must be a positive number of seconds");
+  return [to = controls_from(goal, "goal"), time_budget](EditSession& session, Execution& execution) {
+    if (time_budget) execution.set_time_budget(*time_budget, BudgetEnd::after_checkpoint);
+    return session.drag(to, execution);
+  };
+}
+
+EditResult settle_session(EditSession& session, Execution& execution) { return session.settle(execution); }
+
 /// The session as Python sees it.
-class Session {
+class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-          const DoubleArray& controls, const EditOptions& options)
-      : threads_(options.threads),
-        session_(make(std::move(surface), std::move(deformation), controls_from(controls, "controls"), options)) {}
+  Session(SurfacePointer surface, DeformationPointer deformation, const Controls& controls, const EditOptions& options,
+          Execution& execution)
+      : threads_(options.threads), session_(std::move(surface), std::move(deformation), controls, options, execution) {}
 
-  py::dict edit(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress) {
-    const Controls to = controls_from(goal, "goal");
-    return call(cancel, progress, [&](Execution& execution) { return session_.edit(to, execution); });
+  static std::shared_ptr<Session> open(SurfacePointer surface, DeformationPointer deformation,
+                                       const DoubleArray& controls, const EditOptions& options) {
+    const Controls start = controls_from(controls, "controls");
+    const py::gil_scoped_release unlocked;
+    Execution execution(std::max(0, options.threads));
+    return std::make_shared<Session>(std::move(surface), std::move(deformation), start, options, execution);
   }
 
-  py::dict drag(const DoubleArray& goal, const CancelToken* cancel, const py::object& progress,
-                const std::optional<double>& time_budget) {
-    const Controls to = controls_from(goal, "goal");
-    if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
-      throw InputError("time_budget must be a positive number of seconds");
-    return call(cancel, progress, [&](Execution& execution) {
-      if (time_budget) execution.set_time_budget(*time_budget, BudgetEnd::after_checkpoint);
-      return session_.drag(to, execution);
-    });
+  static std::unique_ptr<NativeJob> start(SurfacePointer surface, DeformationPointer deformation,
+                                          const DoubleArray& controls, const EditOptions& options) {
+    return start_job(
+        std::max(0, options.threads),
+        [=, start = controls_from(controls, "controls")](Execution& execution) {
+          return std::make_shared<Session>(surface, deformation, start, options, execution);
+        },
+        [](const std::shared_ptr<Session>& session) { return py::cast(session); });
   }
 
-  py::dict settle(const CancelToken* cancel, const py::object& progress) {
-    return call(cancel, progress, [&](Execution& execution) { return session_.settle(execution); });
+  py::dict call(const SessionCall& work, const CancelToken* cancel, const py::object& progress) {
+    const InUse in_use(in_use_);
+    Execution execution(threads_);
+    if (cancel != nullptr) execution.cancel_when([cancel] { return cancel->cancelled.load(); });
+    const ProgressCall progress_call(progress, execution);
+    EditResult result;
+    {
+      const py::gil_scoped_release unlocked;
+      result = work(session_, execution);
+    }
+    progress_call.rethrow();
+    return dict_of(result);
+  }
+
+  /// The session is in use until the job is done.
+  std::unique_ptr<NativeJob> start_call(const SessionCall& work) {
+    auto in_use = std::make_shared<std::optional<InUse>>(std::in_place, in_use_);
+    const auto carry_out = [self = shared_from_this(), in_use, work](Execution& execution) {
+      const std::shared_ptr<void> at_end(nullptr, [&](void*) { in_use->reset(); });
+      return work(self->session_, execution);
+    };
+    return start_job(threads_, carry_out, [](const EditResult& result) { return dict_of(result); });
   }
 
   void restore(const DoubleArray& controls, const std::optional<DoubleArray>& goal) {
@@ -136,27 +182,6 @@ class Session {
   }
 
  private:
-  static EditSession make(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                          Controls controls, const EditOptions& options) {
-    const py::gil_scoped_release unlocked;
-    return EditSession(std::move(surface), std::move(deformation), std::move(controls), options);
-  }
-
-  template <class Work>
-  py::dict call(const CancelToken* cancel, const py::object& progress, const Work& work) {
-    const InUse in_use(in_use_);
-    Execution execution(threads_);
-    if (cancel != nullptr) execution.cancel_when([cancel] { return cancel->cancelled.load(); });
-    const ProgressCall progress_call(progress, execution);
-    EditResult result;
-    {
-      const py::gil_scoped_release unlocked;
-      result = work(execution);
-    }
-    progress_call.rethrow();
-    return dict_of(result);
-  }
-
   int threads_;
   EditSession session_;
   std::atomic<bool> in_use_{false};
@@ -226,12 +251,44 @@ void bind_editing(py::module_& module) {
       .def_property_readonly("cancelled", [](const CancelToken& token) { return token.cancelled.load(); });
   const auto cancel = py::arg("cancel") = static_cast<CancelToken*>(nullptr);
   const auto progress = py::arg("progress") = py::none();
-  py::class_<Session>(module, "EditSession")
-      .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<Deformation>, const DoubleArray&, const EditOptions&>(),
-           py::arg("surface"), py::arg("deformation"), py::arg("controls"), py::arg("options"))
-      .def("edit", &Session::edit, py::arg("goal"), cancel, progress)
-      .def("drag", &Session::drag, py::arg("goal"), cancel, progress, py::arg("time_budget") = py::none())
-      .def("settle", &Session::settle, cancel, progress)
+  const py::arg surface("surface"), deformation("deformation"), controls("controls"), options("options"), goal("goal");
+  const auto time_budget = py::arg("time_budget") = py::none();
+  using Token = const CancelToken*;
+  py::class_<Session, std::shared_ptr<Session>>(module, "EditSession")
+      .def(py::init([](std::shared_ptr<Surface> from, std::shared_ptr<Deformation> map, const DoubleArray& start,
+                       const EditOptions& chosen) { return Session::open(from, map, start, chosen); }),
+           surface, deformation, controls, options)
+      .def_static(
+          "start",
+          [](std::shared_ptr<Surface> from, std::shared_ptr<Deformation> map, const DoubleArray& start,
+             const EditOptions& chosen) { return Session::start(from, map, start, chosen); },
+          surface, deformation, controls, options)
+      .def(
+          "edit",
+          [](Session& session, const DoubleArray& to, Token token, const py::object& report) {
+            return session.call(edit_to(to), token, report);
+          },
+          goal, cancel, progress)
+      .def(
+          "drag",
+          [](Session& session, const DoubleArray& to, Token token, const py::object& report,
+             const std::optional<double>& budget) { return session.call(drag_to(to, budget), token, report); },
+          goal, cancel, progress, time_budget)
+      .def(
+          "settle",
+          [](Session& session, Token token, const py::object& report) {
+            return session.call(settle_session, token, report);
+          },
+          cancel, progress)
+      .def(
+          "start_edit", [](Session& session, const DoubleArray& to) { return session.start_call(edit_to(to)); }, goal)
+      .def(
+          "start_drag",
+          [](Session& session, const DoubleArray& to, const std::optional<double>& budget) {
+            return session.start_call(drag_to(to, budget));
+          },
+          goal, time_budget)
+      .def("start_settle", [](Session& session) { return session.start_call(settle_session); })
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
       .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))
       .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))

@@ -12,6 +12,7 @@ namespace {
 // Never freed: the translators may run for as long as the interpreter does.
 PyObject* input_error = nullptr;
 PyObject* start_intersects_error = nullptr;
+PyObject* cancelled_error = nullptr;
 
 PyObject* new_exception(py::module_& module, const char* name, PyObject* base, const char* documentation) {
   const std::string qualified = std::string("stiv.") + name;
@@ -35,6 +36,8 @@ void register_exceptions(py::module_& module) {
                               "Invalid input: the message names object and element. Nothing was changed.");
   start_intersects_error = new_exception(module, "StartIntersectsError", input_error,
                                          "The start intersects itself; `pairs`, (K, 2) int32, lists the triangles.");
+  cancelled_error = new_exception(module, "CancelledError", PyExc_RuntimeError,
+                                  "The work was cancelled before it had a result. Nothing was changed.");
   py::register_local_exception_translator(
       [](std::exception_ptr pointer) {  // NOLINT(performance-unnecessary-value-param)
         try {
@@ -43,6 +46,8 @@ void register_exceptions(py::module_& module) {
           raise_start_intersects(error);
         } catch (const stiv::InputError& error) {
           PyErr_SetString(input_error, error.what());
+        } catch (const stiv::Interrupted& error) {
+          PyErr_SetString(cancelled_error, error.what());
         }
       });
 }
@@ -53,6 +58,7 @@ PYBIND11_MODULE(_native, module) {
   module.doc() = "The native core. Use the package `stiv`, which documents it.";
   register_exceptions(module);
   stiv::bindings::bind_vector_target(module);
+  stiv::bindings::bind_job(module);
   stiv::bindings::bind_surface(module);
   stiv::bindings::bind_deformation(module);
   stiv::bindings::bind_detection(module);

@@ -5,6 +5,7 @@
 
 namespace stiv::bindings {
 
+void bind_job(pybind11::module_& module);
 void bind_surface(pybind11::module_& module);
 void bind_deformation(pybind11::module_& module);
 void bind_detection(pybind11::module_& module);

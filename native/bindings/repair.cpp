@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/repair/repair.hpp"
 
+#include <algorithm>
+#include <memory>
+
 #include "calls.hpp"
 #include "conversions.hpp"
+#include "job.hpp"
 #include "module.hpp"
 #include "stiv/repair/contraction.hpp"
 
@@ -98,32 +102,78 @@ Positions step(const SurfacePointer& surface, const Positions& start, const Posi
   return contraction_step(*surface, contraction_system(*surface, start, moves), q, smoothing);
 }
 
-py::dict run_contraction(const SurfacePointer& surface, const Controls& p, const std::vector<unsigned char>& moves,
-                         const ContractionOptions& options, int threads, const DeformationPointer& deformation,
-                         const SurfacePointer& cage, const CancelToken* cancel, const py::object& progress) {
-  return dict_of(call(threads, cancel, progress, [&](Execution& execution) {
+std::unique_ptr<NativeJob> start_step(const SurfacePointer& surface, const Positions& start, const Positions& q,
+                                      const std::vector<unsigned char>& moves, double smoothing) {
+  return start_job(
+      1,
+      [=](Execution& execution) {
+        execution.check();
+        return step(surface, start, q, moves, smoothing);
+      },
+      [](const Positions& result) { return py::cast(result); });
+}
+
+auto contraction_of(const SurfacePointer& surface, const Controls& p, const std::vector<unsigned char>& moves,
+                    const ContractionOptions& options, const DeformationPointer& deformation,
+                    const SurfacePointer& cage) {
+  return [=](Execution& execution) {
     try {
       return contract(caged_surface(surface, deformation, cage), p, moves, options, execution);
     } catch (const Interrupted&) {
       return ContractionResult{p, false, {}};
     }
-  }));
+  };
+}
+
+auto expansion_of(const SurfacePointer& surface, const Controls& from, const Controls& target,
+                  const EditOptions& options, const DeformationPointer& deformation) {
+  return [=](Execution& execution) {
+    return expand(surface, caged_surface(surface, deformation, surface).deformation, from, target, options, execution);
+  };
+}
+
+auto repair_of(const SurfacePointer& surface, const Controls& p, const RepairOptions& options,
+               const DeformationPointer& deformation, const SurfacePointer& cage) {
+  return [=](Execution& execution) { return repair(caged_surface(surface, deformation, cage), p, options, execution); };
+}
+
+py::dict run_contraction(const SurfacePointer& surface, const Controls& p, const std::vector<unsigned char>& moves,
+                         const ContractionOptions& options, int threads, const DeformationPointer& deformation,
+                         const SurfacePointer& cage, const CancelToken* cancel, const py::object& progress) {
+  return dict_of(call(threads, cancel, progress, contraction_of(surface, p, moves, options, deformation, cage)));
 }
 
 py::dict run_expansion(const SurfacePointer& surface, const Controls& from, const Controls& target,
                        const EditOptions& options, const DeformationPointer& deformation, const CancelToken* cancel,
                        const py::object& progress) {
-  return bindings::dict_of(call(options.threads, cancel, progress, [&](Execution& execution) {
-    return expand(surface, caged_surface(surface, deformation, surface).deformation, from, target, options, execution);
-  }));
+  return bindings::dict_of(
+      call(options.threads, cancel, progress, expansion_of(surface, from, target, options, deformation)));
 }
 
 py::dict run_repair(const SurfacePointer& surface, const Controls& p, const RepairOptions& options,
                     const DeformationPointer& deformation, const SurfacePointer& cage, const CancelToken* cancel,
                     const py::object& progress) {
-  return dict_of(call(options.edit.threads, cancel, progress, [&](Execution& execution) {
-    return repair(caged_surface(surface, deformation, cage), p, options, execution);
-  }));
+  return dict_of(call(options.edit.threads, cancel, progress, repair_of(surface, p, options, deformation, cage)));
+}
+
+std::unique_ptr<NativeJob> start_contraction(const SurfacePointer& surface, const Controls& p,
+                                             const std::vector<unsigned char>& moves, const ContractionOptions& options,
+                                             int threads, const DeformationPointer& deformation,
+                                             const SurfacePointer& cage) {
+  return start_job(threads, contraction_of(surface, p, moves, options, deformation, cage),
+                   [](const ContractionResult& result) { return dict_of(result); });
+}
+
+std::unique_ptr<NativeJob> start_expansion(const SurfacePointer& surface, const Controls& from, const Controls& target,
+                                           const EditOptions& options, const DeformationPointer& deformation) {
+  return start_job(std::max(0, options.threads), expansion_of(surface, from, target, options, deformation),
+                   [](const EditResult& result) { return bindings::dict_of(result); });
+}
+
+std::unique_ptr<NativeJob> start_repair(const SurfacePointer& surface, const Controls& p, const RepairOptions& options,
+                                        const DeformationPointer& deformation, const SurfacePointer& cage) {
+  return start_job(std::max(0, options.edit.threads), repair_of(surface, p, options, deformation, cage),
+                   [](const RepairResult& result) { return dict_of(result); });
 }
 
 }  // namespace
@@ -150,10 +200,15 @@ void bind_repair(py::module_& module) {
   const auto progress = py::arg("progress") = py::none();
   module.def("contraction_step", &step, surface, py::arg("start"), positions, moves, py::arg("smoothing"),
              py::call_guard<py::gil_scoped_release>());
+  module.def("start_contraction_step", &start_step, surface, py::arg("start"), positions, moves, py::arg("smoothing"));
   module.def("contract", &run_contraction, surface, positions, moves, options, py::arg("threads"), deformation, cage,
              cancel, progress);
   module.def("expand", &run_expansion, surface, positions, py::arg("target"), options, deformation, cancel, progress);
   module.def("repair", &run_repair, surface, positions, options, deformation, cage, cancel, progress);
+  module.def("start_contraction", &start_contraction, surface, positions, moves, options, py::arg("threads"),
+             deformation, cage);
+  module.def("start_expansion", &start_expansion, surface, positions, py::arg("target"), options, deformation);
+  module.def("start_repair", &start_repair, surface, positions, options, deformation, cage);
 }
 
 }  // namespace stiv::bindings

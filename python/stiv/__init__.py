@@ -2,7 +2,16 @@
 """Interference-aware geometric modeling: surfaces that do not go through each other."""
 
 from stiv._native import InputError, StartIntersectsError
-from stiv.contraction import ContractionOptions, ContractionResult, contract, contraction_step, expand
+from stiv.contraction import (
+    ContractionOptions,
+    ContractionResult,
+    contract,
+    contraction_step,
+    expand,
+    start_contract,
+    start_contraction_step,
+    start_expand,
+)
 from stiv.deformation import (
     Deformation,
     compose,
@@ -20,9 +29,10 @@ from stiv.distances import LeastDistance, least_distance
 from stiv.edit_session import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
+from stiv.job import CancelledError, Job, JobProgress
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.paper_preset import PAPER_DIFFERENCES
-from stiv.repairing import RepairOptions, RepairResult, repair
+from stiv.repairing import RepairOptions, RepairResult, repair, start_repair
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
 from stiv.weights import Weights
@@ -33,6 +43,7 @@ __all__ = [
     "Body",
     "Cage",
     "CancelToken",
+    "CancelledError",
     "ContractionOptions",
     "ContractionResult",
     "Deformation",
@@ -43,6 +54,8 @@ __all__ = [
     "Events",
     "InputError",
     "IntersectionTest",
+    "Job",
+    "JobProgress",
     "LeastDistance",
     "RepairOptions",
     "RepairResult",
@@ -79,6 +92,10 @@ __all__ = [
     "rigid_rest_controls",
     "scaling",
     "scaling_rest_controls",
+    "start_contract",
+    "start_contraction_step",
+    "start_expand",
+    "start_repair",
     "stored_mesh",
     "subdivided_faces",
     "subdivision_weights",

@@ -15,6 +15,7 @@ from stiv._native import Deformation, InputError
 from stiv.arrays import Floats, as_count, as_floats, as_number
 from stiv.edit_options import EditOptions, StorageFrame, native_options
 from stiv.edit_session import CancelToken, EditResult, Progress, result_of
+from stiv.job import Job
 from stiv.surface import Surface, as_surface
 
 
@@ -56,13 +57,38 @@ def contraction_step(
     Constrained Laplacian smoothing [Au et al., Skeleton extraction by mesh contraction, 2008]. It shrinks along the
     normals, thin parts first, and attracts shrunk parts to their position. Intersections may appear and disappear.
     """
+    return _native.contraction_step(**_step_arguments(surface, positions, start, smoothing, moves))
+
+
+def start_contraction_step(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    smoothing: float = 1.0,
+    moves: ArrayLike | None = None,
+) -> Job[Floats]:
+    """Start :func:`contraction_step` as a job. It can only be cancelled before it begins."""
+    given = _step_arguments(surface, positions, start, smoothing, moves)
+    return Job(_native.start_contraction_step(**given), np.asarray)
+
+
+def _step_arguments(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    start: ArrayLike | None,
+    smoothing: float,
+    moves: ArrayLike | None,
+) -> dict[str, Any]:
+    """Return the arguments of the core."""
     q = as_floats(positions, "positions", (None, 3))
     whole = as_surface(surface, len(q))
     first = q if start is None else as_floats(start, "start", (len(q), 3))
     strength = as_number(smoothing, "smoothing", 0)
     if strength == 0:
         raise InputError("smoothing must be above 0")
-    return _native.contraction_step(whole.native, first, q, as_marks(moves, len(q)), strength)
+    marks = as_marks(moves, len(q))
+    return {"surface": whole.native, "start": first, "positions": q, "moves": marks, "smoothing": strength}
 
 
 def contract(
@@ -90,16 +116,57 @@ def contract(
     storage           frames of stored controls, as in EditOptions; empty: world coordinates for all
     cancel, progress  as for EditSession.edit; a cancelled contraction returns the start, without counts of pairs
     """
+    given = _contraction_arguments(
+        surface, positions, options, deformation, cage, moves, single_precision, storage, threads
+    )
+    return ContractionResult(**_native.contract(**given, cancel=cancel, progress=progress))
+
+
+def start_contract(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    options: ContractionOptions | None = None,
+    *,
+    deformation: Deformation | None = None,
+    cage: Surface | ArrayLike | None = None,
+    moves: ArrayLike | None = None,
+    single_precision: bool = True,
+    storage: Sequence[StorageFrame] = (),
+    threads: int = 0,
+) -> Job[ContractionResult]:
+    """Start :func:`contract` as a job."""
+    given = _contraction_arguments(
+        surface, positions, options, deformation, cage, moves, single_precision, storage, threads
+    )
+    return Job(_native.start_contraction(**given), lambda values: ContractionResult(**values))
+
+
+def _contraction_arguments(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    options: ContractionOptions | None,
+    deformation: Deformation | None,
+    cage: Surface | ArrayLike | None,
+    moves: ArrayLike | None,
+    single_precision: bool,
+    storage: Sequence[StorageFrame],
+    threads: int,
+) -> dict[str, Any]:
+    """Return the arguments of the core."""
     p = as_floats(positions, "positions", (None, 3))
     whole, mesh = as_caged(surface, deformation, cage, len(p))
     native = native_contraction(options or ContractionOptions())
     frames = [_native.StorageFrame(each.first, each.count, np.asarray(each.frame, float)) for each in storage]
     native.storage = (frames or [_native.StorageFrame(0, len(p), np.eye(4))]) if single_precision else []
-    values = _native.contract(
-        whole.native, p, as_marks(moves, len(p)), native, as_count(threads, "threads"), deformation, mesh.native,
-        cancel, progress,
-    )  # fmt: skip
-    return ContractionResult(**values)
+    return {
+        "surface": whole.native,
+        "positions": p,
+        "moves": as_marks(moves, len(p)),
+        "options": native,
+        "threads": as_count(threads, "threads"),
+        "deformation": deformation,
+        "cage": mesh.native,
+    }
 
 
 def expand(
@@ -121,11 +188,37 @@ def expand(
 
     One edit, then settling; used to undo a contraction. Raises StartIntersectsError if `positions` intersect.
     """
+    whole, given = _expansion_arguments(surface, positions, target, options, deformation)
+    return result_of(_native.expand(**given, cancel=cancel, progress=progress), whole)
+
+
+def start_expand(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    target: ArrayLike,
+    options: EditOptions | None = None,
+    *,
+    deformation: Deformation | None = None,
+) -> Job[EditResult]:
+    """Start :func:`expand` as a job."""
+    whole, given = _expansion_arguments(surface, positions, target, options, deformation)
+    return Job(_native.start_expansion(**given), lambda values: result_of(values, whole))
+
+
+def _expansion_arguments(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    target: ArrayLike,
+    options: EditOptions | None,
+    deformation: Deformation | None,
+) -> tuple[Surface, dict[str, Any]]:
+    """Return the surface, and the arguments of the core."""
     p = as_floats(positions, "positions", (None, 3))
     whole = as_surface(surface, len(p) if deformation is None else deformation.vertex_count)
     goal = as_floats(target, "target", (len(p), 3))
     native = native_options(options or EditOptions())
-    return result_of(_native.expand(whole.native, p, goal, native, deformation, cancel, progress), whole)
+    given = {"surface": whole.native, "positions": p, "target": goal, "options": native, "deformation": deformation}
+    return whole, given
 
 
 def as_caged(

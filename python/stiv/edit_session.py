@@ -23,6 +23,7 @@ from stiv.edit_options import (
     native_options,
     with_numbers,
 )
+from stiv.job import Job
 from stiv.surface import Surface, as_surface
 
 __all__ = ["CancelToken", "EditOptions", "EditResult", "EditSession", "StorageFrame", "edit"]
@@ -63,7 +64,8 @@ class EditSession:
     """A surface, the deformation that moves it, and the last accepted controls.
 
     Every accepted state is free of intersections, and so is the path to it from the previous one. A session accepts one
-    call at a time; sessions are independent of each other. Solving releases the interpreter lock.
+    call at a time; sessions are independent of each other. Solving releases the interpreter lock. Methods whose name
+    begins with ``start`` return a :class:`stiv.Job`; until it is done, other calls of the session raise InputError.
 
     A start that intersects is rejected, unless the intersecting pairs are excluded (`EditOptions.exclude`). Then the
     number of excluded pairs that intersect never grows, and no other pair ever intersects. The volume that two closed
@@ -91,10 +93,26 @@ class EditSession:
         controls: ArrayLike,
         options: EditOptions | None = None,
     ) -> None:
-        self._topology = as_surface(surface, deformation.vertex_count)
-        start = as_doubles(controls, "controls")
-        chosen = with_numbers(options or EditOptions(), self._topology, lambda: deformation.surface(start))
-        self._session = _native.EditSession(self._topology.native, deformation, start, native_options(chosen))
+        self._topology, *given = _native_arguments(surface, deformation, controls, options)
+        self._session = _native.EditSession(self._topology.native, *given)
+
+    @classmethod
+    def start(
+        cls,
+        surface: Surface | ArrayLike,
+        deformation: Deformation,
+        controls: ArrayLike,
+        options: EditOptions | None = None,
+    ) -> Job[EditSession]:
+        """Start making a session, as a job; the arguments are those of the class."""
+        topology, *given = _native_arguments(surface, deformation, controls, options)
+
+        def wrap(native: _native.EditSession) -> EditSession:
+            session = cls.__new__(cls)
+            session._topology, session._session = topology, native
+            return session
+
+        return Job(_native.EditSession.start(topology.native, *given), wrap)
 
     @property
     def controls(self) -> NDArray[np.float64]:
@@ -160,6 +178,21 @@ class EditSession:
         """Solve again toward the last goal until the energy no longer falls. It never grows."""
         return result_of(self._session.settle(cancel, progress), self._topology)
 
+    def start_edit(self, goal: ArrayLike) -> Job[EditResult]:
+        """Start :meth:`edit` as a job."""
+        return self._job(self._session.start_edit(as_doubles(goal, "goal")))
+
+    def start_drag(self, goal: ArrayLike, *, time_budget: float | None = None) -> Job[EditResult]:
+        """Start :meth:`drag` as a job."""
+        return self._job(self._session.start_drag(as_doubles(goal, "goal"), time_budget))
+
+    def start_settle(self) -> Job[EditResult]:
+        """Start :meth:`settle` as a job."""
+        return self._job(self._session.start_settle())
+
+    def _job(self, native: _native.Job) -> Job[EditResult]:
+        return Job(native, lambda values: result_of(values, self._topology))
+
     def restore(self, controls: ArrayLike, goal: ArrayLike | None = None) -> None:
         """Restore ``controls``, (m, 3), that were accepted earlier (undo, cancel).
 
@@ -178,6 +211,16 @@ class EditSession:
         Continues from the accepted state as after :meth:`restore`. Raises InputError, with nothing changed.
         """
         self._session.set_weights(as_weights(weights), as_weight_axes(weight_axes))
+
+
+def _native_arguments(
+    surface: Surface | ArrayLike, deformation: Deformation, controls: ArrayLike, options: EditOptions | None
+) -> tuple[Any, ...]:
+    """Return the surface, then the other arguments of the core."""
+    topology = as_surface(surface, deformation.vertex_count)
+    start = as_doubles(controls, "controls")
+    chosen = with_numbers(options or EditOptions(), topology, lambda: deformation.surface(start))
+    return topology, deformation, start, native_options(chosen)
 
 
 def edit(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from stiv.arrays import Indices, as_floats, as_number
 from stiv.contraction import ContractionOptions, as_caged, as_marks, native_contraction
 from stiv.edit_options import EditOptions, native_options
 from stiv.edit_session import CancelToken, Progress
+from stiv.job import Job
 from stiv.surface import Surface
 from stiv.welding import Welded, weld
 
@@ -89,6 +91,31 @@ def repair(
     common, closed bodies first; everything; components shrunk until they are apart, then regions around the
     intersections within them; one component after the other; regions around the intersections.
     """
+    welded, given = _native_arguments(surface, positions, options, deformation, cage)
+    return _result_of(_native.repair(**given, cancel=cancel, progress=progress), welded)
+
+
+def start_repair(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    options: RepairOptions | None = None,
+    *,
+    deformation: Deformation | None = None,
+    cage: Surface | ArrayLike | None = None,
+) -> Job[RepairResult]:
+    """Start :func:`repair` as a job."""
+    welded, given = _native_arguments(surface, positions, options, deformation, cage)
+    return Job(_native.start_repair(**given), lambda values: _result_of(values, welded))
+
+
+def _native_arguments(
+    surface: Surface | ArrayLike,
+    positions: ArrayLike,
+    options: RepairOptions | None,
+    deformation: Deformation | None,
+    cage: Surface | ArrayLike | None,
+) -> tuple[Welded, dict[str, Any]]:
+    """Return the welded surface, and the arguments of the core."""
     chosen = options or RepairOptions()
     q = as_floats(positions, "positions", (None, 3))
     given, mesh = as_caged(surface, deformation, cage, len(q))
@@ -102,9 +129,18 @@ def repair(
     native.moves = as_marks(moves, len(whole.positions))
     native.good_deviation = as_number(chosen.good_deviation, "good_deviation", 0)
     native.max_deviation = as_number(chosen.max_deviation, "max_deviation", 0)
-    values = _native.repair(whole.surface.native, whole.positions, native, deformation, mesh.native, cancel, progress)
+    return whole, {
+        "surface": whole.surface.native,
+        "positions": whole.positions,
+        "options": native,
+        "deformation": deformation,
+        "cage": mesh.native,
+    }
+
+
+def _result_of(values: dict[str, Any], welded: Welded) -> RepairResult:
     message = _REFUSALS[values["refusal"]].format(**values)
-    return RepairResult(message=message, surface=whole.surface, vertex_map=whole.vertex_map, **values)
+    return RepairResult(message=message, surface=welded.surface, vertex_map=welded.vertex_map, **values)
 
 
 def _moves_after(welded: Welded, moves: ArrayLike | None, count: int) -> ArrayLike | None:

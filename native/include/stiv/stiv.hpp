@@ -12,4 +12,5 @@
 #include "stiv/deformation/subdivision.hpp"
 #include "stiv/editing/session.hpp"
 #include "stiv/error.hpp"
+#include "stiv/job.hpp"
 #include "stiv/repair/repair.hpp"

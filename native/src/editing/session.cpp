@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/editing/session.hpp"
 
+#include <algorithm>
+
 #include "editing/drag.hpp"
 #include "editing/edit_result.hpp"
 #include "editing/sub_edit_loop.hpp"
@@ -25,16 +27,21 @@ enum class FollowedGoal {
 class EditSession::Implementation {
  public:
   Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                 const Controls& controls, EditOptions options)
+                 const Controls& controls, EditOptions options, Execution& execution)
       : context_(std::move(surface), std::move(deformation), controls, std::move(options)), queries_(context_) {
-    restore(controls, controls);
+    execution.check();
+    restore(controls, controls, execution);
   }
 
   void restore(const Controls& controls, const Controls& goal) {
+    Execution execution(context_.options().threads);
+    restore(controls, goal, execution);
+  }
+
+  void restore(const Controls& controls, const Controls& goal, Execution& execution) {
     const FloatingPointScope floating_point;
     context_.check_controls(controls, "controls");
     context_.check_controls(goal, "goal");
-    Execution execution(context_.options().threads);
     State state{controls, context_.surface_at(controls, execution)};
     const bool is_known = controls.rows() == checked_.rows() && controls == checked_;
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
@@ -183,9 +190,15 @@ class EditSession::Implementation {
 };
 
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                         const Controls& controls, EditOptions options)
-    : implementation_(
-          std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls, std::move(options))) {}
+                         const Controls& controls, EditOptions options) {
+  Execution execution(std::max(0, options.threads));  // a negative number is reported with the other options
+  implementation_ = std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls,
+                                                     std::move(options), execution);
+}
+EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                         const Controls& controls, EditOptions options, Execution& execution)
+    : implementation_(std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls,
+                                                       std::move(options), execution)) {}
 EditSession::~EditSession() = default;
 EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;

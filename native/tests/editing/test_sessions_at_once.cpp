@@ -9,6 +9,8 @@
 
 #include "editing/small_scenes.hpp"
 #include "stiv/editing/session.hpp"
+#include "stiv/error.hpp"
+#include "stiv/job.hpp"
 
 using namespace stiv;
 using namespace stiv::tests;
@@ -24,6 +26,12 @@ std::array<Controls, 3> solved(const Scene& scene, double shift) {
   const Controls dragged = session.drag(goal, first).controls;
   const Controls settled = session.settle(second).controls;
   return {dragged, settled, session.edit(scene.controls, third).controls};
+}
+
+Controls lowered(const Scene& scene) {
+  Controls goal = scene.controls;
+  goal.topRows(169).rowwise() += Eigen::RowVector3d(0.1, 0, -0.8);
+  return goal;
 }
 
 }  // namespace
@@ -45,8 +53,7 @@ TEST_CASE("sessions: cancelled from another thread at any moment, nothing is lef
   const Scene scene = two_sheets(12);
   EditSession session(scene.surface, scene.deformation, scene.controls);
   const Controls before = session.controls();
-  Controls goal = before;
-  goal.topRows(169).rowwise() += Eigen::RowVector3d(0.1, 0, -0.8);
+  const Controls goal = lowered(scene);
   for (int waits = 1; waits <= 1 << 14; waits *= 4) {
     std::atomic<bool> flag{false};
     Execution execution(2);
@@ -60,4 +67,38 @@ TEST_CASE("sessions: cancelled from another thread at any moment, nothing is lef
     if (result.status == EditStatus::cancelled) CHECK(session.controls() == before);
     session.restore(before);
   }
+}
+
+TEST_CASE("sessions: a job solves with the same bits as a synchronous call") {
+  const Scene scene = two_sheets(12);
+  const Controls goal = lowered(scene);
+  EditSession first(scene.surface, scene.deformation, scene.controls);
+  Execution execution(2);
+  const EditResult expected = first.edit(goal, execution);
+  EditSession second(scene.surface, scene.deformation, scene.controls);
+  const Job<EditResult> job([&](Execution& own) { return second.edit(goal, own); }, 2);
+  const EditResult& result = job.result();
+  CHECK(job.poll().done);
+  CHECK(job.poll().fraction > 0);
+  CHECK(result.status == expected.status);
+  CHECK(result.controls == expected.controls);
+  CHECK(result.path == expected.path);
+  CHECK(second.surface() == first.surface());
+}
+
+TEST_CASE("sessions: a cancelled job keeps the state before it, and cancelled construction is interrupted") {
+  const Scene scene = two_sheets(12);
+  EditSession session(scene.surface, scene.deformation, scene.controls);
+  Job<EditResult> job(
+      [&](Execution& execution) {
+        while (!execution.cancel_requested()) std::this_thread::yield();
+        return session.edit(lowered(scene), execution);
+      },
+      2);
+  job.cancel();
+  CHECK(job.result().status == EditStatus::cancelled);
+  CHECK(session.controls() == scene.controls);
+  Execution cancelled(2);
+  cancelled.request_cancel();
+  CHECK_THROWS_AS(EditSession(scene.surface, scene.deformation, scene.controls, {}, cancelled), Interrupted);
 }

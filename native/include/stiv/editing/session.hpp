@@ -47,6 +47,9 @@ class EditSession {
   ///         where bodies meet.
   EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
               const Controls& controls, EditOptions options = {});
+  /// The same with the caller's threads and cancellation. @throws Interrupted as well
+  EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+              const Controls& controls, EditOptions options, Execution& execution);
   ~EditSession();
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
