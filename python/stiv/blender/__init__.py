@@ -6,7 +6,7 @@ from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_ref
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
-from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit
+from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
 from stiv.blender.edit.state_writer import WriteReport
@@ -42,6 +42,8 @@ from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface
 from stiv.blender.verify.face_selection import faces_of, select_faces
 from stiv.blender.verify.scene_check import SceneCheck, check_scene, find_exclusions, nearest_pair, read_surface
 from stiv.blender.verify.untested import unguarded_text
+from stiv.task import Steps, Task
+from stiv.task import run as run_steps
 
 follow = correct_after_tool  # its name in version 0.1.0
 
@@ -88,11 +90,14 @@ __all__ = [
     "SceneState",
     "SettleIntoContact",
     "SettleSettings",
+    "Steps",
+    "Task",
     "ToolCorrection",
     "WeightGroup",
     "WriteReport",
     "add_refined",
     "begin_culled_edit",
+    "begin_culled_steps",
     "check_scene",
     "choose_guard",
     "compare",
@@ -120,6 +125,7 @@ __all__ = [
     "remove_refined",
     "repair_scene",
     "revert",
+    "run_steps",
     "run_to_end",
     "select_faces",
     "settle_into_contact",

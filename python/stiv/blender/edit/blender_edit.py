@@ -28,11 +28,14 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.culling import CullingBox
 from stiv.blender.scene.exclusions import self_intersection_notes
 from stiv.blender.settings import EditSettings, check_kind
+from stiv.task import Steps, run
 
 
 class BlenderEdit:
     """An edit from the snapshot of the scene to the last state written. It holds no references to Blender's data
     between calls.
+
+    Methods whose name ends with ``_steps`` return the same work for a stiv.blender.Task, which solves in jobs.
 
     Attributes:
         dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
@@ -52,7 +55,6 @@ class BlenderEdit:
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
         self._solver = EditSolver(snapshot.assembly, self._made, self._start, settings)
-        self._writer = StateWriter(self._made, self._solver, settings)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -60,8 +62,13 @@ class BlenderEdit:
 
         Raises InputError naming object, element and ways out, StartIntersectsError if the start intersects.
         """
+        return run(cls.begin_steps(context, settings, kind))
+
+    @classmethod
+    def begin_steps(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> Steps[BlenderEdit]:
+        """Steps of `begin`; the first reads the scene."""
         check_kind(kind)
-        return cls.begin_with(context, settings, kind, find_participants(context, settings))
+        return cls.begin_with_steps(context, settings, kind, find_participants(context, settings))
 
     @classmethod
     def begin_with(
@@ -77,7 +84,26 @@ class BlenderEdit:
 
         Obstacles outside the `culling` box are left out.
         """
-        return cls(take_snapshot(context, settings, kind, participants, adapt, culling))
+        return run(cls.begin_with_steps(context, settings, kind, participants, adapt, culling))
+
+    @classmethod
+    def begin_with_steps(
+        cls,
+        context: bpy.types.Context,
+        settings: EditSettings,
+        kind: str,
+        participants: Sequence[Participant],
+        adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
+        culling: CullingBox | None = None,
+    ) -> Steps[BlenderEdit]:
+        """Steps of `begin_with`."""
+        edit = cls(take_snapshot(context, settings, kind, participants, adapt, culling))
+        yield from edit._solver.start()
+        return edit
+
+    @cached_property
+    def _writer(self) -> StateWriter:
+        return StateWriter(self._made, self._solver, self._settings)
 
     @property
     def summary(self) -> Summary:
@@ -136,7 +162,7 @@ class BlenderEdit:
     def goal_of(self, motion: Motion | ArrayLike) -> Floats:
         """Goal, (m, 3), for a motion, which decides how the controls respond. Raises InputError as `drag` does."""
         chosen_motion = self._motion_of(motion)
-        self._limit(chosen_motion)
+        run(self._limit(chosen_motion))
         return self._goal_of(chosen_motion)
 
     def moving_points(self, controls: Floats) -> Floats:
@@ -167,7 +193,7 @@ class BlenderEdit:
         if accepted.shape != self._start.shape:
             return False
         if motion is not None:
-            self._limit(self._motion_of(motion))
+            run(self._limit(self._motion_of(motion)))
         if self._unguarded is not None:
             self._unguarded = accepted
             return True
@@ -217,36 +243,54 @@ class BlenderEdit:
 
         `cancel` and `progress` are those of stiv.EditSession. Raises InputError if the matrix is not finite.
         """
+        return run(self.drag_steps(motion, execution.pop("time_budget", None)), **execution)
+
+    def drag_steps(self, motion: Motion | ArrayLike, time_budget: float | None = None) -> Steps[stiv.EditResult]:
+        """Steps of `drag`."""
         chosen_motion = self._motion_of(motion)
-        self._limit(chosen_motion)
+        yield from self._limit(chosen_motion)
         self._goal = self._goal_of(chosen_motion)
         if self._unguarded is not None:
             self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
-        return self._solver.solve(self._goal, **execution)
+        return (yield from self._solver.solve(self._goal, time_budget=time_budget))
 
     def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
         """Solve for a goal of all controls, (m, 3)."""
+        return run(self.drag_to_steps(goal), **execution)
+
+    def drag_to_steps(self, goal: Floats) -> Steps[stiv.EditResult]:
+        """Steps of `drag_to`."""
         self._goal = goal
-        return self._solver.solve(goal, **execution)
+        return (yield from self._solver.solve(goal))
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
 
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
-        results = []
-        for increment in split_motion(self._motion_of(motion), path, self.assembly.positions[self._moving_vertices]):
-            results.append(self.drag(increment, **execution))
+        return run(self.apply_steps(motion, path), **execution)
+
+    def apply_steps(self, motion: Motion | ArrayLike, path: Path | None = None) -> Steps[stiv.EditResult]:
+        """Steps of `apply`. If they are cancelled, the increments so far remain."""
+        results: list[stiv.EditResult] = []
+        increments = [*split_motion(self._motion_of(motion), path, self.assembly.positions[self._moving_vertices])]
+        for number, increment in enumerate(increments):
+            yield number / len(increments)
+            results.append((yield from self.drag_steps(increment)))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
-        return merge_results([*results, self.settle(**execution)])
+        return merge_results([*results, (yield from self.settle_steps())])
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
+        return run(self.settle_steps(), **execution)
+
+    def settle_steps(self) -> Steps[stiv.EditResult]:
+        """Steps of `settle`."""
         if self._unguarded is not None:
             return unguarded_result(self._solver.deformation, self._unguarded)
-        return self._solver.solve(None, **execution)
+        return (yield from self._solver.solve(None))
 
     def write(self) -> WriteReport:
         """Write the accepted controls, read Blender's evaluation back and test it (see `StateWriter`).
@@ -281,13 +325,13 @@ class BlenderEdit:
         chosen = Motion.of(motion)
         return replace(chosen, free=None) if self._settings.slide_out_of_axis else chosen
 
-    def _limit(self, motion: Motion) -> None:
-        """Let the controls respond as the motion allows: its axis lock, pivot and proportional editing."""
+    def _limit(self, motion: Motion) -> Steps[None]:
+        """Steps that let the controls respond as the motion allows: its axis lock, pivot and proportional editing."""
         limits = [each.rule.limits(motion) for each in self._made]
         if limits != self._limits:
             self._limits = limits
             weight = self._settings.response_weight(True)
-            self._solver.change_response([each.rule.limited(each, motion, weight) for each in self._made])
+            yield from self._solver.change_response([each.rule.limited(each, motion, weight) for each in self._made])
 
     def _goal_of(self, motion: Motion) -> Floats:
         last = split_controls(self._goal, self.control_sets)

@@ -19,6 +19,7 @@ from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.culling import CullingBox, find_culling_box
 from stiv.blender.settings import EditSettings, check_kind
+from stiv.task import Steps, run
 
 MAX_WIDENINGS = 4  # then all obstacles are loaded, which bounds the number of restarts
 
@@ -28,12 +29,18 @@ def begin_culled_edit(context: bpy.types.Context, settings: EditSettings, kind: 
 
     Raises the same errors.
     """
+    return run(begin_culled_steps(context, settings, kind))
+
+
+def begin_culled_steps(
+    context: bpy.types.Context, settings: EditSettings, kind: str
+) -> Steps[CulledEdit | BlenderEdit]:
+    """Steps of `begin_culled_edit`; the first reads the scene."""
     check_kind(kind)
     participants = find_participants(context, settings)
     culling = find_culling_box(context, names_of(participants), settings)
-    if culling is None:
-        return BlenderEdit.begin_with(context, settings, kind, participants)
-    return CulledEdit(context, settings, kind, culling)
+    edit = yield from BlenderEdit.begin_with_steps(context, settings, kind, participants, culling=culling)
+    return edit if culling is None else CulledEdit(edit, settings, kind, culling)
 
 
 class CulledEdit:
@@ -43,11 +50,10 @@ class CulledEdit:
     the box, an edit with a larger box resumes from the last written state.
     """
 
-    def __init__(self, context: bpy.types.Context, settings: EditSettings, kind: str, culling: CullingBox) -> None:
+    def __init__(self, edit: BlenderEdit, settings: EditSettings, kind: str, culling: CullingBox) -> None:
         self._settings, self._kind = settings, kind
         self._culling: CullingBox | None = culling
-        participants = find_participants(context, settings)
-        self._edit = BlenderEdit.begin_with(context, settings, kind, participants, culling=culling)
+        self._edit = edit
         self._written = self._edit.controls
         self._motion: Motion | ArrayLike | None = None
         self._widened = 0
@@ -63,27 +69,35 @@ class CulledEdit:
 
     def drag(self, motion: Motion | ArrayLike, **execution: Any) -> stiv.EditResult:
         """See BlenderEdit."""
+        return run(self.drag_steps(motion, execution.pop("time_budget", None)), **execution)
+
+    def drag_steps(self, motion: Motion | ArrayLike, time_budget: float | None = None) -> Steps[stiv.EditResult]:
+        """See BlenderEdit."""
         self._motion, goal = motion, self._edit.goal_of(motion)
         if self._edit.interference and not self._is_within_box([goal]):
-            self._widen([goal])
-        result = self._edit.drag(motion, **execution)
+            yield from self._widen([goal])
+        result = yield from self._edit.drag_steps(motion, time_budget)
         while not self._stays_within_box(result):
-            self._widen([goal, *result.path, result.controls])
-            result = self._edit.drag(motion, **execution)
+            yield from self._widen([goal, *result.path, result.controls])
+            result = yield from self._edit.drag_steps(motion, time_budget)
         return result
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """See BlenderEdit."""
+        return run(self.settle_steps(), **execution)
+
+    def settle_steps(self) -> Steps[stiv.EditResult]:
+        """See BlenderEdit."""
         goal = self._edit.goal
-        result = self._edit.settle(**execution)
+        result = yield from self._edit.settle_steps()
         while not self._stays_within_box(result):
-            self._widen([goal, *result.path, result.controls])
-            result = self._edit.drag_to(goal, **execution)
+            yield from self._widen([goal, *result.path, result.controls])
+            result = yield from self._edit.drag_to_steps(goal)
         return result
 
     def set_interference(self, on: bool) -> str:
         """See BlenderEdit. Loads all obstacles first, because surfaces may go anywhere while collisions are off."""
-        self._restart_within(None)
+        run(self._restart_within(None))
         return self._edit.set_interference(on)
 
     def write(self) -> WriteReport:
@@ -91,7 +105,7 @@ class CulledEdit:
         report = self._edit.write()
         self._written = self._edit.controls
         if report.result is not None:  # solved again, along a path that was not checked against the box
-            self._restart_within(None)
+            run(self._restart_within(None))
         return report
 
     def restore(self) -> None:
@@ -105,7 +119,7 @@ class CulledEdit:
     def _is_within_box(self, states: Iterable[Floats]) -> bool:
         return self._culling is None or all(self._culling.contains(self._edit.moving_points(state)) for state in states)
 
-    def _widen(self, states: Iterable[Floats]) -> None:
+    def _widen(self, states: Iterable[Floats]) -> Steps[None]:
         """Restart with a box around the present one and these states; after several times, with all obstacles."""
         if self._culling is None:
             return
@@ -114,18 +128,20 @@ class CulledEdit:
         self._widened += 1
         participants = find_participants(bpy.context, self._settings)
         few = self._widened <= MAX_WIDENINGS
-        self._restart_within(
+        yield from self._restart_within(
             find_culling_box(bpy.context, names_of(participants), self._settings, beyond) if few else None
         )
 
-    def _restart_within(self, culling: CullingBox | None) -> None:
+    def _restart_within(self, culling: CullingBox | None) -> Steps[None]:
         """Restart with the obstacles of a box (None: all of them) and resume from the last written state."""
         if self._culling is None:
             return
         shown = self._written
         self._edit.restore()
         participants = find_participants(bpy.context, self._settings)
-        self._edit = BlenderEdit.begin_with(bpy.context, self._settings, self._kind, participants, culling=culling)
+        self._edit = yield from BlenderEdit.begin_with_steps(
+            bpy.context, self._settings, self._kind, participants, culling=culling
+        )
         self._culling = culling
         if self._edit.resume_from(shown, self._motion):
             self._edit.write()

@@ -2,6 +2,7 @@
 """Makes the session that solves for all control sets of an assembly."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 import numpy as np
@@ -16,6 +17,7 @@ from stiv.blender.scene.evaluations import RENDER
 from stiv.blender.scene.exclusions import find_excluded_triangles
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
+from stiv.task import Call, Steps
 
 
 def assemble_with_controls(
@@ -40,8 +42,8 @@ def make_session(
     control_sets: Sequence[ControlSet],
     controls: ArrayLike,
     settings: EditSettings,
-) -> stiv.EditSession:
-    """Make a session of all control sets, from their stacked controls, (m, 3).
+) -> Steps[stiv.EditSession]:
+    """Steps that make a session of all control sets, from their stacked controls, (m, 3).
 
     deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
     """
@@ -57,11 +59,18 @@ def make_session(
         storage=frames,
     )
     try:
-        return stiv.EditSession(assembly.surface, deformation, controls, options)
+        session: stiv.EditSession = yield Call(
+            _open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options
+        )
+        return session
     except stiv.StartIntersectsError as error:
         if intersects_only_in_render(assembly, error):
             error.add_note("only the render intersects; set Guard to Viewport to leave it out")
         raise
+
+
+def _open_session(*given: Any, **_execution: Any) -> stiv.EditSession:
+    return stiv.EditSession(*given)
 
 
 def intersects_only_in_render(assembly: Assembly, error: stiv.StartIntersectsError) -> bool:

@@ -14,6 +14,7 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import exclude_self_intersections, has_only_excluded
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
+from stiv.task import Call, Steps, run
 
 
 class EditSolver:
@@ -25,20 +26,20 @@ class EditSolver:
     def __init__(
         self, assembly: Assembly, control_sets: Sequence[ControlSet], controls: Floats, settings: EditSettings
     ) -> None:
-        """Start at the controls of all control sets, (m, 3); without a session if collisions are off.
-
-        Raises InputError, StartIntersectsError.
-        """
+        """Take the controls of all control sets at the start, (m, 3). Call `start` before anything else."""
         self.control_sets = tuple(control_sets)
         self._settings = settings
         self.excluded = settings.excluded
         self._session: stiv.EditSession | None = None
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)
-        if settings.interference:
-            self._at_start = guard_bent_quads(assembly, settings.threads)
-            self._open_session(self._at_start, controls)
         self.trail = Trail(controls, controls)
+
+    def start(self) -> Steps[None]:
+        """Steps that open the session, if collisions are on. Raise InputError, StartIntersectsError."""
+        if self._settings.interference:
+            self._at_start = guard_bent_quads(self.assembly, self._settings.threads)
+            yield from self._open_session(self._at_start, self.trail.written)
 
     @property
     def has_session(self) -> bool:
@@ -51,9 +52,13 @@ class EditSolver:
         assert self._session is not None, "collisions were off from the start"
         return self._session
 
-    def solve(self, goal: Floats | None, **execution: Any) -> stiv.EditResult:
-        """Drag to a goal, (m, 3), or settle (None)."""
-        result = self.session.settle(**execution) if goal is None else self.session.drag(goal, **execution)
+    def solve(self, goal: Floats | None, **limits: Any) -> Steps[stiv.EditResult]:
+        """Steps that drag to a goal, (m, 3), or settle (None); `time_budget` as in stiv.EditSession.drag."""
+        session = self.session
+        if goal is None:
+            result: stiv.EditResult = yield Call(session.settle, session.start_settle)
+        else:
+            result = yield Call(session.drag, session.start_drag, goal, **limits)
         self.trail.add(goal, result)
         return result
 
@@ -61,8 +66,8 @@ class EditSolver:
         """Close the session: no state is known to be free of intersections."""
         self._session = None
 
-    def change_response(self, control_sets: Sequence[ControlSet]) -> None:
-        """Continue with the same controls and another response; from their start if they deform in another way."""
+    def change_response(self, control_sets: Sequence[ControlSet]) -> Steps[None]:
+        """Steps that change the response of the same controls; from their start if they deform in another way."""
         pairs = zip(self.control_sets, control_sets, strict=True)
         deforms_alike = all(before.deformation is after.deformation for before, after in pairs)
         self.control_sets = tuple(control_sets)
@@ -76,7 +81,7 @@ class EditSolver:
         if self._session is None:
             self.deformation = deformation_of(self.assembly, control_sets)
         else:
-            self._open_session(self._at_start, start)
+            yield from self._open_session(self._at_start, start)
 
     def restart_from(self, controls: Floats, goal: Floats) -> None:
         """Start a new trail at accepted controls, which may be older than the present extra triangles.
@@ -85,12 +90,12 @@ class EditSolver:
         """
         try:
             if self._session is None:
-                self._open_session(self.assembly, controls)
+                run(self._open_session(self.assembly, controls))
             self.session.restore(controls, goal)
         except stiv.StartIntersectsError:
             if self._session is None or self.assembly is self._at_start:
                 raise
-            self._open_session(self._at_start, controls)
+            run(self._open_session(self._at_start, controls))
             self.session.restore(controls, goal)
         self.trail = Trail(controls, goal)
 
@@ -112,24 +117,26 @@ class EditSolver:
         if state is None:
             return False
         goal = self.trail.goal_at(state)
-        self._open_session(assembly, state.controls)
+        run(self._open_session(assembly, state.controls))
         self.session.restore(state.controls, goal)
         for call in self.trail.truncate_at(state):
-            self.solve(call.goal)
+            run(self.solve(call.goal))
         return True
 
-    def _open_session(self, assembly: Assembly, controls: Floats) -> None:
+    def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
         """Open a session. Objects may intersect themselves at its first start."""
         deformation = deformation_of(assembly, self.control_sets)
         try:
-            session = self._make_session(assembly, deformation, controls)
+            session = yield from self._make_session(assembly, deformation, controls)
         except stiv.StartIntersectsError as error:
             if self._session is not None:
                 raise
             self.excluded = exclude_self_intersections(self._settings.excluded, assembly, error.pairs)
-            session = self._make_session(assembly, deformation, controls)
+            session = yield from self._make_session(assembly, deformation, controls)
         self._session, self.deformation, self.assembly = session, deformation, assembly
 
-    def _make_session(self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats) -> stiv.EditSession:
+    def _make_session(
+        self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats
+    ) -> Steps[stiv.EditSession]:
         settings = replace(self._settings, excluded=self.excluded)
         return make_session(assembly, deformation, self.control_sets, controls, settings)

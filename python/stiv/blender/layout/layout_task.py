@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import stiv
+from stiv.job import Job, JobProgress
+from stiv.task import Call, Steps
 
 Progress = Callable[[str, float], None]
 
@@ -63,6 +67,46 @@ class Watch:
             raise Stopped("budget")
 
 
+class LayoutJob(Job[None]):
+    """A solve of a layout on a thread of Python, since it calls the core many times. It has no access to Blender."""
+
+    def __init__(self, solve: Callable[..., None]) -> None:
+        """Start at once."""
+        self._token, self._progress = stiv.CancelToken(), JobProgress()
+        self._solve = solve
+        self._error: Exception | None = None
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def poll(self) -> JobProgress:
+        """Return the progress, without waiting."""
+        return replace(self._progress, done=not self._thread.is_alive())
+
+    def cancel(self) -> None:
+        """Ask the solve to stop."""
+        self._token.cancel()
+
+    def wait(self, seconds: float) -> bool:
+        """Wait until the solve is done, at most some seconds; return whether it is."""
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
+
+    def result(self) -> None:
+        """Wait for the end. Raises what the solve raised."""
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+
+    def _run(self) -> None:
+        try:
+            self._solve(cancel=self._token, progress=self._note)
+        except Exception as error:
+            self._error = error
+
+    def _note(self, phase: str, fraction: float) -> None:
+        self._progress = JobProgress(phase, fraction)
+
+
 class LayoutTask:
     """Base of layouts; a subclass solves and writes. Reading and writing require Blender's main thread."""
 
@@ -77,6 +121,10 @@ class LayoutTask:
             self._solve(Watch(cancel, progress, self._time_budget))
         except Stopped as stop:
             self._stopped = str(stop)
+
+    def solve_steps(self) -> Steps[None]:
+        """`solve` as a step for a stiv.blender.Task."""
+        yield Call(self.solve, partial(LayoutJob, self.solve))
 
     def write(self) -> LayoutReport:
         """Write the layout and test Blender's evaluation. Raises InputError, with nothing changed."""

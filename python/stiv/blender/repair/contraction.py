@@ -21,6 +21,7 @@ from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
 from stiv.edit_session import Progress
+from stiv.task import Call, Steps, run
 
 
 @dataclass(frozen=True)
@@ -62,22 +63,26 @@ class BlenderContraction:
             raise InputError(f"steps: {chosen.steps} is less than 1")
         return cls(take_reshape_snapshot(context, chosen.edit), chosen)
 
-    def solve(self, *, cancel: stiv.CancelToken | None = None, progress: Progress | None = None) -> None:
+    def solve(self, **execution: Any) -> None:
         """Contract; `cancel` and `progress` are those of stiv.EditSession."""
+        run(self.solve_steps(), **execution)
+
+    def solve_steps(self) -> Steps[None]:
+        """Steps of `solve`."""
         if self._settings.until_free:
-            self._controls = self._until_free(cancel, progress)
+            found = yield from self._until_free()
+            self._controls = found.positions if found.pairs else None
             return
-        now, strength = self._snapshot.start, self._settings.smoothing
+        self._controls = None
+        now = self._snapshot.start
         for step in range(self._settings.steps):
-            if progress is not None:
-                progress("contraction", step / self._settings.steps)
-            if cancel is not None and cancel.cancelled:
-                self._controls = None
+            strength = self._settings.smoothing * 2**step
+            now = yield Call(
+                _contraction_step, stiv.start_contraction_step, self._snapshot.cage, now,
+                start=self._rest_shapes, smoothing=strength, moves=self._snapshot.moves,
+            )  # fmt: skip
+            if now is None:
                 return
-            now = stiv.contraction_step(
-                self._snapshot.cage, now, start=self._rest_shapes, smoothing=strength, moves=self._snapshot.moves
-            )
-            strength *= 2
         self._controls = now
 
     def write(self) -> ReshapeReport:
@@ -97,14 +102,14 @@ class BlenderContraction:
         """Restore everything exactly."""
         self._snapshot.restore()
 
-    def _until_free(self, cancel: stiv.CancelToken | None, progress: Progress | None) -> Floats | None:
+    def _until_free(self) -> Steps[stiv.ContractionResult]:
         options = stiv.ContractionOptions(smoothing=self._settings.smoothing, max_steps=self._settings.steps)
-        found = stiv.contract(
-            self._snapshot.assembly.surface, self._snapshot.start, options,
+        found: stiv.ContractionResult = yield Call(
+            stiv.contract, stiv.start_contract, self._snapshot.assembly.surface, self._snapshot.start, options,
             deformation=self._snapshot.deformation, cage=self._snapshot.cage, moves=self._snapshot.moves,
-            storage=self._snapshot.frames, threads=self._settings.edit.threads, cancel=cancel, progress=progress,
+            storage=self._snapshot.frames, threads=self._settings.edit.threads,
         )  # fmt: skip
-        return found.positions if found.pairs else None
+        return found
 
 
 def contract_scene(
@@ -115,6 +120,15 @@ def contract_scene(
     Raises InputError and SceneChangedError, with nothing changed.
     """
     return run_to_end(BlenderContraction.begin(context, settings), **execution)
+
+
+def _contraction_step(
+    *given: Any, cancel: stiv.CancelToken | None = None, progress: Progress | None = None, **named: Any
+) -> Floats | None:
+    """One step; None if cancelled."""
+    if progress is not None:
+        progress("contraction", 0.0)
+    return None if cancel is not None and cancel.cancelled else stiv.contraction_step(*given, **named)
 
 
 def _stored_rest_shape(writer: CageWriter) -> Singles | None:

@@ -26,6 +26,7 @@ from stiv.blender.scene.arrays import Floats, Singles
 from stiv.blender.scene.mesh_reading import read_cage
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification
+from stiv.task import Call, Steps, run
 
 
 @dataclass(frozen=True)
@@ -75,11 +76,15 @@ class BlenderExpansion:
 
         Raises StartIntersectsError.
         """
+        run(self.solve_steps(), **execution)
+
+    def solve_steps(self) -> Steps[None]:
+        """Steps of `solve`."""
         now, least, self._results = self._snapshot.start, self._energy(self._snapshot.start), []
         for _ in range(self._settings.rounds):
-            result = stiv.expand(
-                self._snapshot.assembly.surface, now, self._goal, self._snapshot.edit_options(),
-                deformation=self._snapshot.deformation, **execution,
+            result: stiv.EditResult = yield Call(
+                stiv.expand, stiv.start_expand, self._snapshot.assembly.surface, now, self._goal,
+                self._snapshot.edit_options(), deformation=self._snapshot.deformation,
             )  # fmt: skip
             if result.status == "cancelled":
                 self._results = [result]

@@ -21,6 +21,7 @@ from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.elements import FacePair, count_faces
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
+from stiv.task import Call, Steps, run
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class BlenderRepair:
     """A repair from the snapshot of the scene to the written state: `solve`, then `write`, until `write` returns a
     report.
 
-    `solve` may run in another thread. `restore` undoes an interrupted repair.
+    A stiv.blender.Task of `solve_steps` solves in jobs. `restore` undoes an interrupted repair.
     """
 
     def __init__(self, snapshot: ReshapeSnapshot, settings: RepairSettings, welded: WeldedMeshes | None = None) -> None:
@@ -69,12 +70,16 @@ class BlenderRepair:
 
     def solve(self, **execution: Any) -> None:
         """Contract and expand; `cancel` and `progress` are those of stiv.EditSession."""
+        run(self.solve_steps(), **execution)
+
+    def solve_steps(self) -> Steps[None]:
+        """Steps of `solve`."""
         options = stiv.RepairOptions(
             edit=self._snapshot.edit_options(), moves=self._snapshot.moves, max_deviation=self._settings.max_deviation
         )
-        self._result = stiv.repair(
-            self._snapshot.assembly.surface, self._snapshot.start, options,
-            deformation=self._snapshot.deformation, cage=self._snapshot.cage, **execution,
+        self._result = yield Call(
+            stiv.repair, stiv.start_repair, self._snapshot.assembly.surface, self._snapshot.start, options,
+            deformation=self._snapshot.deformation, cage=self._snapshot.cage,
         )  # fmt: skip
 
     def write(self) -> ReshapeReport | None:
