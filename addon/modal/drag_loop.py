@@ -7,31 +7,39 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .event import Event
 from .event_handling import step
-from .pace import Pace
 from .pointer import Pointer
 from .request import Request
 from .state import Effect, Phase, State
 
 if TYPE_CHECKING:
-    from ..stiv_blender import Edit, EditResult, Motion, WriteReport
+    from ..stiv_blender import Edit, EditResult, Motion, Steps, Task, WriteReport
     from ..transform import Transform
 
-FINAL_SOLVES = 10  # solves, each within its budget, for a goal that is not reached when a drag is confirmed
-GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it is the last
+BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
+FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation: how much work Esc may lose
+START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
+GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
+MAX_FRUITLESS = 20  # repeated solves that use up their budget and gain nothing; then a confirmed drag ends
 
 
 class Progress(Enum):
     """The status of a drag after an event."""
 
+    STARTING = "starting"
     RUNNING = "running"
+    FINISHING = "finishing"
+    """Confirmed: the goal is solved for to the end, until Esc stops it."""
     FINISHED = "finished"
-    VALUE_GIVEN = "value given"
-    """Confirmed by typed numbers: the start is restored, and the caller applies `transform` as a script would."""
     CANCELLED = "cancelled"
+
+    @property
+    def ended(self) -> bool:
+        """Whether the drag takes no more events."""
+        return self in (Progress.FINISHED, Progress.CANCELLED)
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,26 @@ class Goal:
     state: State
     transform: Transform
     motion: Motion
+
+
+@dataclass(frozen=True)
+class DragCalls:
+    """The calls of a drag.
+
+    Attributes:
+        begin: steps that begin an edit of the current scene; called again when the state requests another one.
+        transform_of: the transform that a state requests.
+        motion_of: the motion that an edit takes for a transform and a state.
+        apply: steps of an edit that applies typed values as a script would, from the start.
+        task: makes a task of steps.
+
+    """
+
+    begin: Callable[[Request], Steps[Edit]]
+    transform_of: Callable[[State], Transform]
+    motion_of: Callable[[Transform, State], Motion]
+    apply: Callable[[Transform, State], Steps[tuple[Edit, EditResult]]]
+    task: Callable[[Steps[Any]], Task[Any]]
 
 
 class DragEnded(RuntimeError):  # noqa: N818 (it is not an error)
@@ -58,53 +86,56 @@ def restore_after_error(edit: Edit, error: Exception) -> None:
 class DragLoop:
     """A drag from its start to a confirmation or a clean cancellation.
 
-    Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. A
-    solve has the time of a frame. If that ends before a state is accepted, the next tick continues with the same goal:
-    with a new goal at each tick, none would be reached. If a tick has no time left to write, the next one writes.
+    Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. The
+    start and each solve are tasks, whose jobs run beside Blender: a tick waits for a job no longer than a frame, and
+    the next tick continues. If the budget of a solve ends before a state is accepted, the next solve continues with the
+    same goal: with a new goal each time, none would be reached.
 
-    No exception leaves this class. A rejected value (ValueError) becomes `note`, and the last accepted state stays
-    until the user types on. Any other exception restores the scene, ends the drag and becomes `error`.
+    No exception leaves this class after the start. A rejected value (ValueError) becomes `note`, and the last accepted
+    state stays until the user types on. Any other exception restores the scene, ends the drag and becomes `error`.
     """
 
-    def __init__(
-        self,
-        begin: Callable[[Request], Edit],
-        transform_of: Callable[[State], Transform],
-        motion_of: Callable[[Transform, State], Motion],
-        state: State,
-    ):
-        """Start a drag. An exception of `begin` is passed on, with nothing changed.
+    def __init__(self, calls: DragCalls, state: State):
+        """Start a drag. An exception of the first step is passed on, with nothing changed.
 
         Args:
-            begin: begins an edit of the current scene; called again when the state requests another one.
-            transform_of: the transform that a state requests.
-            motion_of: the motion that an edit takes for a transform and a state.
+            calls: what the drag calls.
             state: the state before the first event.
 
         """
         self.state = state
-        self.progress = Progress.RUNNING
+        self.progress = Progress.STARTING
         self.transform: Transform | None = None
         self.result: EditResult | None = None
         self.report: WriteReport | None = None
         self.written: EditResult | None = None  # the result that the scene shows
         self.note = ""
         self.error: Exception | None = None
-        self.edit = begin(state.request)
+        self.edit: Edit | None = None
+        self.stopped = False  # Esc ended the solve after the confirmation
+        self._calls = calls
         self._begun = state.request
-        self._begin = begin
-        self._transform_of = transform_of
-        self._motion_of = motion_of
         self._pending = False
-        self._pace = Pace()
+        self._confirmed = False
         self._unfinished: Goal | None = None
         self._unwritten = False
+        self._settled = False
+        self._refusal = ""
+        self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
+        self._fruitless = 0
+        self._run(calls.begin(state.request), self._take_first_edit)
+        self._advance_task(START_WAIT)
 
     @property
     def at_rest(self) -> bool:
         """Whether nothing is left to solve until the next event."""
-        return not (self._pending or self._unwritten) or self.progress is not Progress.RUNNING
+        return self.progress.ended or not (self._pending or self._unwritten or self._task is not None)
+
+    @property
+    def fraction(self) -> float:
+        """The fraction of a start, or of the solve after the confirmation, that is done."""
+        return self._task.progress.fraction if self._task is not None else 1.0
 
     def handle(self, event: Event) -> Effect:
         """Take one event; returns the effect that it requested."""
@@ -119,11 +150,12 @@ class DragLoop:
 
     def change_view(self, pointer: Pointer) -> None:
         """Solve for the goal of the pointer in a changed view."""
-        self.state = replace(self.state, pointer=pointer)
-        self._pending = True
+        if not self._confirmed:
+            self.state = replace(self.state, pointer=pointer)
+            self._pending = True
 
     def tick(self) -> Progress:
-        """Solve for the latest goal if it is not reached, or write the result of the last tick."""
+        """Solve for the latest goal if it is not reached, and write the result."""
         return self._guarded(self._advance)
 
     def abort(self, reason: Exception) -> Progress:
@@ -131,7 +163,7 @@ class DragLoop:
         return self._guarded(lambda: self._fail(reason))
 
     def _guarded(self, action: Callable[[], None]) -> Progress:
-        if self.progress is Progress.RUNNING:
+        if not self.progress.ended:
             try:
                 action()
             except Exception as error:  # a modal operator must end, whatever went wrong
@@ -144,40 +176,98 @@ class DragLoop:
             self._pending = True
         elif effect is Effect.CONFIRM:
             self._confirm()
+        elif effect is Effect.STOP:
+            self._stop()
         elif effect is Effect.CANCEL:
-            self.edit.restore()
+            self._leave_task()
+            if self.edit is not None:
+                self.edit.restore()
             self.progress = Progress.CANCELLED
         return effect
 
     def _advance(self) -> None:
-        begun = time.perf_counter()
-        if not self._unwritten:
-            self._unwritten = self._solve()
-        if self._unwritten and self._pace.has_time_to_write(time.perf_counter() - begun):
+        end, solves = time.perf_counter() + BUDGET, self._solves
+        while solves == self._solves and (self._task is not None or self._begin_work()):
+            if not self._advance_task(max(0.0, end - time.perf_counter())):
+                return
+        if self._unwritten:
             self._write()
+        if self._confirmed and self.at_rest and (self._settled or self.result is None):
+            self.progress = Progress.FINISHED
 
-    def _solve(self) -> bool:
-        """Solve for the latest goal or continue the current one; returns whether there is a state to write."""
-        if not self._pending:
-            return False
+    def _run(self, steps: Steps[Any], take: Callable[[Any], None]) -> None:
+        self._task: Task[Any] | None = self._calls.task(steps)
+        self._take = take
+
+    def _advance_task(self, seconds: float) -> bool:
+        """Continue the task for some seconds; returns whether it is done, and its result taken."""
+        assert self._task is not None
+        try:
+            if not self._task.advance(seconds):
+                return False
+        except BaseException:
+            self._task = None
+            raise
+        result, self._task = self._task.result, None
+        self._take(result)
+        return True
+
+    def _leave_task(self) -> None:
+        """End a task without its result. A session is free afterwards; the start need not be waited for."""
+        if self._task is not None:
+            (self._task.abandon if self.edit is None else self._task.close)()
+        self._task = None
+
+    def _begin_work(self) -> bool:
+        """Begin the next task, if any: another edit, a solve, or settling after the confirmation."""
+        if self._pending:
+            if not self._begin_again():
+                self._begin_solve()
+        elif self._confirmed and not self._settled and self.result is not None:
+            assert self.edit is not None
+            self._settled = True
+            self._run(self.edit.settle_steps(), self._take_settled)
+        return self._task is not None
+
+    def _begin_solve(self) -> None:
+        assert self.edit is not None
         self._pending = False
-        refusal = self._begin_again()
         try:
             goal = self._unfinished or self._new_goal()
-            self._unfinished = None
-            result = self.edit.drag(goal.motion, time_budget=self._pace.budget)
         except ValueError as error:
             self.note = str(error)
-            return False
-        self.result, self.transform, self.note = result, goal.transform, refusal
-        self._pending = self._may_gain(goal.state, result) or goal.state != self.state
-        nothing_accepted = result.status == "budget" and len(result.path) == 0
+            return
+        self._unfinished = None
+        budget = FINAL_BUDGET if self._confirmed else BUDGET
+        steps = self.edit.drag_steps(goal.motion, time_budget=budget)
+        self._run(_noting(steps), lambda found: self._take_solved(goal, found))
+
+    def _take_first_edit(self, edit: Edit) -> None:
+        self.edit = edit
+        self.progress = Progress.FINISHING if self._confirmed else Progress.RUNNING
+
+    def _take_solved(self, goal: Goal, found: EditResult | ValueError) -> None:
+        self._solves += 1
+        if isinstance(found, ValueError):
+            self.note = str(found)
+            return
+        if self.stopped:
+            return
+        self.result, self.transform, self.note = found, goal.transform, self._refusal
+        self._refusal = ""
+        nothing_accepted = found.status == "budget" and len(found.path) == 0
+        self._pending = self._may_gain(goal.state, found) or goal.state != self.state
         self._unfinished = goal if nothing_accepted else None
-        return not nothing_accepted
+        self._unwritten |= not nothing_accepted
+
+    def _take_settled(self, settled: EditResult) -> None:
+        self._solves += 1
+        if settled.status not in ("unchanged", "cancelled"):
+            self.result, self._unwritten = settled, True
 
     def _new_goal(self) -> Goal:
-        transform = self._transform_of(self.state)
-        return Goal(self.state, transform, self._motion_of(transform, self.state))
+        transform = self._calls.transform_of(self.state)
+        return Goal(self.state, transform, self._calls.motion_of(transform, self.state))
 
     def _may_gain(self, state: State, result: EditResult) -> bool:
         """Whether another solve for the same state may come closer: one solve goes only a limited way to a far goal.
@@ -187,72 +277,103 @@ class DragLoop:
         solved, least = self._solved
         self._solved = (state, result.energy)
         gained = solved != state or result.energy < GAIN * least
+        self._fruitless = 0 if gained else self._fruitless + 1
+        if self._confirmed and self._fruitless >= MAX_FRUITLESS:
+            return False
         return result.status == "budget" or (result.status == "corrected" and gained)
 
-    def _begin_again(self) -> str:
-        """Begin another edit if the state requests one; returns the reason if that is refused and the old one stays.
+    def _begin_again(self) -> bool:
+        """Begin another edit if the state requests one; returns whether its task has begun.
 
         Collisions alone are turned on and off within the current edit.
         """
         request = self.state.request
+        if request == self._begun:
+            return False
+        self._unfinished = None
         if request == replace(self._begun, interference=request.interference):
-            return self._switch_interference() if request != self._begun else ""
-        self._unfinished = None
+            self._switch_interference()
+            return False
+        assert self.edit is not None
         self.edit.restore()
-        try:
-            self.edit = self._begin(request)
-        except ValueError as error:
-            self.state = replace(self.state, request=self._begun)
-            return str(error)
-        self._begun = request
-        return ""
+        self._run(_noting(self._calls.begin(request)), lambda found: self._take_edit(request, found))
+        return True
 
-    def _switch_interference(self) -> str:
-        self._unfinished = None
-        reason = self.edit.set_interference(self.state.request.interference)
+    def _take_edit(self, request: Request, found: Edit | ValueError) -> None:
+        """Continue with another edit, or with the old one if another is refused."""
+        if isinstance(found, ValueError):
+            self.state, self._refusal = replace(self.state, request=self._begun), str(found)
+            return
+        self.edit, self._begun = found, request
+
+    def _switch_interference(self) -> None:
+        assert self.edit is not None
+        self._refusal = self.edit.set_interference(self.state.request.interference)
         self._begun = replace(self._begun, interference=self.edit.interference)
         self.state = replace(self.state, request=self._begun)
-        return reason
 
     def _confirm(self) -> None:
-        if self.state.typed.active:
-            self._confirm_typed()
+        if self.state.typed.active and not self._accept_typed():
             return
-        if self._pending or self.result is not None:
-            self._finish_dragged()
-        self.progress = Progress.FINISHED
+        self._confirmed = True
+        self._unfinished = None  # the goal is the position where the mouse was released
+        if self.edit is not None or self._settled:
+            self.progress = Progress.FINISHING
+            self._finish_at_once()
 
-    def _confirm_typed(self) -> None:
-        """Confirm typed numbers; if they are invalid, the drag continues with a note."""
+    def _finish_at_once(self) -> None:
+        """Continue for the time of a frame."""
+        end = time.perf_counter() + BUDGET
+        while self.progress is Progress.FINISHING and time.perf_counter() < end:
+            self._advance()
+            if self._task is not None:  # its job takes longer
+                return
+
+    def _accept_typed(self) -> bool:
+        """Apply typed numbers from the start; if they are invalid, the drag continues with a note."""
         try:
-            self.transform = self._transform_of(self.state)
+            transform = self._calls.transform_of(self.state)
         except ValueError as error:
             self.note = str(error)
             self.state = replace(self.state, phase=Phase.DRAGGING)
-            return
-        self.edit.restore()
-        self.progress = Progress.VALUE_GIVEN
+            return False
+        self._leave_task()
+        if self.edit is not None:
+            self.edit.restore()
+        self._pending = self._unwritten = False
+        self._settled = True  # by the steps
+        self.result = None
+        self._run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
+        return True
 
-    def _finish_dragged(self) -> None:
-        self._unfinished = None  # the goal is the position where the mouse was released
-        for _ in range(FINAL_SOLVES):
-            if self._solve():
-                self._write()
-        if self.result is not None:
-            settled = self.edit.settle()
-            self.result = settled if settled.status != "unchanged" else self.result
-            self._write()
+    def _take_applied(self, transform: Transform, edit: Edit, result: EditResult) -> None:
+        self.edit, self.result, self.transform, self._unwritten = edit, result, transform, True
+
+    def _stop(self) -> None:
+        """Keep the last accepted state."""
+        self.stopped, self._pending, self._settled = True, False, True
+        if self._task is not None:
+            self._task.cancel()
 
     def _write(self) -> None:
-        begun = time.perf_counter()
+        assert self.edit is not None
         self._unwritten = False
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
         self.written = self.result if self.report is None or not self.report.message else None
-        self._pace.note(time.perf_counter() - begun)
 
     def _fail(self, error: Exception) -> None:
-        self.error = error
+        self.error = None if self.stopped else error
         self.progress = Progress.CANCELLED
-        restore_after_error(self.edit, error)
+        self._leave_task()
+        if self.edit is not None:
+            restore_after_error(self.edit, error)
+
+
+def _noting(steps: Steps[Any]) -> Steps[Any]:
+    """Steps whose result may be the ValueError that ended them."""
+    try:
+        return (yield from steps)
+    except ValueError as error:
+        return error

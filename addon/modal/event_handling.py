@@ -19,7 +19,9 @@ COLLISIONS_KEY, RESPONDERS_KEY, RESPONSE_KEY, PROPORTIONAL_KEY = "I", "W", "T", 
 
 
 def step(state: State, event: Event) -> tuple[State, Effect]:
-    """The state after an event. A final phase ignores events."""
+    """The state after an event. A final phase ignores events, but a confirmed drag can be stopped."""
+    if state.phase is Phase.CONFIRMED and event.pressed and event.type in CANCEL_KEYS:
+        return state, Effect.STOP
     if state.phase is not Phase.DRAGGING:
         return state, Effect.NONE
     if event.type in POINTER_MOVES:

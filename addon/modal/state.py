@@ -31,6 +31,8 @@ class Effect(Enum):
     """The event belongs to the view: leave it to Blender."""
     CONFIRM = "confirm"
     CANCEL = "cancel"
+    STOP = "stop"
+    """Confirmed, but the solve toward the goal should stop: keep the last accepted state."""
 
 
 @dataclass(frozen=True)

@@ -127,6 +127,12 @@ def _scale() -> float:
     return float(bpy.context.preferences.system.ui_scale)
 
 
+def show_wait_cursor(context: bpy.types.Context, on: bool) -> None:
+    """Show Blender's wait cursor in the window, or the former one."""
+    if context.window is not None:
+        context.window.cursor_modal_set("WAIT") if on else context.window.cursor_modal_restore()
+
+
 def clear(context: bpy.types.Context) -> None:
     """Restore header and status bar."""
     for area in view_areas(context):

@@ -357,6 +357,7 @@ MESSAGES = {
     "contracted": "zusammengezogen",
     "corrected {}": "{} berichtigt",
     "corrected {}, blocked by {}": "{} berichtigt, blockiert von {}",
+    "stopped": "angehalten",
     "deflected": "abgelenkt",
     "deform": "verformen",
     "edge {}": "Kante {}",

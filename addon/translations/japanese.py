@@ -357,6 +357,7 @@ MESSAGES = {
     "contracted": "収縮しました",
     "corrected {}": "{} を修正しました",
     "corrected {}, blocked by {}": "{} を修正しました。妨げているもの: {}",
+    "stopped": "停止しました",
     "deflected": "避けています",
     "deform": "変形",
     "edge {}": "辺 {}",

@@ -5,16 +5,20 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
+from stiv.task import Steps, Task
+
 
 @dataclass
 class FakeEdit:
     """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
-    `furthest`: how far one solve goes.
+    `furthest`: how far one solve goes. `delays`: from the name of a call to the turns that it takes.
     """
 
     statuses: list[str] = field(default_factory=list)
     failing: dict[str, Exception] = field(default_factory=dict)
+    delays: dict[str, int] = field(default_factory=dict)
+    cancelled: bool = False
     calls: list[str] = field(default_factory=list)
     accepted: float = 0.0
     shown: float = 0.0
@@ -27,8 +31,9 @@ class FakeEdit:
     start_digest = "start"
     controls = ()
 
-    def begun(self, request: Any) -> "FakeEdit":
+    def begin_steps(self, request: Any) -> "Steps[FakeEdit]":
         """Replaces the beginning of an edit, of the first and of each that is requested later ("again")."""
+        yield from self._delayed("begin")
         for name in ("begin", "again") if self.requests else ():
             if name in self.failing:
                 raise self.failing[name]
@@ -41,14 +46,33 @@ class FakeEdit:
         self.interference = on
         return ""
 
-    def drag(self, matrix: Any, *, time_budget: float) -> Any:
+    def drag_steps(self, matrix: Any, *, time_budget: float) -> "Steps[Any]":
         assert time_budget > 0
+        yield from self._delayed("drag")
         self._called("drag")
         return self._solve(matrix)
 
-    def settle(self) -> Any:
+    def settle_steps(self) -> "Steps[Any]":
+        yield from self._delayed("settle")
         self._called("settle")
         return SimpleNamespace(status="unchanged", blocking=())
+
+    def apply_steps(self, matrix: Any, state: Any) -> "Steps[Any]":
+        """Typed values: in two halves."""
+        for fraction in (0.5, 1.0):
+            yield fraction
+            yield from self._delayed("apply")
+            if self.cancelled:
+                break
+            self._called("apply")
+            self._solve(fraction * float(matrix))
+        return self, SimpleNamespace(status="cancelled" if self.cancelled else "reached", blocking=(), path=())
+
+    def _delayed(self, name: str) -> "Steps[None]":
+        """Take so many turns, as a job does; cancelled jobs take none."""
+        for _ in range(self.delays.get(name, 0)):
+            if not self.cancelled:
+                yield None
 
     def write(self) -> Any:
         self._called("write")
@@ -71,3 +95,15 @@ class FakeEdit:
         path = (self.accepted,) if self.furthest > 0 else ()
         energy, timings = (float(matrix) - self.accepted) ** 2, {"total": 0.0}
         return SimpleNamespace(status=status, blocking=(), energy=energy, path=path, timings=timings)
+
+
+class FakeTask(Task[Any]):
+    """A task whose steps learn that they are cancelled."""
+
+    def __init__(self, steps: Steps[Any], edit: FakeEdit) -> None:
+        super().__init__(steps)
+        self._edit = edit
+
+    def cancel(self) -> None:
+        self._edit.cancelled = True
+        super().cancel()

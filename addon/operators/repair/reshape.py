@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Base of repair, contraction, expansion and settling: `execute` solves at once, `modal` in a thread with progress."""
+"""Base of repair, contraction, expansion and settling: `execute` solves at once, `modal` in jobs with progress."""
 
 from __future__ import annotations
 
 import json
-import threading
 from typing import Any
 
 import bpy
@@ -15,39 +14,15 @@ from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
-from .. import running, window_io
 from ..last_edit import numbers
 from ..reports import report_error
+from ..task_operator import TaskOperator
 
-TICK = 0.05  # seconds between two looks at the worker
 REPORTED_PAIRS = 100  # pairs in the report for scripts
 MODES = {"OBJECT", "EDIT_MESH"}
 
 
-class Worker(threading.Thread):
-    """Solves beside Blender's main thread, without access to Blender's data. `error` is the exception that ended it."""
-
-    def __init__(self, task: stiv_blender.Reshaping) -> None:
-        """Start at once."""
-        super().__init__(daemon=True)
-        self.token = stiv_blender.CancelToken()
-        self.progress = ("", 0.0)
-        self.error: Exception | None = None
-        self._task = task
-        self.start()
-
-    def run(self) -> None:
-        """Solve; the main thread reports an error."""
-        try:
-            self._task.solve(cancel=self.token, progress=self._note)
-        except Exception as error:
-            self.error = error
-
-    def _note(self, phase: str, fraction: float) -> None:
-        self.progress = (phase, fraction)
-
-
-class ReshapeOperator(NeedsNativeModule):
+class ReshapeOperator(TaskOperator, NeedsNativeModule):
     """Base of an operator; a subclass has its properties and `begin`."""
 
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}  # noqa: RUF012 (Blender reads a set)
@@ -80,77 +55,34 @@ class ReshapeOperator(NeedsNativeModule):
         return self._finish(context, report)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Solve in a thread so that the window stays responsive; without a window, solve at once."""
+        """Solve in a job so that the window stays responsive; without a window, solve at once."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
         return self.start(context)
 
     def start(self, context: bpy.types.Context) -> set[str]:
-        """Read the scene and start the worker."""
-        if obstacle := running.obstacle():
-            self.report({"ERROR"}, obstacle)
-            return {"CANCELLED"}
+        """Read the scene and start the job."""
         try:
-            self._task = self.begin(context)
+            self._reshaping = self.begin(context)
         except Exception as error:
             return report_error(self, error)
-        self._worker = Worker(self._task)
-        self._timer = window_io.start_timer(context, TICK)
-        context.window_manager.modal_handler_add(self)
-        running.begin(self)
-        return {"RUNNING_MODAL"}
+        return self.start_task(context, self._steps())
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the progress; Esc cancels; write when the worker is done.
+    def _steps(self) -> stiv_blender.Steps[Any]:
+        """Solve and write until there is a report."""
+        while True:
+            yield from self._reshaping.solve_steps()
+            report = self._reshaping.write()
+            if report is not None:
+                return report
 
-        The worker writes nothing, so Esc does not wait for it: it ends by itself when it next checks its token.
-        """
-        if event.type == "ESC" and event.value == "PRESS":
-            self._worker.token.cancel()
-            self._leave(context)
-            self._restore()
-            self.report({"INFO"}, translate("cancelled, nothing changed"))
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        if self._worker.is_alive():
-            window_io.show_progress(context, self._worker.progress[1], translate(self.bl_label))
-            return {"RUNNING_MODAL"}
-        return self._write(context)
+    def finish_task(self, context: bpy.types.Context, result: Any) -> set[str]:
+        """Report."""
+        return self._finish(context, result)
 
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends the operator: a file is loaded, the window closes."""
-        self._worker.token.cancel()
-        self._worker.join()
-        self._leave(context)
-        self._restore()
-
-    def _write(self, context: bpy.types.Context) -> set[str]:
-        try:
-            if self._worker.error is not None:
-                raise self._worker.error
-            report = self._task.write()
-        except Exception as error:
-            self._leave(context)
-            self._restore(error)
-            return report_error(self, error)
-        if report is None:
-            self._worker = Worker(self._task)
-            return {"RUNNING_MODAL"}
-        self._leave(context)
-        return self._finish(context, report)
-
-    def _leave(self, context: bpy.types.Context) -> None:
-        running.end()
-        window_io.stop_timer(context, self._timer)
-        window_io.clear(context)
-
-    def _restore(self, error: Exception | None = None) -> None:
-        try:
-            self._task.restore()
-        except Exception as second:  # an object is gone: the others keep their state
-            if error is not None:
-                error.add_note(str(second))
+    def restore_scene(self) -> None:
+        """Restore the start exactly."""
+        self._reshaping.restore()
 
     def _finish(self, context: bpy.types.Context, report: Any) -> set[str]:
         context.window_manager.stiv_last_edit = describe(report)

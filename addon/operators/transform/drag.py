@@ -10,7 +10,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import stiv_blender
-from ...modal.drag_loop import DragEnded, DragLoop, Progress
+from ...modal.drag_loop import DragCalls, DragEnded, DragLoop, Progress
 from ...modal.header_texts import turned_text
 from ...modal.pointer import Pointer
 from ...modal.request import Request
@@ -20,6 +20,7 @@ from ...overlay import display
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame
 from ...scene.tool_settings import read_proportional, read_snap, store_proportional, unsupported_settings
 from ...transform import Transform, requested_transform
+from ...transform.frame import Frame
 from ...transform.view import Vector
 from ...translations import translate
 from ...units import length_text, readers
@@ -31,7 +32,7 @@ from .move import STIV_OT_move
 from .options import changed_options, make_influence
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
-from .transform_operator import TransformOperator, begin_drag, make_motion
+from .transform_operator import TransformOperator, apply_values, begin_drag, make_motion
 
 TICK = 1.0 / 60.0  # least seconds between two solves
 OPERATORS: dict[str, type[TransformOperator]] = {
@@ -43,7 +44,7 @@ class DragOperator(Mixin):
     """The operator without its registration; `kind` is the kind of transform at the start."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Begin the drag; if the edit is rejected, nothing changes."""
+        """Begin the drag; if the edit is rejected, nothing changes. A long start continues in jobs."""
         if obstacle := running.obstacle():
             self.report({"ERROR"}, obstacle)
             return {"CANCELLED"}
@@ -61,7 +62,7 @@ class DragOperator(Mixin):
             self._show(context)
         except Exception as error:  # Blender would keep an operator running that raises
             self._drag.abort(error)
-        if self._drag.progress is not Progress.RUNNING:
+        if self._drag.progress.ended:
             return self._end(context)
         return {"PASS_THROUGH"} if effect is Effect.PASS else {"RUNNING_MODAL"}
 
@@ -75,7 +76,7 @@ class DragOperator(Mixin):
         self._frame = read_frame(context)
         self._orientations = orientation_names(context)
         self._notes = unsupported_settings(context)
-        self._snap = read_snap(context, lambda: self._drag.edit.moving, lambda: self._frame.view)
+        self._snap = read_snap(context, self._moving, lambda: self._frame.view)
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
         pointer = Pointer.at(window_io.plain_event(event, context.region).mouse, window_io.centre(self._frame))
@@ -84,15 +85,24 @@ class DragOperator(Mixin):
         state = State(pointer, request, proportional=proportional, snap=snap)
         self._launch(context, state, lambda request: begin_drag(context, request))
 
-    def _launch(self, context: bpy.types.Context, state: State, begin: Callable[[Request], stiv_blender.Edit]) -> None:
+    def _launch(
+        self,
+        context: bpy.types.Context,
+        state: State,
+        begin: Callable[[Request], stiv_blender.Steps[stiv_blender.Edit]],
+    ) -> None:
         self._mode = context.mode
-        self._shown: tuple[State, int, int, str] | None = None
-        self._drag = DragLoop(
+        self._shown: tuple[object, ...] | None = None
+        calls = DragCalls(
             begin,
             lambda state: requested_transform(state, self._frame, self._readers, self._snap),
             self._motion,
-            state,
+            lambda transform, state: self._apply_values(context, transform, state),
+            stiv_blender.Task,
         )
+        self._drag = DragLoop(calls, state)
+        self._waits = False
+        self._show_waiting(context)
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
         running.begin(self)
@@ -100,6 +110,14 @@ class DragOperator(Mixin):
     def _motion(self, transform: Transform, state: State) -> stiv_blender.Motion:
         influence, constraint = make_influence(state.proportional), constraint_of(state, self._frame)
         return make_motion(transform, self._frame, influence, constraint)
+
+    def _apply_values(
+        self, context: bpy.types.Context, transform: Transform, state: State
+    ) -> stiv_blender.Steps[tuple[stiv_blender.Edit, stiv_blender.EditResult]]:
+        def motion_of(transform: Transform, frame: Frame) -> stiv_blender.Motion:
+            return make_motion(transform, frame, make_influence(state.proportional), constraint_of(state, frame))
+
+        return apply_values(self, context, state.request, transform, motion_of)
 
     def _advance(self, context: bpy.types.Context, event: bpy.types.Event) -> Effect:
         if context.mode != self._mode:
@@ -109,7 +127,10 @@ class DragOperator(Mixin):
         if event.type == "TIMER":
             self._drag.tick()
             return Effect.NONE
-        return self._drag.handle(window_io.plain_event(event, context.region))
+        effect = self._drag.handle(window_io.plain_event(event, context.region))
+        if event.type == "MOUSEMOVE":  # the latest motion: solve now, and redraw once
+            self._drag.tick()
+        return effect
 
     def _follow_view(self, context: bpy.types.Context) -> None:
         """Update the frame and the pointer if the view has changed since the last event."""
@@ -119,12 +140,19 @@ class DragOperator(Mixin):
             self._frame = frame
             self._drag.change_view(pointer)
 
+    def _moving(self) -> frozenset[str]:
+        return self._drag.edit.moving if self._drag.edit is not None else frozenset()
+
     def _show(self, context: bpy.types.Context) -> None:
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
         drag = self._drag
-        news = (drag.state, id(drag.result), id(drag.written), drag.note)
-        if news == self._shown or drag.progress is not Progress.RUNNING:
+        self._show_waiting(context)
+        if drag.progress is not Progress.RUNNING or drag.edit is None:
             return
+        status = drag.result.status if drag.result is not None else ""
+        news = (drag.state, status, id(drag.written), drag.note)
+        if news == self._shown or (not drag.at_rest and news[1:] == (self._shown or ())[1:]):
+            return  # a moved pointer alone is drawn with its result
         self._shown = news
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
@@ -134,6 +162,16 @@ class DragOperator(Mixin):
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.written is not None and drag.written is drag.result:
             display.show_edit(drag.edit, drag.written, self._motion_of_all())
+
+    def _show_waiting(self, context: bpy.types.Context) -> None:
+        """The wait cursor during a long start, and the progress of a start and of the last solve."""
+        waits = self._drag.progress is Progress.STARTING
+        if waits != self._waits:
+            self._waits = waits
+            window_io.show_wait_cursor(context, waits)
+        if waits or self._drag.progress is Progress.FINISHING:
+            label = translate(OPERATORS[self._drag.state.kind].bl_label)
+            window_io.show_progress(context, self._drag.fraction, label)
 
     def _motion_of_all(self) -> Vector | None:
         """The motion of whole objects to the goal, (4, 4); None if each has its own, or only parts of them move."""
@@ -161,17 +199,19 @@ class DragOperator(Mixin):
             drag.state.request, drag.state.proportional, constraint_of(drag.state, self._frame), context.scene
         )
         edit, result, report = drag.edit, drag.result, drag.report
-        if drag.progress is Progress.FINISHED and result is not None and report is not None:
+        if edit is not None and result is not None and report is not None:
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
-            report_outcome(self, outcome_text(result), write_failure(report))
+            report_outcome(self, translate("stopped") if drag.stopped else outcome_text(result), write_failure(report))
         store_proportional(context, drag.state.proportional)
         getattr(bpy.ops.stiv, drag.state.kind)("EXEC_DEFAULT", True, **values)
         return {"FINISHED"}
 
     def _leave(self, context: bpy.types.Context) -> None:
         running.end()
+        if self._waits:
+            window_io.show_wait_cursor(context, False)
         window_io.stop_timer(context, self._timer)
         display.end_edit()
         window_io.clear(context)

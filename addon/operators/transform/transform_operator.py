@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import bpy
 
 from ... import stiv_blender
+from ...modal.drag_loop import restore_after_error
 from ...modal.request import Request
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import DRAG_BUDGET, edit_settings
@@ -16,6 +18,7 @@ from ...transform import Transform
 from ...transform.frame import Frame
 from .. import last_edit, running
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
+from ..task_operator import TaskOperator
 from . import drag_results
 from .constraint import Constraint, free_directions
 from .options import TransformOptions
@@ -23,7 +26,7 @@ from .options import TransformOptions
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
 
 
-class TransformOperator(NeedsNativeModule, TransformOptions):
+class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
     """Base of an operator; a subclass has a `kind`, its properties, and the methods that raise here."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
@@ -36,13 +39,15 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         return context.mode in MODES and not obstacle
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Start a drag; without a 3D view, apply the values.
+        """Start a drag; without a 3D view, apply the values in jobs; without a window, at once.
 
         The drag is a separate operator without an undo step, since it may end as another kind of transform. It ends
         by calling the operator of that kind, which makes the undo step and appears in the redo panel.
         """
-        if context.region_data is None:
+        if bpy.app.background or context.window is None:
             return self.execute(context)
+        if context.region_data is None:
+            return self.start_task(context, self._steps(context))
         try:
             bpy.ops.stiv.drag("INVOKE_DEFAULT", kind=self.kind)
         except RuntimeError as error:
@@ -58,19 +63,26 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
         edit = None
         try:
             transform, frame = self.requested(), read_frame(context)
-            edit = begin_edit(context, self.request(context.scene))
-            for text in edit.summary.warnings:
-                self.report({"WARNING"}, text)
-            if context.window_manager.stiv_check.left_out:
-                self.report({"INFO"}, context.window_manager.stiv_check.left_out)
+            edit = stiv_blender.run_steps(begin_edit(context, self.request(context.scene)))
+            report_start(self, context, edit)
             same = dragged if dragged is not None and dragged.values == self._values() else None
             motion = self._motion(transform, frame)
             result, report = _reused(edit, same, motion) or _applied(edit, motion, transform, frame)
-            context.window_manager.stiv_last_edit = last_edit.describe(result, report)
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
-        report_outcome(self, outcome_text(result), write_failure(report))
+        return self.finish_task(context, (result, report))
+
+    def finish_task(self, context: bpy.types.Context, result: Any) -> set[str]:
+        """Report the result of the edit and of writing it."""
+        solved, report = result
+        context.window_manager.stiv_last_edit = last_edit.describe(solved, report)
+        report_outcome(self, outcome_text(solved), write_failure(report))
         return {"FINISHED"}
+
+    def stop_task(self, context: bpy.types.Context) -> set[str]:
+        """Esc: keep the part of the way that is safe."""
+        self._task.cancel()
+        return {"RUNNING_MODAL"}
 
     def requested(self) -> Transform:
         """The transform of the properties."""
@@ -96,6 +108,19 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
     def _motion(self, transform: Transform, frame: Frame) -> stiv_blender.Motion:
         return make_motion(transform, frame, self.influence(), self.constraint())
 
+    def _steps(
+        self, context: bpy.types.Context
+    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
+        """The steps of `execute`."""
+        request = self.request(context.scene)
+        edit, result = yield from apply_values(self, context, request, self.requested(), self._motion)
+        try:
+            report = edit.write()
+        except Exception as error:
+            restore_after_error(edit, error)
+            raise
+        return report.result or result, report
+
     def _values(self) -> tuple[object, ...]:
         return (*self.own_values(), *self.option_values())
 
@@ -103,7 +128,7 @@ class TransformOperator(NeedsNativeModule, TransformOptions):
 def _applied(
     edit: stiv_blender.BlenderEdit, motion: stiv_blender.Motion, transform: Transform, frame: Frame
 ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
-    result = edit.apply(motion, path=lambda fraction: transform.fraction(fraction).matrix(frame))
+    result = stiv_blender.run_steps(_solve_values(edit, motion, transform, frame))
     report = edit.write()
     return report.result or result, report
 
@@ -130,18 +155,50 @@ def make_motion(
     return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free)
 
 
-def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.BlenderEdit:
-    """Begin an edit of the current scene."""
-    edit = stiv_blender.BlenderEdit.begin(context, edit_settings(context.scene, request), kind=request.kind)
+def apply_values(
+    operator: bpy.types.Operator,
+    context: bpy.types.Context,
+    request: Request,
+    transform: Transform,
+    motion_of: Callable[[Transform, Frame], stiv_blender.Motion],
+) -> stiv_blender.Steps[tuple[stiv_blender.BlenderEdit, stiv_blender.EditResult]]:
+    """Steps that solve for a transform from the present scene, as a script would; nothing is written."""
+    frame = read_frame(context)
+    edit = yield from begin_edit(context, request)
+    report_start(operator, context, edit)
+    result = yield from _solve_values(edit, motion_of(transform, frame), transform, frame)
+    return edit, result
+
+
+def _solve_values(
+    edit: stiv_blender.BlenderEdit, motion: stiv_blender.Motion, transform: Transform, frame: Frame
+) -> stiv_blender.Steps[stiv_blender.EditResult]:
+    return edit.apply_steps(motion, path=lambda fraction: transform.fraction(fraction).matrix(frame))
+
+
+def report_start(operator: bpy.types.Operator, context: bpy.types.Context, edit: stiv_blender.BlenderEdit) -> None:
+    """Report the warnings of an edit of typed values, and the objects that it does not guard."""
+    for text in edit.summary.warnings:
+        operator.report({"WARNING"}, text)
+    if context.window_manager.stiv_check.left_out:
+        operator.report({"INFO"}, context.window_manager.stiv_check.left_out)
+
+
+def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.Steps[stiv_blender.BlenderEdit]:
+    """Steps that begin an edit of the current scene."""
+    settings = edit_settings(context.scene, request)
+    edit = yield from stiv_blender.BlenderEdit.begin_steps(context, settings, kind=request.kind)
     _note_unguarded(context, edit)
     return edit
 
 
-def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Edit:
-    """Begin an edit for a drag, which leaves out far obstacles of a large scene, and limits the time of each solve."""
-    edit = stiv_blender.begin_culled_edit(
-        context, edit_settings(context.scene, request, DRAG_BUDGET), kind=request.kind
-    )
+def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Steps[stiv_blender.Edit]:
+    """Steps that begin an edit for a drag.
+
+    It leaves out far obstacles of a large scene, and limits the time of each solve.
+    """
+    settings = edit_settings(context.scene, request, DRAG_BUDGET)
+    edit = yield from stiv_blender.begin_culled_steps(context, settings, kind=request.kind)
     _note_unguarded(context, edit)
     return edit
 

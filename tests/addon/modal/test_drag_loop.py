@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
-from fake_edit import FakeEdit
+from fake_edit import FakeEdit, FakeTask
 from hypothesis import given
 from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
-from stiv_addon.modal.drag_loop import FINAL_SOLVES, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
-from stiv_addon.modal.pace import Pace
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect, State
@@ -16,7 +15,10 @@ from stiv_addon.modal.state import Effect, State
 
 def new_drag(edit: FakeEdit) -> DragLoop:
     """A drag whose goal is a hundredth of the pointer's x, or the typed number."""
-    return DragLoop(edit.begun, measure, lambda value, state: value, State(Pointer.at((0.0, 0.0))))
+    calls = DragCalls(
+        edit.begin_steps, measure, lambda value, state: value, edit.apply_steps, lambda steps: FakeTask(steps, edit)
+    )
+    return DragLoop(calls, State(Pointer.at((0.0, 0.0))))
 
 
 def measure(state: State) -> float:
@@ -44,7 +46,7 @@ def test_confirming_solves_for_the_last_goal_settles_and_writes() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(30))
     assert drag.handle(Event("LEFTMOUSE")) is Effect.CONFIRM and drag.progress is Progress.FINISHED
-    assert edit.calls == ["drag", "write", "settle", "write"]
+    assert edit.calls == ["drag", "write", "settle"]
     assert edit.shown == drag.transform == 0.3
 
 
@@ -55,17 +57,84 @@ def test_confirming_without_a_motion_changes_nothing() -> None:
     assert drag.progress is Progress.FINISHED and edit.calls == [] and drag.transform is None
 
 
-def test_a_typed_value_restores_and_is_left_to_the_caller() -> None:
+def test_a_typed_value_is_applied_from_the_start() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     drag.handle(move_to(70))
     drag.tick()
     drag.handle(Event("TWO"))
     drag.tick()
+    edit.calls.clear()
     drag.handle(Event("RET"))
-    assert drag.progress is Progress.VALUE_GIVEN
-    assert edit.calls[-1] == "restore"
-    assert (drag.transform, edit.shown) == (2.0, 0.0)
+    assert drag.progress is Progress.FINISHED
+    assert edit.calls == ["restore", "apply", "apply", "write"]
+    assert (drag.transform, edit.shown) == (2.0, 1.0)
+
+
+def test_esc_stops_a_long_typed_value_and_keeps_the_part_that_is_safe() -> None:
+    edit = FakeEdit(delays={"apply": 3})
+    drag = new_drag(edit)
+    drag.handle(Event("ONE"))
+    drag.handle(Event("RET"))
+    for _ in range(20):
+        drag.tick() if not edit.accepted else None
+    assert drag.progress is Progress.FINISHING and 0.0 < drag.fraction <= 1.0
+    assert drag.handle(Event("ESC")) is Effect.STOP
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.error is None
+    assert edit.calls.count("apply") == 1 and edit.shown == edit.accepted == 0.5
+
+
+def test_events_during_a_long_start_count_once_it_is_over() -> None:
+    edit = FakeEdit(delays={"begin": 5})
+    drag = new_drag(edit)
+    assert drag.progress is Progress.STARTING
+    drag.handle(move_to(40))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.STARTING and edit.calls == []
+    for _ in range(10):
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and edit.shown == 0.4
+
+
+@pytest.mark.parametrize("events", [["ESC"], ["LEFTMOUSE", "ESC"], ["TWO", "ESC"]])
+def test_esc_ends_a_long_start_with_nothing_called(events: list[str]) -> None:
+    edit = FakeEdit(delays={"begin": 5})
+    drag = new_drag(edit)
+    for kind in events:
+        drag.handle(Event(kind))
+    drag.tick()
+    assert drag.progress.ended and edit.calls == [] and drag.transform is None and drag.error is None
+
+
+def test_esc_stops_the_solve_after_the_confirmation_and_keeps_the_accepted_state() -> None:
+    edit = FakeEdit(statuses=["budget"] * 1000, furthest=0.01, delays={"drag": 2})
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    while drag.progress is Progress.FINISHING and edit.shown < 0.3:
+        assert drag.tick() is Progress.FINISHING
+    drag.handle(Event("ESC"))
+    drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.stopped
+    assert 0.3 <= edit.shown == edit.accepted < 0.4 and edit.calls.count("settle") == 0
+
+
+def test_a_solve_longer_than_a_frame_leaves_the_events_free() -> None:
+    edit = FakeEdit(delays={"drag": 3})
+    drag = new_drag(edit)
+    drag.handle(move_to(20))
+    drag.tick()
+    drag.handle(move_to(30))
+    assert edit.calls == [] and drag.progress is Progress.RUNNING
+    for _ in range(12):
+        drag.tick()
+    assert edit.goals == [0.2, 0.3] and drag.at_rest
+    drag.handle(move_to(50))
+    drag.tick()
+    drag.handle(Event("ESC"))
+    assert drag.progress is Progress.CANCELLED and edit.shown == 0.0
 
 
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
@@ -114,20 +183,6 @@ def test_a_goal_is_continued_until_a_state_is_accepted() -> None:
     assert (edit.shown, drag.transform, drag.at_rest) == (0.7, 0.7, True)
 
 
-def test_a_state_that_a_tick_has_no_time_to_write_is_written_by_the_next(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    answers = iter([False, True, False, True])
-    monkeypatch.setattr(Pace, "has_time_to_write", lambda self, spent: next(answers))
-    edit = FakeEdit()
-    drag = new_drag(edit)
-    for x in (50, 60, 70, 80):
-        drag.handle(move_to(x))
-        drag.tick()
-    assert edit.calls == ["drag", "write", "drag", "write"]
-    assert edit.goals == [0.5, 0.7] and not drag.at_rest
-
-
 def test_the_confirmation_ends_an_unfinished_goal() -> None:
     edit = FakeEdit(statuses=["budget"], furthest=0.0)
     drag = new_drag(edit)
@@ -156,7 +211,7 @@ def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> No
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle", "write"]
+    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle"]
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:
@@ -164,7 +219,9 @@ def test_an_endless_solve_can_be_confirmed() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == FINAL_SOLVES
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == MAX_FRUITLESS + 1
 
 
 def test_an_invalid_value_is_reported_and_can_be_corrected() -> None:

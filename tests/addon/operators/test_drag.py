@@ -13,6 +13,7 @@ bpy = pytest.importorskip("bpy")
 
 from fake_edit import FakeEdit  # noqa: E402
 
+from stiv.task import Task  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.state import State  # noqa: E402
 from stiv_addon.operators import running, window_io  # noqa: E402
@@ -94,14 +95,14 @@ def edit() -> FakeEdit:
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> Iterator[tuple[Probe, Context]]:
-    monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError))
+    monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError, Task=Task))
     monkeypatch.setattr(
         drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)
     )
     monkeypatch.setattr(drag, "make_motion", lambda transform, *rest: transform.value)
     monkeypatch.setattr(drag, "make_influence", lambda proportional: None)
     operator, context = Probe(), Context()
-    operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begun)
+    operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begin_steps)
     yield operator, context
     running.end()
 
@@ -134,8 +135,7 @@ def test_a_timer_that_only_waits_draws_nothing(started: Any) -> None:
 def test_a_fault_of_the_edit_restores_reports_and_clears(started: Any, edit: FakeEdit, failing: str) -> None:
     operator, context = started
     edit.failing = {failing: RuntimeError("broken")}
-    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
-    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"CANCELLED"}
     assert edit.calls[-1] == "restore" and operator.reports == [({"ERROR"}, UNEXPECTED)]
     expect_clean(context)
 
@@ -150,7 +150,7 @@ def test_a_fault_of_the_interface_ends_the_drag_too(
 
     monkeypatch.setattr(window_io, "show", fail)
     assert operator.modal(context, event("MOUSEMOVE", "NOTHING", 50)) == {"CANCELLED"}
-    assert edit.calls == ["restore"] and operator.reports == [({"ERROR"}, UNEXPECTED)]
+    assert edit.calls[-1] == "restore" and edit.shown == 0.0 and operator.reports == [({"ERROR"}, UNEXPECTED)]
     expect_clean(context)
 
 
@@ -158,7 +158,6 @@ def test_a_failure_to_restore_is_reported(started: Any, edit: FakeEdit) -> None:
     operator, context = started
     edit.failing = {"drag": RuntimeError("broken"), "restore": RuntimeError("the box is gone")}
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
-    operator.modal(context, event("TIMER"))
     assert operator.reports == [({"ERROR"}, f"{UNEXPECTED}; while restoring: the box is gone")]
     expect_clean(context)
 

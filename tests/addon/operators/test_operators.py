@@ -16,6 +16,7 @@ import mathutils  # noqa: E402
 
 import stiv_addon  # noqa: E402
 from stiv import InputError  # noqa: E402
+from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES  # noqa: E402
@@ -56,7 +57,8 @@ class RecordingEdit:
     failing: Exception | None = None
 
     @classmethod
-    def begin(cls, context: Any, settings: Any, kind: str) -> "RecordingEdit":
+    def begin_steps(cls, context: Any, settings: Any, kind: str) -> Steps["RecordingEdit"]:
+        yield from ()
         edit = cls()
         edit.kind, edit.settings, edit.matrix = kind, settings, None
         edit.name = context.active_object.name
@@ -70,7 +72,8 @@ class RecordingEdit:
         self.matrix = controls
         return True
 
-    def apply(self, motion: Any, path: Any) -> Any:
+    def apply_steps(self, motion: Any, path: Any) -> Steps[Any]:
+        yield from ()
         self.motion, self.matrix = motion, np.array(motion.matrix)
         assert path(1.0) == pytest.approx(self.matrix)
         assert path(0.0) == pytest.approx(np.eye(4))
@@ -97,7 +100,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"Motion": Motion, "FreeDirections": FreeDirections, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     plain |= {"unguarded_text": lambda context, evaluations, carried: ""}
-    stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, **plain)
+    stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")

@@ -2,6 +2,7 @@
 """Check, repair, contract, expand and settle as a script calls them, with the core."""
 
 import json
+import time
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,7 +18,7 @@ from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
 from stiv_addon.operators.repair.exclusions import excluded_count  # noqa: E402
 from stiv_addon.operators.repair.repair import STIV_OT_repair  # noqa: E402
-from stiv_addon.operators.repair.reshape import ReshapeOperator, Worker  # noqa: E402
+from stiv_addon.operators.repair.reshape import ReshapeOperator  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -135,21 +136,6 @@ def test_check_selects_the_faces_that_meet_only_if_asked(levels: int, mode: str)
     assert lines[0].startswith("Grid cuts Spike, ")
 
 
-def test_a_worker_solves_in_a_thread_and_returns_errors() -> None:
-    class Task:
-        def solve(self, cancel: Any, progress: Any) -> None:
-            progress("rounds", 0.5)
-            while not cancel.cancelled:
-                pass
-            raise ValueError("stopped")
-
-    worker = Worker(Task())
-    worker.token.cancel()
-    worker.join()
-    assert worker.progress == ("rounds", 0.5)
-    assert str(worker.error) == "stopped"
-
-
 class InWindow(ReshapeOperator):
     """The repair operator as a window runs it, with a replacement of the window."""
 
@@ -200,11 +186,11 @@ def event(kind: str) -> Any:
 def run(operator: Any, context: Any) -> set[str]:
     """Timer events until the operator ends."""
     while (outcome := operator.modal(context, event("TIMER"))) == {"RUNNING_MODAL"}:
-        operator._worker.join(0.01)
+        time.sleep(0.01)
     return outcome
 
 
-def test_in_a_window_a_thread_solves_and_timers_wait_for_it() -> None:
+def test_in_a_window_a_job_solves_and_timers_wait_for_it() -> None:
     add_tube()
     operator, context = InWindow(), Context()
     assert operator.start(context) == {"RUNNING_MODAL"}
@@ -222,7 +208,6 @@ def test_esc_restores_everything() -> None:
     operator, context = InWindow(), Context()
     operator.start(context)
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
-    operator._worker.join()
     assert np.array_equal(positions(tube), before) and not tube.data.attributes.get("stiv_original")
     assert context.window_manager.timers == 0
     assert "cancelled" in operator.reported[-1][1]
@@ -236,7 +221,6 @@ def test_blender_may_end_a_repair_and_an_object_may_be_deleted() -> None:
     operator.cancel(context)
     assert np.array_equal(positions(tube), before) and context.window_manager.timers == 0
     operator.start(context)
-    operator._worker.join()
     bpy.data.objects.remove(tube)
     assert run(operator, context) == {"CANCELLED"}
     assert "Tube is gone" in operator.reported[-1][1] and context.window_manager.timers == 0
