@@ -39,6 +39,7 @@ class Driver:
         from guide_pictures import PICTURES
         from interface import INTERFACE
         from languages import LANGUAGES
+        from layout_scenarios import LAYOUT
         from measuring import MEASURES
         from proportional_editing import PROPORTIONAL_EDITING
         from real_events import REAL_EVENTS
@@ -53,7 +54,7 @@ class Driver:
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
-        usual = drags | grammar | guard | INTERFACE | LANGUAGES | SEQUENCES | PICTURES
+        usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

@@ -4,10 +4,11 @@
 import bpy  # noqa: F401
 import numpy as np
 import pytest
-from mathutils import Matrix, Vector
+from mathutils import Euler, Matrix, Vector
 
 from stiv.blender.controls.rotations import (
     affine_about,
+    euler_angles,
     is_rotation,
     nearest_equivalent,
     nearest_rotation,
@@ -54,3 +55,19 @@ def test_components_that_vanish_in_single_precision_are_removed() -> None:
     assert remove_rounding(np.array([3.0, -1e-9, 1e-5])).tolist() == [3.0, 0.0, 1e-5]
     assert remove_rounding(np.array([3e-20, 1e-20, 0.0])).tolist() == [3e-20, 1e-20, 0.0]
     assert remove_rounding(np.array([1e-9, 0.0, -2e-6]), unit=1.0).tolist() == [0.0, 0.0, -2e-6]
+
+
+@pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"])
+def test_euler_angles_are_exact_near_the_gimbal_lock(order: str) -> None:
+    rng = np.random.default_rng(5)
+    for off in (0.0, 1e-7, 1e-6, 1e-4, 0.3):
+        angles = rng.uniform(-3, 3, 3)
+        angles["XYZ".index(order[1])] = np.pi / 2 - off
+        turns = {
+            axis: rotation_matrix(angle * np.eye(3)[k])
+            for k, (axis, angle) in enumerate(zip("XYZ", angles, strict=True))
+        }
+        matrix = turns[order[2]] @ turns[order[1]] @ turns[order[0]]
+        found = euler_angles(matrix, order, angles + rng.uniform(-0.5, 0.5, 3))
+        stored = np.array(Euler(found, order).to_matrix())  # Blender's own conversion back, in single precision
+        assert np.allclose(stored, matrix, atol=3e-7)

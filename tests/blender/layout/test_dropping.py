@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drop and Settle into Contact: against closed forms, Blender's own ray casts and the exact test of the scene."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -20,6 +22,7 @@ from stiv.blender import (
     settle_into_contact,
 )
 
+FIXTURES = Path(__file__).resolve().parents[3] / "blend_fixtures"
 H = 0.01
 EDIT = EditSettings(separation=H)
 
@@ -128,3 +131,15 @@ def test_settling_presses_a_tilted_cube_against_the_nearest_wall() -> None:
     assert cube.matrix_world.translation.x == pytest.approx(1 + H, abs=0.1 * H)
     cube.location.x += 20
     assert settle_into_contact(bpy.context, SettleSettings(EDIT)).left == (("Cube", "nothing near"),)
+
+
+def test_organs_fall_into_the_bowl_of_the_fixture() -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(FIXTURES / "figures/organs_in_bowl.blend"))
+    organs = [bpy.data.objects[name] for name in ("Heart", "Left kidney", "Spleen")]
+    for number, organ in enumerate(organs):
+        organ.location.z += 1 + number
+    select(*organs)
+    report = drop(bpy.context, DropSettings(EditSettings(separation=0.002)))
+    assert len(report.changed) == 3 and min(report.contacts) >= 3
+    between = [pair for pair in check_scene(bpy.context).pairs if pair.first.object != pair.second.object]
+    assert not between and nearest_pair(bpy.context).distance >= 0.002 * (1 - 1e-3)

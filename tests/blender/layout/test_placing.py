@@ -79,3 +79,12 @@ def test_without_a_surface_or_cancelled_nothing_is_added() -> None:
     token = stiv.CancelToken()
     report = place(bpy.context, PlaceSettings(EDIT), cancel=token, progress=lambda *_: token.cancel())
     assert report.status == "cancelled" and len(bpy.data.objects) == 2
+
+
+def test_copies_of_a_mesh_that_intersects_itself_stay() -> None:
+    stone = add_cube("Stone", (20, 0, 0), 0.3)
+    other = add_cube("Other", (20.1, 0.1, 0.1), 0.3)
+    with bpy.context.temp_override(active_object=stone, selected_editable_objects=[stone, other]):
+        bpy.ops.object.join()
+    select(stone, hill())
+    assert len(place(bpy.context, PlaceSettings(EDIT, count=4)).changed) == 4

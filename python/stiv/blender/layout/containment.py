@@ -57,6 +57,8 @@ def is_mostly_inside(scene: RigidScene, mover: int, among: Flags | None = None) 
 
 def _windings(scene: RigidScene, mover: int, among: Flags | None, points: Floats) -> Iterator[Floats]:
     """Winding numbers around points, (n,), of each closed obstacle near a mover."""
-    for triangles in scene.bodies_around(mover, among):
-        if is_closed(triangles):
+    for body, triangles in scene.bodies_around(mover, among):
+        if body not in scene.closed:
+            scene.closed[body] = is_closed(triangles)
+        if scene.closed[body]:
             yield winding_numbers(points, scene.corners(triangles))

@@ -132,12 +132,14 @@ class Place(LayoutTask):
     def _remove_intersecting(self, before: set[frozenset[str]]) -> None:
         """Remove copies that intersect in Blender's evaluation, because their shape depends on their place."""
         new = _pairs_of(self._context, self._settings.edit) - before
-        families = {ob.name: {ob.name, *(child.name for child in ob.children_recursive)} for ob in self._created}
         for ob in list(self._created):
-            if any(pair & families[ob.name] for pair in new):
-                new = {pair for pair in new if not pair & families[ob.name]}
+            family = {ob.name, *(child.name for child in ob.children_recursive)}
+            mine = {pair for pair in new if pair & family and not pair <= family}  # a copy may intersect itself
+            if mine:
+                new -= mine
                 self._created.remove(ob)
                 _remove(ob)
+        self._context.view_layer.update()
 
     def restore(self) -> None:
         """Remove all copies."""

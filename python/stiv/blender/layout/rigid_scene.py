@@ -13,7 +13,12 @@ from stiv.blender.scene.arrays import Flags, Floats, Indices
 
 AUTOMATIC_FRACTION = 1e-4  # of the diagonal of the movers, as in the core
 SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
+STRIDE = 0.25  # of its size, that a body travels between two searches for obstacles
+DRIFT = 1e-4  # of a distance below the separation, that a search after the first may lose to rounding
 TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
+
+
+HERE = np.zeros((2, 3))
 
 
 @dataclass(frozen=True)
@@ -99,6 +104,13 @@ class RigidScene:
             self._mover_of_vertex[mover.rows] = number
         self._elements = [surface.triangles, surface.loose_edges, _loose_vertices(surface)]
         self._boxes = [_boxes(self._positions, each) for each in self._elements]
+        self._element_bodies = [surface.vertex_body[each[:, 0]] for each in self._elements]
+        self._mover_of_body = np.full(len(surface.bodies), -1, np.int32)
+        self._mover_of_body[surface.vertex_body] = self._mover_of_vertex
+        self._body_boxes = np.stack([np.full((len(surface.bodies), 3), sign * np.inf) for sign in (1, -1)])
+        np.minimum.at(self._body_boxes[0], surface.vertex_body, self._positions)
+        np.maximum.at(self._body_boxes[1], surface.vertex_body, self._positions)
+        self.closed: dict[int, bool] = {}  # bodies that are known to be closed or open
         self._bodies = [np.unique(surface.vertex_body[each.rows]).tolist() for each in self.movers]
         self._hidden = np.zeros(len(movers) + 1, np.bool_)  # movers that are left out; the last one: obstacles
 
@@ -118,6 +130,9 @@ class RigidScene:
         for elements, boxes in zip(self._elements, self._boxes, strict=True):
             own = np.flatnonzero(self._mover_of_vertex[elements[:, 0]] == mover)
             boxes[:, own] = _boxes(self._positions, elements[own])
+        for body in self._bodies[mover]:
+            own = rows[self._surface.vertex_body[rows] == body]
+            self._body_boxes[:, body] = _box(self._positions[own])
 
     def shift(self, mover: int, vector: Floats) -> None:
         """Translate a mover by a vector, (3,); nothing is tested."""
@@ -232,16 +247,10 @@ class RigidScene:
         rows = self._used(near)
         return _box(self._positions[rows]) if len(rows) else self.box(mover)
 
-    def bodies_around(self, mover: int, among: Flags | None = None) -> list[Indices]:
-        """The triangles, (f, 3), of each obstacle whose box touches that of a mover. among: see `facing`."""
-        near, box = self._near(mover, None, among)[0], self.box(mover)
-        body, (low, high) = self._body_of(self._surface.triangles), self._boxes[0]
-        found = []
-        for number in np.unique(body[near]):
-            own = near & (body == number)
-            if (low[own].min(axis=0) <= box[1]).all() and (high[own].max(axis=0) >= box[0]).all():
-                found.append(self._surface.triangles[own])
-        return found
+    def bodies_around(self, mover: int, among: Flags | None = None) -> Iterator[tuple[int, Indices]]:
+        """Each obstacle whose box touches that of a mover, with its triangles, (f, 3). among: see `facing`."""
+        for number in np.flatnonzero(self._bodies_near(mover, self.box(mover), among)):
+            yield int(number), self._surface.triangles[self._element_bodies[0] == number]
 
     def corners(self, triangles: Indices) -> Floats:
         """Positions of the corners of triangles, (f, 3, 3)."""
@@ -250,7 +259,7 @@ class RigidScene:
     def normals_of_contact(self, mover: int, among: Flags | None = None) -> Floats:
         """Normals, (k, 3), of the triangles of both sides that intersect, and the vector between the closest points."""
         normals = [np.empty((0, 3))]
-        for each in self.facing(mover, self.box(mover), among):
+        for each in self.facing(mover, HERE, among):
             q = self._positions[each.rows]
             pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
             corners = q[each.surface.triangles[np.unique(pairs)]]
@@ -268,21 +277,31 @@ class RigidScene:
 
         A body that starts nearer than that stops where it comes nearer yet. among: see `facing`.
         """
-        start = self.box(mover)
-        swept = np.array([np.minimum(start[0], start[0] + vector), np.maximum(start[1], start[1] + vector)])
+        length = max(float(np.linalg.norm(vector)), 1e-300)
+        step = min(1.0, STRIDE * self.size(mover) / length)
+        for number in range(int(np.ceil(1 / step))):
+            ends = np.array([number * step, min(1.0, (number + 1) * step)])
+            nearer = TOLERANCE if number == 0 else DRIFT
+            time = self._earliest_time(mover, ends[:, None] * vector, among, 1 - nearer)
+            if time <= 1:
+                return float(ends[0] + time * (ends[1] - ends[0]))
+        return None
+
+    def _earliest_time(self, mover: int, offsets: Floats, among: Flags | None, ratio: float) -> float:
+        """The time in [0, 1] of the first stop between two offsets of a mover, (2, 3); infinity without one."""
         first = np.inf
-        for each in self.facing(mover, swept, among):
+        for each in self.facing(mover, offsets, among):
             here = self._positions[each.rows]
             there = here.copy()
-            there[: each.count] += vector
+            here[: each.count] += offsets[0]
+            there[: each.count] += offsets[1]
             detector = stiv.Detector(each.surface, threads=self._threads)
-            first = min(first, detector.earliest_time(here, there, each.separation, 1 - TOLERANCE))
-        return None if first > 1 else first
+            first = min(first, detector.earliest_time(here, there, each.separation, ratio))
+        return first
 
     def is_clear(self, mover: int, among: Flags | None = None) -> bool:
         """Is a mover at least the minimum distance away from everything? Does not look inside closed surfaces."""
-        box = self.box(mover)
-        for each in self.facing(mover, box, among):
+        for each in self.facing(mover, HERE, among):
             q = self._positions[each.rows]
             if len(stiv.find_intersections(q, each.surface, threads=self._threads)):
                 return False
@@ -293,7 +312,7 @@ class RigidScene:
 
     def intersected(self, mover: int) -> str:
         """The name of a body that intersects a mover; "" if none does."""
-        for each in self.facing(mover, self.box(mover)):
+        for each in self.facing(mover, HERE):
             q = self._positions[each.rows]
             pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
             if len(pairs):
@@ -318,7 +337,7 @@ class RigidScene:
     def contacts(self, mover: int, direction: Floats, reach: float) -> list[Contact]:
         """Where obstacles stop a mover within `reach` minimum distances along a direction."""
         found = []
-        for each in self.facing(mover, self.box(mover), margin=1 + reach):
+        for each in self.facing(mover, HERE, margin=1 + reach):
             here = self._positions[each.rows]
             there = here.copy()
             there[: each.count] += reach * each.separation * direction
@@ -355,25 +374,39 @@ class RigidScene:
         return stiv.EditSession(surface, deformation, self._poses[mover], options)
 
     def facing(
-        self, mover: int, box: Floats | None, among: Flags | None = None, margin: float = 1.0
+        self, mover: int, offsets: Floats | None, among: Flags | None = None, margin: float = 1.0
     ) -> Iterator[Facing]:
-        """Each body of a mover with the obstacles near a box, (2, 3), of one minimum distance; None: everywhere.
+        """Each body of a mover, and the obstacles near it between two offsets, (2, 3), that have one minimum distance.
 
-        among: flags of the movers that are obstacles here, (k + 1,), the last for everything else; None: all are.
-        margin: in minimum distances.
+        Elements that cannot come near each other are left out. offsets None: everywhere, with all elements. among:
+        flags of the movers that are obstacles here, (k + 1,), the last for everything else; None: all are. margin: in
+        minimum distances.
         """
         reach = margin * self.largest_separation
-        near = self._near(mover, None if box is None else box + [[-reach], [reach]], among)
+        swept = None if offsets is None else np.stack([offsets.min(axis=0) - reach, offsets.max(axis=0) + reach])
+        near = self._near(mover, None if swept is None else self.box(mover) + swept, among)
+        if not any(each.any() for each in near):
+            return
+        mine = self._of(mover) if swept is None else self._own_near(mover, near, swept)
         for body in self._bodies[mover]:
-            own = [self._body_of(elements) == body for elements in self._elements]
+            own = [flags & (bodies == body) for flags, bodies in zip(mine, self._element_bodies, strict=True)]
             distances = np.array([self._separation_of(body, other) for other in range(len(self._surface.bodies))])
             for h in np.unique(distances[distances > 0]):
                 others = [
-                    flags & (distances[self._body_of(elements)] == h)
-                    for flags, elements in zip(near, self._elements, strict=True)
+                    flags & (distances[bodies] == h) for flags, bodies in zip(near, self._element_bodies, strict=True)
                 ]
-                if any(each.any() for each in others):
+                if any(each.any() for each in others) and any(each.any() for each in own):
                     yield self._face(own, others, float(h))
+
+    def _own_near(self, mover: int, near: list[Flags], swept: Floats) -> list[Flags]:
+        """Flags of the elements of a mover that may come near other ones between offsets, (2, 3)."""
+        lows = [low[flags] for flags, (low, _) in zip(near, self._boxes, strict=True)]
+        highs = [high[flags] for flags, (_, high) in zip(near, self._boxes, strict=True)]
+        lowest, highest = np.concatenate(lows).min(axis=0), np.concatenate(highs).max(axis=0)
+        return [
+            own & _overlap(low, high, np.stack([lowest - swept[1], highest - swept[0]]))
+            for own, (low, high) in zip(self._of(mover), self._boxes, strict=True)
+        ]
 
     def _face(self, own: list[Flags], others: list[Flags], separation: float) -> Facing:
         elements = [first | second for first, second in zip(own, others, strict=True)]
@@ -411,19 +444,24 @@ class RigidScene:
 
     def _near(self, mover: int, box: Floats | None, among: Flags | None) -> list[Flags]:
         """Flags of the elements of other bodies near a box, (2, 3); None: everywhere."""
-        tested = ~self._hidden if among is None else among & ~self._hidden
-        tested = tested.copy()
-        tested[mover] = False
+        bodies = self._bodies_near(mover, box, among)
         found = []
-        for elements, (low, high) in zip(self._elements, self._boxes, strict=True):
-            flags = tested[self._mover_of_vertex[elements[:, 0]]]
+        for body, (low, high) in zip(self._element_bodies, self._boxes, strict=True):
+            flags = bodies[body]
             if box is not None:
-                flags = flags & (low <= box[1]).all(axis=1) & (high >= box[0]).all(axis=1)
+                rows = np.flatnonzero(flags)
+                flags[rows] = _overlap(low[rows], high[rows], box)
             found.append(flags)
         return found
 
-    def _body_of(self, elements: Indices) -> Indices:
-        return self._surface.vertex_body[elements[:, 0]]
+    def _bodies_near(self, mover: int, box: Floats | None, among: Flags | None) -> Flags:
+        """Flags of the other bodies whose box touches a box, (2, 3); None: of all of them."""
+        tested = ~self._hidden if among is None else among & ~self._hidden
+        tested[mover] = False
+        bodies: Flags = tested[self._mover_of_body]
+        if box is not None:
+            bodies &= _overlap(self._body_boxes[0], self._body_boxes[1], box)
+        return bodies
 
     def _separation_of(self, body: int, other: int) -> float:
         """The minimum distance of two bodies; 0 for bodies that are not tested."""
@@ -443,6 +481,14 @@ def _boxes(positions: Floats, elements: Indices) -> Floats:
     """Lowest and highest corner of each element, (2, k, 3)."""
     corners = positions[elements]
     return np.stack([corners.min(axis=1), corners.max(axis=1)]) if len(elements) else np.zeros((2, 0, 3))
+
+
+def _overlap(low: Floats, high: Floats, box: Floats) -> Flags:
+    """Flags of boxes, (k, 3) each corner, that touch a box, (2, 3); by columns, which is faster than by rows."""
+    found: Flags = np.ones(len(low), np.bool_)
+    for axis in range(3):
+        found &= (low[:, axis] <= box[1, axis]) & (high[:, axis] >= box[0, axis])
+    return found
 
 
 def _box(points: Floats) -> Floats:
