@@ -19,7 +19,9 @@ NUDGE = 0.02  # radians, to leave a balance on an edge or a corner
 MAX_NUDGES = 4
 MAX_LEVELLINGS = 12
 MAX_ROWS, MAX_ITERATIONS = 64, 300  # of the contacts of a linear step
-REACH = 3.0  # minimum distances within which a contact supports
+REACH = 3.0  # minimum distances within which contacts are levelled
+SUPPORT = 1.0  # minimum distances within which a contact supports
+LEVEL = 0.1  # the same for a body that rests already
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def rest(scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Wa
     if fall(scene, mover, direction, length) is None:
         scene.set_pose(mover, start)
         return Rest("nothing")
-    if turn and scene.movers[mover].can_turn and not is_supported(scene, mover, direction):
+    if turn and scene.movers[mover].can_turn and not is_supported(scene, mover, direction, LEVEL):
         if not _tumble(scene, mover, direction, watch, length):
             scene.set_pose(mover, start)
             return Rest("nothing")
@@ -75,12 +77,12 @@ def rest(scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Wa
             ):
                 break
     distance = float((scene.pose(mover) - start)[0] @ direction)
-    return Rest("rests", tuple(scene.contacts(mover, direction, REACH)), distance)
+    return Rest("rests", tuple(scene.contacts(mover, direction, SUPPORT)), distance)
 
 
-def is_supported(scene: RigidScene, mover: int, direction: Floats) -> bool:
+def is_supported(scene: RigidScene, mover: int, direction: Floats, reach: float = SUPPORT) -> bool:
     """Is the center of a mover above the inside of the polygon of its contacts, seen along the direction?"""
-    contacts = [each.point for each in scene.contacts(mover, direction, REACH)]
+    contacts = [each.point for each in scene.contacts(mover, direction, reach)]
     if len(contacts) < 3:
         return False
     across = _plane_across(direction)

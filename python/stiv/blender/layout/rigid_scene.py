@@ -378,7 +378,7 @@ class RigidScene:
     ) -> Iterator[Facing]:
         """Each body of a mover, and the obstacles near it between two offsets, (2, 3), that have one minimum distance.
 
-        Elements that cannot come near each other are left out. offsets None: everywhere, with all elements. among:
+        Elements that stay far from each other are left out. offsets None: everywhere, with all elements. among:
         flags of the movers that are obstacles here, (k + 1,), the last for everything else; None: all are. margin: in
         minimum distances.
         """
@@ -399,7 +399,7 @@ class RigidScene:
                     yield self._face(own, others, float(h))
 
     def _own_near(self, mover: int, near: list[Flags], swept: Floats) -> list[Flags]:
-        """Flags of the elements of a mover that may come near other ones between offsets, (2, 3)."""
+        """Flags of the elements of a mover that may approach other ones between offsets, (2, 3)."""
         lows = [low[flags] for flags, (low, _) in zip(near, self._boxes, strict=True)]
         highs = [high[flags] for flags, (_, high) in zip(near, self._boxes, strict=True)]
         lowest, highest = np.concatenate(lows).min(axis=0), np.concatenate(highs).max(axis=0)
