@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import bpy
@@ -117,7 +118,7 @@ def _guard_new_geometry(
                 result.add(correct_extrusion(context, settings, accepted, reference))
         if touches_others(fresh, created):
             entering = [created[name].session_uid for name in sorted(names & created.keys())]
-            _guard_new_objects(context, settings, accepted, set(created), entering, result)
+            _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
 
@@ -128,11 +129,12 @@ def _guard_new_objects(
     accepted: AcceptedScene,
     created: set[str],
     entering: list[int],
+    fresh: Sequence[FacePair],
     result: GuardedResult,
 ) -> None:
     """Correct copies from the places of their originals, then place new objects that still intersect.
 
-    created: names of all new objects. entering: session numbers of those that intersect.
+    created: names of all new objects. entering: session numbers of those that intersect. fresh: their intersections.
     """
     present = read_state(context)
     in_place = find_in_place(accepted, present, entering)
@@ -140,7 +142,12 @@ def _guard_new_objects(
         result.reason = "{}: is in the place of {}; move it".format(*in_place)
         return
     originals = find_originals(accepted, present, entering)
-    if originals:
+    through = {
+        frozenset({present[copy].reference.name, accepted.state[original].reference.name})
+        for copy, original in originals.items()
+    }
+    blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
+    if originals and touches_others(blocking, created):
         result.add(correct_copies(context, settings, accepted, originals))
         if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
             return
