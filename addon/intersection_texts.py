@@ -67,6 +67,15 @@ def as_message(lines: Iterable[str]) -> str:
     return first
 
 
+def brief(text: str) -> str:
+    """The first clauses of a text that fit the status bar."""
+    if len(text) <= LENGTH:
+        return text
+    start = text[:LENGTH]
+    ends = [start.rfind(mark) for mark in (". ", "; ", ", ", " ")]
+    return start[: next((end for end in ends if end > 0), LENGTH)]
+
+
 def _by_objects(pairs: Pairs) -> dict[tuple[str, str], list[stiv_blender.FacePair]]:
     """The pairs by the names of their objects, in alphabetical order."""
     found: dict[tuple[str, str], list[stiv_blender.FacePair]] = {}

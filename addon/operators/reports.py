@@ -8,7 +8,7 @@ import traceback
 import bpy
 
 from .. import stiv_blender
-from ..intersection_texts import short_name
+from ..intersection_texts import LENGTH, brief, short_name
 from ..modal.drag_loop import DragEnded, restore_after_error
 from ..modal.header_texts import result_text
 from ..translations import translate
@@ -37,8 +37,16 @@ def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blen
     """Report an error after restoring `edit`; unexpected errors print their trace."""
     if edit is not None:
         restore_after_error(edit, error)
-    operator.report({"ERROR"}, "; ".join([error_text(error), *getattr(error, "__notes__", ())]))
+    _report_with_details(operator, "; ".join([error_text(error), *getattr(error, "__notes__", ())]))
     return {"CANCELLED"}
+
+
+def _report_with_details(operator: bpy.types.Operator, text: str) -> None:
+    """Report as much of an error as fits; the tab shows the whole. Scripts get all of it as an exception."""
+    panel = getattr(bpy.context.window_manager, "stiv_check", None)  # None once the extension is disabled
+    if panel is not None and len(text) > LENGTH:
+        panel.summary = text
+    operator.report({"ERROR"}, text if bpy.app.background else brief(text))
 
 
 def error_text(error: Exception) -> str:
@@ -51,7 +59,7 @@ def error_text(error: Exception) -> str:
 
 def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:
     """Report the error of a nested operator, which Blender raises as a RuntimeError."""
-    operator.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+    _report_with_details(operator, str(error).removeprefix("Error: ").strip())
     return {"CANCELLED"}
 
 

@@ -7,7 +7,7 @@ pytest.importorskip("bpy")
 pytest.importorskip("stiv._native")
 
 from stiv.blender import Element, FacePair
-from stiv_addon.intersection_texts import LENGTH, as_message, details, element_lines, headline
+from stiv_addon.intersection_texts import LENGTH, as_message, brief, details, element_lines, headline
 
 
 def pair(first: str, i: int, second: str, j: int, evaluation: str = "shown") -> FacePair:
@@ -49,6 +49,13 @@ def test_long_names_leave_the_line_short_enough() -> None:
     names = ("The Wall Beside the Stairs of the House", "Another Object With a Name of Sixty Letters and More")
     for text in (headline([pair(names[0], 0, names[1], 0)]), headline([pair(n, 0, n, 1) for n in (*names, "C", "D")])):
         assert len(text) <= LENGTH and text.startswith(("Another", "The"))
+
+
+def test_the_first_clauses_of_a_long_text_are_reported() -> None:
+    assert brief("short; text. Here") == "short; text. Here"
+    assert brief("the start intersects: 150 pairs of faces, " + "x" * 90) == "the start intersects: 150 pairs of faces"
+    assert brief("Cube: no. " + "y " * 60) == "Cube: no"
+    assert len(brief("z" * 200)) == LENGTH
 
 
 def test_a_message_has_as_many_lines_as_fit() -> None:

@@ -103,7 +103,7 @@ class BlenderRepair:
         if verification.flips and self._attempts <= MAX_FLIP_RETRIES:
             self._snapshot = self._snapshot.add_triangles(verification.flips)
             return None
-        return self._refused(f"the repair intersects in Blender's evaluation: {verification.message}")
+        return self._refused(f"repaired, but {verification.message}")
 
     def restore(self) -> None:
         """Restore everything exactly."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_tolerance, read_positions_of
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.scene.exclusions import find_excluded_triangles, without_excluded
@@ -180,9 +180,7 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
 
 def _intersection_message(pairs: tuple[FacePair, ...]) -> str:
     first, second = pairs[0].first, pairs[0].second
-    shown_in = {VIEWPORT: "what Object Mode shows", RENDER: "the render"}.get(second.evaluation, "what Blender shows")
-    return (
-        f"{len(pairs)} pairs meet in {shown_in}, the first are "
-        f'object "{first.object}", {first.kind} {first.number} and '
-        f'object "{second.object}", {second.kind} {second.number}'
-    )
+    shown_in = {VIEWPORT: "Object Mode", RENDER: "the render"}.get(second.evaluation, "the viewport")
+    faces = count_faces(pairs)
+    counted = "1 face" if faces == 1 else f"{faces:,} faces"
+    return f"{first.object} cuts {second.object} in {shown_in}, {counted}"
