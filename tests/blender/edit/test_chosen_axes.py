@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Locked axes, uniform scales and pivots hold in what is written: the fields and matrices that Blender shows."""
+"""Locked axes, uniform scales and pivots hold in the fields and matrices that Blender shows."""
 
 from dataclasses import replace
 from typing import Any
@@ -76,7 +76,7 @@ def test_contact_may_leave_the_axis_if_the_user_lets_it() -> None:
     assert ball.location.x > 3
 
 
-def test_a_locked_axis_stops_on_the_line_and_a_free_one_goes_on() -> None:
+def test_a_locked_axis_stops_on_the_line_and_a_free_one_slides() -> None:
     cube = add_cube("Cube")
     wall = add_grid("Wall", 2, 20.0, (4, 0, 0), rotation_euler=(0, 1.1, 0))
     select(cube)

@@ -30,7 +30,7 @@ def rotation_bits(ob: Any) -> tuple[bytes, bytes]:
 
 
 def are_apart(*objects: Any) -> bool:
-    """An exact test of what Blender shows."""
+    """An exact test of the visible objects."""
     q, triangles, count = [], [], 0
     for ob in objects:
         ob.data.calc_loop_triangles()

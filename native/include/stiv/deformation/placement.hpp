@@ -13,7 +13,7 @@ namespace stiv {
 /// angular velocity, which is not singular at full turns, where the rotation vector is.
 /// With a pivot the rotation is about it: q_i = center + (pivot - mean(rest)) + R (rest_i - pivot). The center, which
 /// is mean(rest) at rest, then only translates. The metric neglects the coupling of both rows, so pin one of them.
-/// @throws InputError naming a vertex that is not finite, or for such a pivot
+/// @throws InputError if the pivot is not finite, or naming a vertex that is not
 std::shared_ptr<const Deformation> make_rigid(const Positions& rest, const std::optional<Vector3>& pivot = {});
 
 /// The rest controls of make_rigid(rest): (mean(rest), 0).

@@ -46,12 +46,12 @@ class GoalRule(Protocol):
         """
 
     def limits(self, motion: Motion) -> tuple[object, ...]:
-        """What `limited` depends on, for comparison; () if the motion limits nothing."""
+        """Values on which `limited` depends, for comparison; () if the motion limits nothing."""
 
     def limited(self, control_set: "ControlSet", motion: Motion, weight: float) -> "ControlSet":
-        """The control set as it was made, with the response that a motion allows.
+        """The given control set, the one of the start, with the response that a motion allows.
 
-        weight: response weight of what the motion moves.
+        weight: response weight of the controls that the motion moves.
         """
 
     def turned(self, controls: Floats, goal: Floats) -> float:
