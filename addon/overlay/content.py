@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..stiv_blender import ContactRegion, Ghost
 
 Floats = NDArray[np.float64]
-CONTACT_ALPHA, GHOST_ALPHA, GHOST_BOX_ALPHA, FACE_ALPHA = 0.6, 0.15, 0.6, 0.5
+CONTACT_ALPHA, GHOST_ALPHA, GHOST_BOX_ALPHA, FACE_ALPHA = 0.4, 0.15, 0.6, 0.5
 
 
 class Switches(Protocol):
