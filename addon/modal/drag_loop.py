@@ -258,7 +258,7 @@ class DragLoop:
         nothing_accepted = found.status == "budget" and len(found.path) == 0
         self._pending = self._may_gain(goal.state, found) or goal.state != self.state
         self._unfinished = goal if nothing_accepted else None
-        self._unwritten |= not nothing_accepted
+        self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
 
     def _take_settled(self, settled: EditResult) -> None:
         self._solves += 1

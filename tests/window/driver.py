@@ -29,6 +29,7 @@ class Driver:
         from deforming_drags import DEFORMING_DRAGS
         from disturbed_drags import DISTURBED_DRAGS
         from drags import DRAGS
+        from finishing import FINISHING
         from grammar import GRAMMAR
         from guard_edit_mode import GUARD_EDIT_MODE
         from guard_new_geometry import GUARD_NEW_GEOMETRY
@@ -39,6 +40,7 @@ class Driver:
         from guide_pictures import PICTURES
         from interface import INTERFACE
         from languages import LANGUAGES
+        from latency import LATENCIES
         from layout_scenarios import LAYOUT
         from measuring import MEASURES
         from proportional_editing import PROPORTIONAL_EDITING
@@ -52,10 +54,10 @@ class Driver:
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
-        drags = DRAGS | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES
+        drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | PICTURES
-        chosen = {name: (usual | MEASURES | REAL_EVENTS)[name] for name in names} or usual
+        chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
         self.steps = self.play(chosen)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 
 import bpy
 from bpy.props import EnumProperty
@@ -35,6 +36,7 @@ from .scale import STIV_OT_scale
 from .transform_operator import TransformOperator, apply_values, begin_drag, make_motion
 
 TICK = 1.0 / 60.0  # least seconds between two solves
+NO_POINTER = Pointer.at((0.0, 0.0))
 OPERATORS: dict[str, type[TransformOperator]] = {
     operator.kind: operator for operator in (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
 }
@@ -101,7 +103,7 @@ class DragOperator(Mixin):
             stiv_blender.Task,
         )
         self._drag = DragLoop(calls, state)
-        self._waits = False
+        self._waits, self._percent = False, -1
         self._show_waiting(context)
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
@@ -149,14 +151,13 @@ class DragOperator(Mixin):
         self._show_waiting(context)
         if drag.progress is not Progress.RUNNING or drag.edit is None:
             return
-        status = drag.result.status if drag.result is not None else ""
-        news = (drag.state, status, id(drag.written), drag.note)
-        if news == self._shown or (not drag.at_rest and news[1:] == (self._shown or ())[1:]):
-            return  # a moved pointer alone is drawn with its result
-        self._shown = news
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
         status = outcome_text(drag.result) if drag.result is not None else ""
+        news = (replace(drag.state, pointer=NO_POINTER), value, status, id(drag.written), drag.note)
+        if news == self._shown:  # a moved pointer alone is drawn with its result
+            return
+        self._shown = news
         turned = turned_text(drag.edit.turned, translate)
         notes = [text for text in (turned, drag.note, write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
@@ -169,7 +170,9 @@ class DragOperator(Mixin):
         if waits != self._waits:
             self._waits = waits
             window_io.show_wait_cursor(context, waits)
-        if waits or self._drag.progress is Progress.FINISHING:
+        percent = round(100 * self._drag.fraction)
+        if (waits or self._drag.progress is Progress.FINISHING) and percent != self._percent:
+            self._percent = percent
             label = translate(OPERATORS[self._drag.state.kind].bl_label)
             window_io.show_progress(context, self._drag.fraction, label)
 

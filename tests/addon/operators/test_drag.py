@@ -121,6 +121,27 @@ def test_a_drag_shows_its_value_and_leaves_nothing_behind(started: Any, edit: Fa
     expect_clean(context)
 
 
+@pytest.mark.parametrize("leaves", [False, True])
+def test_a_long_start_shows_the_wait_cursor_until_it_ends_or_esc_is_pressed(
+    started: Any, monkeypatch: pytest.MonkeyPatch, leaves: bool
+) -> None:
+    _, context = started
+    running.end()
+    shown: list[bool] = []
+    monkeypatch.setattr(window_io, "show_wait_cursor", lambda context, on: shown.append(on))
+    operator, edit = Probe(), FakeEdit(delays={"begin": 3})
+    operator._launch(context, State(Pointer.at((0.0, 0.0))), edit.begin_steps)
+    assert shown == [True] and edit.calls == []
+    if leaves:
+        assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+        assert edit.calls == [] and operator.reports == []
+    else:
+        for _ in range(4):
+            assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+        operator.cancel(context)
+    assert shown == [True, False]
+
+
 def test_a_timer_that_only_waits_draws_nothing(started: Any) -> None:
     operator, context = started
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
