@@ -217,6 +217,18 @@ def test_a_free_rotation_reaches_its_goal_and_the_same_drag_resumes() -> None:
     assert as_matrix(cube.matrix_world).tobytes() == placed.tobytes()
 
 
+def test_a_rotation_that_is_cancelled_at_its_first_step_can_begin_again() -> None:
+    cube = add_cube("Cube", (2, 0, 0))
+    select(cube)
+    edit, motion = begin("rotate"), Motion(turn(1.0, "Z"), np.zeros(3))
+    steps = edit.drag_steps(motion)
+    next(steps)  # opens the session about the pivot
+    steps.close()
+    assert edit.drag(motion).status == "reached"
+    assert edit.write().passed
+    assert tuple(cube.location) == pytest.approx((2 * np.cos(1), 2 * np.sin(1), 0), abs=1e-6)
+
+
 def test_a_drag_among_distant_obstacles_rotates_about_its_pivot() -> None:
     """Larger boxes of obstacles open new edits, which resume about the same pivot."""
     bar = add_cube("Bar", (2, 0, 0), 0.3)

@@ -329,9 +329,9 @@ class BlenderEdit:
         """Steps that let the controls respond as the motion allows: its axis lock, pivot and proportional editing."""
         limits = [each.rule.limits(motion) for each in self._made]
         if limits != self._limits:
-            self._limits = limits
             weight = self._settings.response_weight(True)
             yield from self._solver.change_response([each.rule.limited(each, motion, weight) for each in self._made])
+            self._limits = limits
 
     def _goal_of(self, motion: Motion) -> Floats:
         last = split_controls(self._goal, self.control_sets)

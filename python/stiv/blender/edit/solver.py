@@ -70,18 +70,22 @@ class EditSolver:
         """Steps that change the response of the same controls; from their start if they deform in another way."""
         pairs = zip(self.control_sets, control_sets, strict=True)
         deforms_alike = all(before.deformation is after.deformation for before, after in pairs)
-        self.control_sets = tuple(control_sets)
+        before, self.control_sets = self.control_sets, tuple(control_sets)
         if deforms_alike:
             if self._session is not None:
                 weights = weights_of_all([each.weights for each in control_sets])
                 self._session.set_weights(weights, axes_of_all(control_sets))
             return
         start = stack_controls([each.controls for each in control_sets])
-        self.trail = Trail(start, start)
         if self._session is None:
             self.deformation = deformation_of(self.assembly, control_sets)
         else:
-            yield from self._open_session(self._at_start, start)
+            try:
+                yield from self._open_session(self._at_start, start)
+            except BaseException:  # cancelled between steps, or refused: the old session stays
+                self.control_sets = before
+                raise
+        self.trail = Trail(start, start)
 
     def restart_from(self, controls: Floats, goal: Floats) -> None:
         """Start a new trail at accepted controls, which may be older than the present extra triangles.
