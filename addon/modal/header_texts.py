@@ -103,7 +103,7 @@ def result_text(status: str, blocking: Sequence[str] = (), translate: Translate 
 
 
 def turned_text(angle: float, translate: Translate = str) -> str:
-    """By what angle, in radians, contact has turned an object; empty below half a degree."""
+    """The angle, in radians, by which contact has turned an object; empty below half a degree."""
     degrees = round(math.degrees(angle))
     return translate("turned {}°").format(degrees) if degrees else ""
 

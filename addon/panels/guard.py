@@ -63,7 +63,7 @@ def draw_state(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def draw_known(layout: bpy.types.UILayout, problem: Problem) -> None:
-    """What intersects and is left alone."""
+    """The intersections that the guard leaves alone."""
     layout.label(text="All but these are guarded", icon="INFO")
     draw_lines(layout, "\n".join([problem.headline(translate), *details(problem.pairs, translate)]))
     _draw_operators(layout, OPERATORS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panels and redo panels draw, recorded by a layout of plain values."""
+"""Contents of the panels and redo panels, recorded by a layout of plain values."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def test_both_sides_are_lit_where_they_touch_and_fade_out(direction: int) -> Non
 
 
 def test_the_area_between_the_contacts_is_lit_too() -> None:
-    """Corners alone touch; what holds the box up is its whole face."""
+    """Corners alone touch, but the whole face holds the box up."""
     edit, result = pressed(1)
     region = contact_region(edit.assembly, result)
     middle = np.linalg.norm(region.triangles[..., 1:], axis=2) < 0.3
