@@ -23,7 +23,8 @@ BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a seco
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation: how much work Esc may lose
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
-MAX_FRUITLESS = 20  # repeated solves that use up their budget and gain nothing; then a confirmed drag ends
+MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then the goal counts as reached
+MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
 class Progress(Enum):
@@ -278,9 +279,9 @@ class DragLoop:
         self._solved = (state, result.energy)
         gained = solved != state or result.energy < GAIN * least
         self._fruitless = 0 if gained else self._fruitless + 1
-        if self._confirmed and self._fruitless >= MAX_FRUITLESS:
-            return False
-        return result.status == "budget" or (result.status == "corrected" and gained)
+        if result.status == "budget":
+            return self._fruitless < (MAX_SLOW if len(result.path) > 0 else MAX_FRUITLESS)
+        return result.status == "corrected" and gained
 
     def _begin_again(self) -> bool:
         """Begin another edit if the state requests one; returns whether its task has begun.

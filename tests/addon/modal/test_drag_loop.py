@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, DragCalls, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_SLOW, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
@@ -207,15 +207,23 @@ def test_another_request_ends_an_unfinished_goal(key: str) -> None:
 
 
 def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> None:
-    edit = FakeEdit(statuses=["budget", "budget", "corrected"])
+    edit = FakeEdit(statuses=["budget", "budget", "corrected"], furthest=0.2)
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 3 + ["settle"]
+    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 4 + ["settle"]
+
+
+def test_a_goal_that_is_reached_late_is_not_solved_for_again_and_again() -> None:
+    edit = FakeEdit(statuses=["budget"] * 1000)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == 1 + MAX_SLOW
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:
-    edit = FakeEdit(statuses=["budget"] * 1000)
+    edit = FakeEdit(statuses=["budget"] * 1000, furthest=0.0)
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
