@@ -93,6 +93,13 @@ class StivPairSeparation(bpy.types.PropertyGroup):
     )
 
 
+class StivPassingPair(bpy.types.PropertyGroup):
+    """Two objects that pass through each other; nothing tests them against each other."""
+
+    first: PointerProperty(name="First Object", type=bpy.types.Object)
+    second: PointerProperty(name="Second Object", type=bpy.types.Object)
+
+
 class StivSceneSettings(bpy.types.PropertyGroup):
     """How edits of a scene respond to collisions."""
 
@@ -112,6 +119,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         description="Choose the minimum distance from the size of the selection",
     )
     pair_separations: CollectionProperty(type=StivPairSeparation, name="Pair Distances")
+    passing_pairs: CollectionProperty(type=StivPassingPair, name="Passing Pairs")
     interference: BoolProperty(
         name="Collisions",
         description="Prevent surfaces from passing through each other; if off, nothing is tested",
@@ -226,7 +234,15 @@ class StivCheckResult(bpy.types.PropertyGroup):
     left_out: StringProperty(name="Unguarded Objects", options={"SKIP_SAVE"})
 
 
-CLASSES = (StivPairSeparation, StivSceneSettings, StivHandleGroup, StivLoop, StivObjectSettings, StivCheckResult)
+CLASSES = (
+    StivPairSeparation,
+    StivPassingPair,
+    StivSceneSettings,
+    StivHandleGroup,
+    StivLoop,
+    StivObjectSettings,
+    StivCheckResult,
+)
 
 
 def register() -> None:

@@ -12,7 +12,9 @@ from .repair.contract import STIV_OT_contract
 from .repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .repair.expand import STIV_OT_expand
 from .repair.guard_revert import STIV_OT_guard_revert
+from .repair.passing import STIV_OT_let_pass, STIV_OT_let_pass_remove
 from .repair.repair import STIV_OT_repair
+from .repair.separate import STIV_OT_separate
 from .repair.settle import STIV_OT_settle
 from .setup.handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
@@ -39,6 +41,9 @@ CLASSES = (
     STIV_OT_measure,
     *LAYOUT,
     *RESHAPING,
+    STIV_OT_separate,
+    STIV_OT_let_pass,
+    STIV_OT_let_pass_remove,
     STIV_OT_exclude_intersections,
     STIV_OT_clear_exclusions,
     STIV_OT_guard_revert,

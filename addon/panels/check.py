@@ -9,6 +9,8 @@ from ..operators import RESHAPING
 from ..operators.check.check import STIV_OT_check
 from ..operators.check.measure import STIV_OT_measure
 from ..operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections, excluded_count
+from ..operators.repair.passing import STIV_OT_let_pass, STIV_OT_let_pass_remove
+from ..operators.repair.separate import STIV_OT_separate
 from .base import SubPanel, draw_lines
 
 ICONS = ("MODIFIER", "FULLSCREEN_EXIT", "FULLSCREEN_ENTER", "RECOVER_LAST")  # of the operators in RESHAPING
@@ -47,6 +49,13 @@ class STIV_PT_repair(SubPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         for operator, icon in zip(RESHAPING, ICONS, strict=True):
             column.operator(operator.bl_idname, text=BUTTON_TEXTS[operator.bl_idname], icon=icon)
+        column.operator(STIV_OT_separate.bl_idname, icon="UNLINKED")
+        self.layout.operator(STIV_OT_let_pass.bl_idname, icon="HIDE_OFF")
+        for index, pair in enumerate(context.scene.stiv.passing_pairs):
+            row = self.layout.row(align=True)
+            row.prop(pair, "first", text="")
+            row.prop(pair, "second", text="")
+            row.operator(STIV_OT_let_pass_remove.bl_idname, text="", icon="REMOVE").index = index
         row = self.layout.row(align=True)
         row.operator(STIV_OT_exclude_intersections.bl_idname, icon="GHOST_ENABLED")
         count = excluded_count(context.scene.stiv.excluded)

@@ -54,6 +54,11 @@ def _object_settings(scene: bpy.types.Scene) -> dict[str, Any]:
             for name, each in chosen.items()
             if each.weight_group
         },
+        "ignored_pairs": tuple(
+            (row.first.name, row.second.name)
+            for row in scene.stiv.passing_pairs
+            if all(each is not None and each.name in chosen for each in (row.first, row.second))
+        ),
         "pair_separations": tuple(
             (row.first.name, row.second.name, row.separation)
             for row in scene.stiv.pair_separations

@@ -223,6 +223,7 @@ class EditOptions:
     max_sub_edits: int
     min_clearance_ratio: float
     min_clearance_ratio_between: float
+    overlapping: Sequence[tuple[int, int]]
     pair_separations: Sequence[BodyPairSeparation]
     pull_limit: float
     separation: float

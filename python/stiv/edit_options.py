@@ -72,6 +72,10 @@ def _excluded_pairs(pairs: ArrayLike | None) -> list[list[int]]:
     return rows
 
 
+def _body_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    return [(int(a), int(b)) for a, b in pairs]
+
+
 def _choice(default: str, name: str, choices: type[Enum]) -> Any:
     """Return a field whose value names a member of an enum of the core."""
     return field(default=default, metadata={"convert": partial(as_choice, name=name, choices=choices)})
@@ -113,6 +117,9 @@ class EditOptions(SharedOptions):
     weight_axes: ArrayLike | None = field(default=None, metadata={"convert": as_weight_axes})
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
     exclude: ArrayLike | str | None = field(default=None, metadata={"convert": _excluded_pairs})
+    #: pairs of bodies, by name or number, that may overlap, but no more than at the start. They can part in any
+    #: direction, and are guarded once they are apart. "intersecting": all pairs of bodies that do at the start
+    overlapping: Sequence[tuple[str | int, str | int]] | str = field(default=(), metadata={"convert": _body_pairs})
     #: "lcp": contacts only push; "linear": they also pull, and each round starts without constraints
     solver: str = _choice("lcp", "solver", _native.ConstraintSolver)
     #: norm that a step minimizes: "energy", of the motion of the surface; "controls", of the controls [Algorithm 1]
@@ -201,13 +208,25 @@ def _excluded(pairs: ArrayLike | str | None, surface: Surface, start: Callable[[
     return find_intersections(start(), surface)
 
 
+def _overlapping(
+    pairs: Sequence[tuple[str | int, str | int]] | str, surface: Surface, start: Callable[[], Floats]
+) -> list[tuple[str | int, str | int]]:
+    """Return pairs of numbers of bodies; for "intersecting", those that intersect at the start."""
+    if not isinstance(pairs, str):
+        return [(_body_number(a, surface), _body_number(b, surface)) for a, b in pairs]
+    if pairs != "intersecting":
+        raise InputError(f"overlapping: {pairs!r} is neither 'intersecting' nor pairs of bodies")
+    bodies = surface.vertex_body[surface.triangles[find_intersections(start(), surface), 0]]
+    return [(a, b) for a, b in np.unique(np.sort(bodies, axis=1), axis=0).tolist() if a != b]
+
+
 def _body_number(body: str | int, surface: Surface) -> int:
     """Return the number of a body given by name or number."""
     if not isinstance(body, str):
         return body
     numbers = [number for number, known in enumerate(surface.bodies) if known.name == body]
     if len(numbers) != 1:
-        raise InputError(f"pair_separations: {len(numbers)} bodies have the name {body!r}; use the number of the body")
+        raise InputError(f"{len(numbers)} bodies have the name {body!r}; use the number of the body")
     return numbers[0]
 
 
@@ -216,4 +235,9 @@ def with_numbers(options: EditOptions, surface: Surface, start: Callable[[], Flo
     separations: dict[tuple[str | int, str | int], float] = {
         (_body_number(a, surface), _body_number(b, surface)): h for (a, b), h in options.pair_separations.items()
     }
-    return replace(options, pair_separations=separations, exclude=_excluded(options.exclude, surface, start))
+    return replace(
+        options,
+        pair_separations=separations,
+        exclude=_excluded(options.exclude, surface, start),
+        overlapping=_overlapping(options.overlapping, surface, start),
+    )

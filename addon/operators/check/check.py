@@ -14,6 +14,7 @@ from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
 from ...translations import counted, translate
+from ..repair.passing import passing_text
 from ..reports import clearance_text, report_error
 
 
@@ -41,8 +42,9 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         lines = [headline(found.pairs, translate), *details(found.pairs, translate)]
         text = "\n".join(filter(None, lines)) or translate("No intersections")
         near = "" if found.pairs else clearance(context)
+        lines = [text, near, *tested(found), passing_text(context.scene)]
         result = context.window_manager.stiv_check
-        result.summary, result.intersects = "\n".join(filter(None, [text, near, *tested(found)])), bool(found.pairs)
+        result.summary, result.intersects = "\n".join(filter(None, lines)), bool(found.pairs)
         display.show_pairs(context, found.pairs)
         self.report({"WARNING"} if found.pairs else {"INFO"}, text.splitlines()[0])
         return {"FINISHED"}

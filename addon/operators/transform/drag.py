@@ -26,6 +26,7 @@ from ...transform.view import Vector
 from ...translations import translate
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
+from ..repair import decisions
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
 from .constraint import constraint_of
@@ -53,7 +54,7 @@ class DragOperator(Mixin):
         try:
             self._start(context, event)
         except Exception as error:
-            return report_error(self, error)
+            return decisions.offer(self, context, error) or report_error(self, error)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -17,6 +17,7 @@ from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
 from .. import last_edit, running
+from ..repair.passing import passing_text
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
 from ..task_operator import TaskOperator
 from . import drag_results
@@ -206,6 +207,7 @@ def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Ste
 def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
     """Show in the panel which objects the edit does not guard, and which intersections it leaves as they are."""
     check = context.window_manager.stiv_check
-    check.left_out = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried)
+    left_out = (stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried), passing_text(context.scene))
+    check.left_out = "\n".join(filter(None, left_out))
     if edit.start_notes:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
         check.summary = "; ".join(edit.start_notes)

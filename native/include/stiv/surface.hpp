@@ -41,6 +41,7 @@ class Surface {
   ///         triangle may have repeated corners.
   explicit Surface(SurfaceDefinition definition);
 
+  const SurfaceDefinition& definition() const { return definition_; }
   Index vertex_count() const { return definition_.vertex_count; }
   const Triangles& triangles() const { return definition_.triangles; }
   const Edges& loose_edges() const { return definition_.loose_edges; }

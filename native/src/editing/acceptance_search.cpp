@@ -40,13 +40,16 @@ Acceptance accept_largest_fraction(EditCall& call, const RoundOutcome& outcome, 
     const std::optional<double> contact =
         path_is_clear ? never : call.queries.earliest_time(from, state.surface, outcome.pair_limit, call.execution);
     const double time = contact.value_or(0);  // too far to test: half of it
-    if (time == never && call.queries.is_intersection_free(from, state.surface, call.execution)) {
+    double allowed = time > 0 && time <= 1 ? before_contact * time : 0.5;
+    if (time == never) allowed = call.queries.free_fraction(from, state.surface, call.execution);
+    if (allowed == 1) {
       acceptance.state = std::move(state);
       acceptance.fraction = fraction;
       break;
     }
     acceptance.truncated = true;
-    fraction *= time > 0 && time <= 1 ? before_contact * time : 0.5;
+    if (allowed == 0) break;
+    fraction *= allowed;
   }
   return acceptance;
 }

@@ -25,24 +25,45 @@ std::vector<unsigned char> moved_vertices(const PositionsView& from, const Posit
   return moved;
 }
 
+std::shared_ptr<const Surface> without_pairs(const Surface& surface, const BodyPairs& pairs,
+                                             const std::vector<unsigned char>& left_out) {
+  SurfaceDefinition definition = surface.definition();
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (left_out[k] != 0) definition.ignored.push_back(pairs[k]);
+  return std::make_shared<Surface>(std::move(definition));
+}
+
 }  // namespace
+
+CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options)
+    : surface(std::move(guarded)),
+      detector(surface, {.broad_phase = options.broad_phase}),
+      cache(detector),
+      intersections(surface) {
+  if (options.narrow_phase != NarrowPhase::conservative)
+    round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
+}
 
 CollisionQueries::CollisionQueries(const EditContext& context)
     : context_(context),
-      detector_(context.shared_surface(), {.broad_phase = context.options().broad_phase}),
-      cache_(detector_),
-      intersections_(context.shared_surface()),
+      guard_(std::make_unique<Guard>(context.shared_surface(), context.options())),
       excluded_(context.shared_surface(), context.options().excluded),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
   if (!excluded_.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());
-  if (options.narrow_phase != NarrowPhase::conservative)
-    round_detector_.emplace(context.shared_surface(), DetectorOptions{options.broad_phase, options.narrow_phase});
+  if (options.overlapping.empty()) return;
+  overlap_.emplace(context.surface(), options.overlapping, context.least_separation());
+  overlapping_.assign(overlap_->pairs().size(), 0);
 }
 
 void CollisionQueries::check_start(const Positions& q, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  StaticPairs found = intersections_.find_all(q, execution);
+  const bool is_first = overlap_ && !overlap_->begun();
+  if (is_first) overlap_->begin(q, execution);
+  if (overlap_ && !is_first && overlap_->is_deeper(q, execution))
+    throw StartIntersectsError("bodies that may overlap would overlap more than at the start", {});
+  guard_pairs_apart_at(q, execution);
+  StaticPairs found = guard_->intersections.find_all(q, execution);
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (found.empty()) return;
@@ -50,16 +71,29 @@ void CollisionQueries::check_start(const Positions& q, Execution& execution) {
   throw StartIntersectsError(message, std::move(found.faces));
 }
 
+/// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.
+void CollisionQueries::guard_pairs_apart_at(const Positions& accepted, Execution& execution) {
+  if (!overlap_ || (guarded_at_.rows() == accepted.rows() && guarded_at_ == accepted)) return;
+  guarded_at_ = accepted;
+  const std::vector<unsigned char>& overlapping = overlap_->overlapping(accepted, execution);
+  if (overlapping == overlapping_) return;
+  overlapping_ = overlapping;
+  guard_ =
+      std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_.options());
+}
+
 std::optional<Events> CollisionQueries::find(const Positions& from, const Positions& to, PairLimit limit,
                                              Execution& execution) {
   const ScopedTimer timer(execution.timings.detection);
-  Detector& detector = round_detector_ ? *round_detector_ : detector_;
+  guard_pairs_apart_at(from, execution);
+  Detector& detector = guard_->round_detector ? *guard_->round_detector : guard_->detector;
   return find_not_excluded(detector, context_.centred(from), context_.centred(to), context_.round_proximity(), limit,
                            execution);
 }
 
 Events CollisionQueries::find_cached(const Positions& from, State& to, Execution& execution) {
-  if (round_detector_) return {};
+  if (guard_->round_detector) return {};
+  guard_pairs_apart_at(from, execution);
   double placing = 0;
   const auto place = [&](std::span<const Index> vertices) {
     const ScopedTimer timer(placing);
@@ -71,7 +105,7 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Execution
   Events events;
   {
     const ScopedTimer timer(execution.timings.detection);
-    events = cache_.find(place, context_.round_proximity(), execution);
+    events = guard_->cache.find(place, context_.round_proximity(), execution);
     excluded_.remove_from(events);
   }
   execution.timings.detection -= placing;
@@ -80,9 +114,10 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Execution
 }
 
 void CollisionQueries::prune_cache(const Positions& from, const Positions& to, Execution& execution) {
-  if (round_detector_) return;
+  if (guard_->round_detector) return;
   const ScopedTimer timer(execution.timings.detection);
-  cache_.prune(context_.centred(from), context_.centred(to), context_.round_proximity(), execution);
+  guard_pairs_apart_at(from, execution);
+  guard_->cache.prune(context_.centred(from), context_.centred(to), context_.round_proximity(), execution);
 }
 
 std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, const Positions& from,
@@ -96,29 +131,36 @@ std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, co
 }
 
 bool CollisionQueries::rounds_prove_clearance() const {
-  return !round_detector_ && context_.round_proximity().separation == context_.proximity().separation;
+  return !guard_->round_detector && context_.round_proximity().separation == context_.proximity().separation;
 }
 
 std::optional<double> CollisionQueries::earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                                       Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
+  guard_pairs_apart_at(from, execution);
   const Proximity& proximity = context_.proximity();
   const Positions start = context_.centred(from), end = context_.centred(to);
   if (!excluded_.empty()) {
-    const auto events = find_not_excluded(detector_, start, end, proximity, limit, execution);
+    const auto events = find_not_excluded(guard_->detector, start, end, proximity, limit, execution);
     return events ? std::optional(first_time(*events)) : std::nullopt;
   }
-  if (limit == PairLimit::ignored) return detector_.earliest_time(start, end, proximity, execution);
-  return detector_.earliest_time_within_pair_limit(start, end, proximity, execution);
+  if (limit == PairLimit::ignored) return guard_->detector.earliest_time(start, end, proximity, execution);
+  return guard_->detector.earliest_time_within_pair_limit(start, end, proximity, execution);
 }
 
-bool CollisionQueries::is_intersection_free(const Positions& from, const Positions& to, Execution& execution) {
+double CollisionQueries::free_fraction(const Positions& from, const Positions& to, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  if (excluded_.empty()) return intersections_.is_free(to, moved_vertices(from, to), execution);
-  StaticPairs found = intersections_.find_all(to, execution);
+  guard_pairs_apart_at(from, execution);
+  if (!passes_static_test(from, to, execution)) return 0.5;
+  return overlap_ ? overlap_->free_fraction(from, to, execution) : 1;
+}
+
+bool CollisionQueries::passes_static_test(const Positions& from, const Positions& to, Execution& execution) {
+  if (excluded_.empty()) return guard_->intersections.is_free(to, moved_vertices(from, to), execution);
+  StaticPairs found = guard_->intersections.find_all(to, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
-  if (!found.empty() || all.size() > intersections_.find(from, execution).size()) return false;
+  if (!found.empty() || all.size() > guard_->intersections.find(from, execution).size()) return false;
   return !depth_->is_deeper(to, all);
 }
 
@@ -127,8 +169,8 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
   Proximity touching;
   touching.separation = context_.proximity().separation;
   touching.by_bodies = &no_separations_;
-  return detector_.earliest_time(context_.centred(from), context_.centred(to), touching, execution) == never &&
-         intersections_.is_free(to, moved_vertices(from, to), execution);
+  return guard_->detector.earliest_time(context_.centred(from), context_.centred(to), touching, execution) == never &&
+         guard_->intersections.is_free(to, moved_vertices(from, to), execution);
 }
 
 }  // namespace stiv

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "detection/candidate_cache.hpp"
 #include "editing/edit_context.hpp"
 #include "editing/excluded_pairs.hpp"
 #include "penetration/depth_watch.hpp"
+#include "penetration/overlap_watch.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/detection/detector.hpp"
 
@@ -18,7 +20,7 @@ class CollisionQueries {
  public:
   /// The context must outlive the queries.
   explicit CollisionQueries(const EditContext& context);
-  CollisionQueries(const CollisionQueries&) = delete;  // the cache refers to the detector
+  CollisionQueries(const CollisionQueries&) = delete;
   CollisionQueries& operator=(const CollisionQueries&) = delete;
 
   /// The first surface that is checked is the start of the session.
@@ -31,31 +33,47 @@ class CollisionQueries {
   Events find_cached(const Positions& from, State& to, Execution& execution);
   /// Prunes cached candidates that the step does not bring close. Called when rounds toward another goal begin.
   void prune_cache(const Positions& from, const Positions& to, Execution& execution);
-  void clear_cache() { cache_.clear(); }
+  void clear_cache() { guard_->cache.clear(); }
 
   /// Does `find` without events prove the step clear?
   bool rounds_prove_clearance() const;
   /// Earliest time of any event with the proximity of accepted states; nothing if the step exceeds the pair limit.
   std::optional<double> earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                       Execution& execution);
-  /// The exact static test of a surface, given that `from` passes it. Excluded pairs may intersect, but not more of
-  /// them than in `from`, and no deeper than at the start. (mathematics.md, "Excluded pairs")
-  bool is_intersection_free(const Positions& from, const Positions& to, Execution& execution);
+  /// The exact static test of a surface, given that `from` passes it: 1 if it passes, otherwise a smaller fraction of
+  /// the step to try next, or 0. Excluded pairs may intersect, but not more of them than in `from`, and no deeper than
+  /// at the start. (mathematics.md, "Excluded pairs", "Overlapping bodies")
+  double free_fraction(const Positions& from, const Positions& to, Execution& execution);
   /// Is a step free of intersections, whatever its clearance, given that its start is? For sessions without excluded
   /// pairs.
   bool is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution);
 
  private:
+  /// The tests of a surface without the pairs of bodies that overlap now.
+  struct Guard {
+    Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options);
+    Guard(const Guard&) = delete;  // the cache refers to the detector
+    Guard& operator=(const Guard&) = delete;
+
+    std::shared_ptr<const Surface> surface;
+    Detector detector;
+    CandidateCache cache;                    ///< of `detector`
+    std::optional<Detector> round_detector;  ///< of the rounds, if they use another narrow phase; without a cache
+    IntersectionTest intersections;
+  };
+
+  void guard_pairs_apart_at(const Positions& accepted, Execution& execution);
+  bool passes_static_test(const Positions& from, const Positions& to, Execution& execution);
   std::optional<Events> find_not_excluded(Detector& detector, const Positions& from, const Positions& to,
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;
 
   const EditContext& context_;
-  Detector detector_;
-  CandidateCache cache_;                    ///< of `detector_`
-  std::optional<Detector> round_detector_;  ///< of the rounds, if they use another narrow phase; without a cache
-  IntersectionTest intersections_;
+  std::unique_ptr<Guard> guard_;
   ExcludedPairs excluded_;
-  std::optional<DepthWatch> depth_;  ///< of excluded pairs, if there are any
+  std::optional<DepthWatch> depth_;      ///< of excluded pairs, if there are any
+  std::optional<OverlapWatch> overlap_;  ///< of bodies that may overlap, if there are any
+  std::vector<unsigned char> overlapping_;
+  Positions guarded_at_;  ///< the accepted surface at which `overlapping_` holds
   BodySeparations no_separations_;
 };
 

@@ -53,6 +53,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr
       options_(checked(std::move(options), deformation_->control_count())),
       rotation_rows_(free_rotation_rows(*deformation_, options_.weights)),
       metric_(metric_of(*deformation_, options_)) {
+  check_overlapping(*surface_, options_.overlapping);
   check_controls(start, "controls");
   const Positions q = deformation_->surface_in_range(start);
   surface_->check_positions(q);
@@ -75,6 +76,11 @@ void EditContext::set_proximity(const Positions& start, const Controls& controls
     body_separations_ = body_separations(*surface_, pairs, options_.separation, extent, least_separation_);
     proximity_.separation = body_separations_->largest();
     proximity_.by_bodies = &*body_separations_;
+  }
+  if (!options_.overlapping.empty()) {  // a pair may have started at distance 0
+    overlapping_.emplace(surface_->bodies().size());
+    for (const auto& [a, b] : options_.overlapping) overlapping_->insert(a, b);
+    proximity_.without_reference = &*overlapping_;
   }
   round_proximity_ = proximity_;
   if (may_touch) round_proximity_.separation = 0;

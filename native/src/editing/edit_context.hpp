@@ -71,6 +71,7 @@ class EditContext {
   double diagonal_ = 0;  ///< of the moving vertices
   double least_separation_ = 0;
   std::optional<BodySeparations> body_separations_;
+  std::optional<BodyPairSet> overlapping_;
   Positions reference_;  ///< the start, centered
   Proximity proximity_, round_proximity_;
 };

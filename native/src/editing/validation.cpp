@@ -63,6 +63,14 @@ void check_options(const EditOptions& options, Index control_count) {
   check_storage(options.storage, control_count);
 }
 
+void check_overlapping(const Surface& surface, const std::vector<std::pair<Index, Index>>& overlapping) {
+  const auto count = static_cast<Index>(surface.bodies().size());
+  for (const auto& [a, b] : overlapping)
+    require(std::min(a, b) >= 0 && std::max(a, b) < count && a != b, "overlapping: (" + std::to_string(a) + ", " +
+                                                                         std::to_string(b) + ") is not a pair of the " +
+                                                                         std::to_string(count) + " bodies");
+}
+
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control) {
   const std::vector<Index> support = deformation.support(control);
   std::string name = "control " + std::to_string(control);

@@ -27,11 +27,14 @@ std::vector<double> areas_of(const PlacedBody& body) {
 
 }  // namespace
 
-BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& excluded,
-                                   const Positions& start, double rounding)
+BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, double rounding)
     : surface_(std::move(surface)),
       rounding_(rounding),
-      places_(static_cast<std::size_t>(surface_->triangles().rows())) {
+      places_(static_cast<std::size_t>(surface_->triangles().rows())) {}
+
+BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& excluded,
+                                   const Positions& start, double rounding)
+    : BodyPenetrations(std::move(surface), rounding) {
   for (const Index body : bodies_among(*surface_, excluded)) add_components(body, start);
   for (const auto& [a, b] : excluded) pairs_.push_back(ordered(place(a).component, place(b).component));
   std::sort(pairs_.begin(), pairs_.end());
@@ -39,6 +42,22 @@ BodyPenetrations::BodyPenetrations(std::shared_ptr<const Surface> surface, const
   std::erase_if(pairs_, [&](const auto& components) { return !is_measurable(components); });
 }
 
+BodyPenetrations BodyPenetrations::of_bodies(std::shared_ptr<const Surface> surface, const BodyPairs& bodies,
+                                             const Positions& start, double rounding) {
+  BodyPenetrations all(std::move(surface), rounding);
+  for (Index body = 0; body < static_cast<Index>(all.surface_->bodies().size()); ++body)
+    all.add_components(body, start);
+  for (const auto& [a, b] : bodies)
+    for (const Index first : {2 * a, 2 * a + 1})
+      for (const Index second : {2 * b, 2 * b + 1})
+        if (!all.component(first).mesh.triangles.empty() && !all.component(second).mesh.triangles.empty())
+          all.pairs_.push_back(all.ordered(first, second));
+  std::sort(all.pairs_.begin(), all.pairs_.end());
+  all.pairs_.erase(std::unique(all.pairs_.begin(), all.pairs_.end()), all.pairs_.end());
+  return all;
+}
+
+/// The open components of a body, then its closed ones.
 void BodyPenetrations::add_components(Index body, const Positions& start) {
   BodyComponents components = body_components(*surface_, body);
   add_component(body, false, std::move(components.open), start);
@@ -101,6 +120,7 @@ Penetration BodyPenetrations::measured(const std::array<Index, 2>& components, c
                                        const Positions& q) const {
   const Component &a = component(components[0]), &b = component(components[1]);
   const PlacedBody first(a.mesh, q), second(b.mesh, q);
+  if (!b.closed) return intersection_length(first, second, candidates, rounding_);
   Penetration found = a.closed ? common_volume(first, second, candidates, rounding_)
                                : area_inside(first, a.start_areas, second, candidates, rounding_);
   found.amount *= a.facing * b.facing;

@@ -3,12 +3,15 @@
 
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "penetration/penetration.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv {
+
+using BodyPairs = std::vector<std::pair<Index, Index>>;
 
 /// The penetration of pairs of bodies: the common volume of two closed bodies, or the area of an open body inside a
 /// closed one. Pairs of open bodies and a body with itself are left out. The closed and the open connected components
@@ -28,6 +31,11 @@ class BodyPenetrations {
   BodyPenetrations(std::shared_ptr<const Surface> surface, const IndexPairs& excluded, const Positions& start,
                    double rounding);
 
+  /// The same for all components of pairs of bodies that meet. Two open components are measured too, by the length of
+  /// the curve in which they intersect.
+  static BodyPenetrations of_bodies(std::shared_ptr<const Surface> surface, const BodyPairs& bodies,
+                                    const Positions& start, double rounding);
+
   /// The measured pairs, in a fixed order.
   std::vector<Pair> pairs() const;
 
@@ -37,6 +45,8 @@ class BodyPenetrations {
               const IndexPairs& intersecting) const;
 
  private:
+  BodyPenetrations(std::shared_ptr<const Surface> surface, double rounding);
+
   struct Component {
     Index body = 0;
     bool closed = false;

@@ -28,11 +28,23 @@ Vector3 point_at(const Triangle& t, const Eigen::Vector2d& weights) {
   return t[0] + weights[0] * (t[1] - t[0]) + weights[1] * (t[2] - t[0]);
 }
 
+Vector3 direction_of(const Crossings& crossings, const Cut& cut) {
+  const Triangle triangle = crossings.body(0).triangle(cut.triangles[0]);
+  return point_at(triangle, cut.ends[0][1]) - point_at(triangle, cut.ends[0][0]);
+}
+
+/// The sine of the angle between the triangles of a cut.
+double sine_between(const Crossings& crossings, const Cut& cut) {
+  const Vector3 first = crossings.body(0).area_vector(cut.triangles[0]),
+                second = crossings.body(1).area_vector(cut.triangles[1]);
+  const double product = first.norm() * second.norm();
+  return product > 0 ? first.cross(second).norm() / product : 0;
+}
+
 /// The fraction of the first triangle that its cut sweeps if the second moves by `rounding`. It grows as the angle
 /// between the triangles decreases.
 double swept_fraction(const Crossings& crossings, const Cut& cut, double rounding) {
-  const Triangle triangle = crossings.body(0).triangle(cut.triangles[0]);
-  const double length = (point_at(triangle, cut.ends[0][1]) - point_at(triangle, cut.ends[0][0])).norm();
+  const double length = direction_of(crossings, cut).norm();
   const Vector3 area = crossings.body(0).area_vector(cut.triangles[0]),
                 other = crossings.body(1).area_vector(cut.triangles[1]);
   const double passed = 2 * rounding * length * other.norm(), whole = area.cross(other).norm();
@@ -66,6 +78,19 @@ Penetration area_inside(const PlacedBody& open, const std::vector<double>& start
   if (!one_way.touching()) return first;
   const Penetration second = perturbed_area_inside(Crossings(open, closed, candidates, -1), start_areas, rounding);
   return {(first.amount + second.amount) / 2, (first.uncertainty + second.uncertainty) / 2};
+}
+
+// An end of a cut moves by at most the rounding of both triangles, divided by the sine of their angle.
+Penetration intersection_length(const PlacedBody& a, const PlacedBody& b, const IndexPairs& candidates,
+                                double rounding) {
+  const Crossings crossings(a, b, candidates, 1);
+  Penetration sum;
+  for (const Cut& cut : crossings.cuts()) {
+    const double length = direction_of(crossings, cut).norm(), sine = sine_between(crossings, cut);
+    sum.amount += length;
+    sum.uncertainty += 4 * rounding < length * sine ? 4 * rounding / sine : length;
+  }
+  return sum;
 }
 
 }  // namespace stiv

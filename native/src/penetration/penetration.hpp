@@ -25,4 +25,9 @@ Penetration common_volume(const PlacedBody& a, const PlacedBody& b, const IndexP
 Penetration area_inside(const PlacedBody& open, const std::vector<double>& start_areas, const PlacedBody& closed,
                         const IndexPairs& candidates, double rounding);
 
+/// The length of the curve in which two bodies intersect.
+/// @param candidates pairs of their triangles, all intersecting ones included
+Penetration intersection_length(const PlacedBody& a, const PlacedBody& b, const IndexPairs& candidates,
+                                double rounding);
+
 }  // namespace stiv

@@ -9,6 +9,7 @@ from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
+from stiv.blender.edit.sessions import ObjectsIntersectError
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
@@ -32,8 +33,9 @@ from stiv.blender.repair.contraction import BlenderContraction, ContractionSetti
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
+from stiv.blender.repair.separation import SeparationReport, separate
 from stiv.blender.scene.elements import Element, FacePair, count_faces
-from stiv.blender.scene.exclusions import without_excluded
+from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.ray_casting import first_hit
 from stiv.blender.scene.references import SceneChangedError
@@ -80,6 +82,7 @@ __all__ = [
     "LoopSurface",
     "Motion",
     "ObjectState",
+    "ObjectsIntersectError",
     "Place",
     "PlaceSettings",
     "PushApart",
@@ -88,6 +91,7 @@ __all__ = [
     "SceneChangedError",
     "SceneCheck",
     "SceneState",
+    "SeparationReport",
     "SettleIntoContact",
     "SettleSettings",
     "Steps",
@@ -115,6 +119,7 @@ __all__ = [
     "fit_into",
     "follow",
     "guard_result",
+    "intersection_text",
     "nearest_pair",
     "object_pair",
     "place",
@@ -128,6 +133,7 @@ __all__ = [
     "run_steps",
     "run_to_end",
     "select_faces",
+    "separate",
     "settle_into_contact",
     "triangles_of",
     "unguarded_text",

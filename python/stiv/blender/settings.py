@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 from stiv import InputError
@@ -98,6 +99,9 @@ class LoopSurface:
 class Exclusions:
     """Excluded pairs of faces, which may intersect.
 
+    Pairs within an object stay as they are. Two objects with an excluded pair may part in any direction, and overlap no
+    more than at the start of an edit.
+
     Attributes:
         pairs: both faces of each pair, the smaller key first.
         shapes: digest of the faces of each object by name. The pairs of an object with another digest are stale.
@@ -105,6 +109,12 @@ class Exclusions:
 
     pairs: frozenset[tuple[FaceKey, FaceKey]] = frozenset()
     shapes: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def objects(self) -> frozenset[tuple[str, str]]:
+        """Pairs of different objects with excluded faces, in ascending order."""
+        names = (tuple(sorted(name.partition("\n")[0] for name, _ in pair)) for pair in self.pairs)
+        return frozenset((first, second) for first, second in names if first != second)
 
     @staticmethod
     def from_json(text: str) -> Exclusions:
@@ -149,8 +159,10 @@ class EditSettings(SharedOptions):
         loops: by name of the cage. The object that shows a cage participates instead of it, with the cage's role.
         roles: by object name: "auto", "controls", "rigid", "obstacle" or "ignored" (no collision). Unselected objects
             with the role "controls" or "rigid" always yield, those with "auto" depend on `responders`.
-        ignored_pairs: pairs of object names that may intersect; the same name twice for an object with itself.
-        excluded: pairs of faces that intersect already and may continue to.
+        ignored_pairs: pairs of object names that pass through each other, which nothing tests (Let These Pass); the
+            same name twice for an object with itself.
+        excluded: pairs of faces that intersect already. Those of one object may continue to, those of two objects may
+            overlap no more than at the start.
         guard: the evaluations that stay free of intersections: "viewport" (in Edit Mode also what Object Mode shows),
             "render" or "both"; "auto" is "both" where they differ and the surface is small enough.
     """

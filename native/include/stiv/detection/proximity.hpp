@@ -26,6 +26,23 @@ class BodySeparations {
   std::vector<double> values_;  // (bodies, bodies)
 };
 
+/// A set of pairs of bodies.
+class BodyPairSet {
+ public:
+  explicit BodyPairSet(std::size_t bodies) : bodies_(bodies), values_(bodies * bodies, 0) {}
+
+  void insert(Index a, Index b) { values_[place(a, b)] = values_[place(b, a)] = 1; }
+  bool contains(Index a, Index b) const { return values_[place(a, b)] != 0; }
+
+ private:
+  std::size_t place(Index a, Index b) const {
+    return static_cast<std::size_t>(a) * bodies_ + static_cast<std::size_t>(b);
+  }
+
+  std::size_t bodies_;
+  std::vector<unsigned char> values_;  // (bodies, bodies)
+};
+
 /// Distances of a pair of primitives.
 struct PairClearance {
   double threshold = 0;  ///< h_eff: the pair may not come nearer
@@ -41,12 +58,14 @@ struct Proximity {
   /// Positions, (N, 3), at which distances of pairs nearer than h are measured, such as the start of a session. Must
   /// outlive the step. Null: the start of the step.
   const Positions* reference = nullptr;
-  double min_clearance_ratio_between = 0;  ///< the ratio for pairs of different bodies; 0: the same
+  double min_clearance_ratio_between = 0;          ///< the ratio for pairs of different bodies; 0: the same
+  const BodyPairSet* without_reference = nullptr;  ///< pairs of bodies measured at the start of the step; null: none
 
   /// The proximity of a pair of these bodies.
   Proximity between(Index a, Index b) const {
     Proximity pair = *this;
     if (by_bodies != nullptr) pair.separation = by_bodies->between(a, b);
+    if (without_reference != nullptr && without_reference->contains(a, b)) pair.reference = nullptr;
     if (a != b && min_clearance_ratio_between > 0) pair.min_clearance_ratio = min_clearance_ratio_between;
     return pair;
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/acceptance/storage.hpp"
 #include "stiv/deformation/metric.hpp"
@@ -38,6 +41,9 @@ struct EditOptions {
   /// Events that belong only to these pairs are ignored. The common volume of two closed bodies, and the area of an
   /// open body inside a closed one, never exceed those of the start. (mathematics.md, "Excluded pairs")
   IndexPairs excluded;
+  /// Pairs of bodies that may overlap, but no more than at the start: they can part in any direction. While a pair
+  /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")
+  std::vector<std::pair<Index, Index>> overlapping;
   ConstraintKind constraints = ConstraintKind::per_patch;
   ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear does not accumulate constraints
   MetricKind metric = MetricKind::energy;

@@ -74,7 +74,7 @@ std::optional<Contact> PairTest::contact_of(EventKind kind, const PairMotion& mo
 std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate, double latest) const {
   const std::array<Index, 4> v = vertices_of(surface_, kind, candidate);
   const Proximity proximity = proximity_.between(surface_.body_of(v[0]), surface_.body_of(v[3]));
-  const PairMotion motion = motion_of(vertices_.data(), proximity_.reference, v);
+  const PairMotion motion = motion_of(vertices_.data(), proximity.reference, v);
   const std::optional<Contact> contact = contact_of(kind, motion, proximity, latest);
   if (!contact) return std::nullopt;
   return Event{kind, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->clearance};

@@ -26,7 +26,7 @@ from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.culling import CullingBox
-from stiv.blender.scene.exclusions import self_intersection_notes
+from stiv.blender.scene.exclusions import intersection_notes
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
@@ -115,7 +115,7 @@ class BlenderEdit:
     def start_notes(self) -> tuple[str, ...]:
         """Notes about intersections at the start that the edit leaves as they are, and about stale exclusions."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
-        return (*dropped, *self_intersection_notes(self._solver.excluded))
+        return (*dropped, *intersection_notes(self._solver.excluded))
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:

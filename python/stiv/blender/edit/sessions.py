@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER
-from stiv.blender.scene.exclusions import find_excluded_triangles
+from stiv.blender.scene.exclusions import excluded_bodies, find_excluded_triangles, intersecting_faces
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 from stiv.task import Call, Steps
@@ -55,6 +55,7 @@ def make_session(
         weights=weights_of_all([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
+        overlapping=excluded_bodies(settings.excluded, assembly.surface),
         single_precision=bool(frames),
         storage=frames,
     )
@@ -64,9 +65,23 @@ def make_session(
         )
         return session
     except stiv.StartIntersectsError as error:
+        raise ObjectsIntersectError(error, assembly) from error
+
+
+class ObjectsIntersectError(stiv.StartIntersectsError):
+    """A start that intersects.
+
+    Attributes:
+        pairs: intersecting pairs of triangles, (k, 2).
+        objects: pairs of objects with the number of their intersecting faces; not of an object with itself.
+    """
+
+    def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
+        super().__init__(str(error))
+        self.pairs: Indices = error.pairs
+        self.objects = intersecting_faces(assembly, error.pairs)
         if intersects_only_in_render(assembly, error):
-            error.add_note("only the render intersects; set Guard to Viewport to leave it out")
-        raise
+            self.add_note("only the render intersects; set Guard to Viewport to leave it out")
 
 
 def _open_session(*given: Any, **_execution: Any) -> stiv.EditSession:

@@ -11,7 +11,7 @@ from stiv.blender.edit.sessions import axes_of_all, deformation_of, make_session
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.exclusions import exclude_self_intersections, has_only_excluded
+from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
@@ -20,7 +20,7 @@ from stiv.task import Call, Steps, run
 class EditSolver:
     """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
 
-    excluded: the excluded pairs of the settings, and those of objects that intersected themselves at the start.
+    excluded: the excluded pairs of the settings, and those at the start that needed no decision.
     """
 
     def __init__(
@@ -128,14 +128,14 @@ class EditSolver:
         return True
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
-        """Open a session. Objects may intersect themselves at its first start."""
+        """Open a session. At its first start, objects may intersect themselves and those that move with them."""
         deformation = deformation_of(assembly, self.control_sets)
         try:
             session = yield from self._make_session(assembly, deformation, controls)
         except stiv.StartIntersectsError as error:
             if self._session is not None:
                 raise
-            self.excluded = exclude_self_intersections(self._settings.excluded, assembly, error.pairs)
+            self.excluded = exclude_undecided(self._settings.excluded, assembly, error.pairs, self._moving(assembly))
             session = yield from self._make_session(assembly, deformation, controls)
         self._session, self.deformation, self.assembly = session, deformation, assembly
 
@@ -144,3 +144,8 @@ class EditSolver:
     ) -> Steps[stiv.EditSession]:
         settings = replace(self._settings, excluded=self.excluded)
         return make_session(assembly, deformation, self.control_sets, controls, settings)
+
+    def _moving(self, assembly: Assembly) -> set[str]:
+        """Names of the objects that the goal moves."""
+        moving = (each for each in self.control_sets if each.rule.moves)
+        return {assembly.meshes[index].owner.name for each in moving for index in each.surfaces}

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -26,25 +26,52 @@ def exclude(pairs: Sequence[FacePair], meshes: Sequence[VisibleMesh]) -> Exclusi
     return Exclusions(chosen, {name: _digest(meshes, name) for name in sorted(names)})
 
 
-def exclude_self_intersections(excluded: Exclusions, assembly: Assembly, found: Indices) -> Exclusions:
-    """Also exclude the intersecting pairs of triangles, (k, 2), whose triangles belong to one object."""
+def exclude_undecided(
+    excluded: Exclusions, assembly: Assembly, found: Indices, together: Collection[str]
+) -> Exclusions:
+    """Also exclude the intersecting pairs of triangles, (k, 2), that need no decision.
+
+    These are pairs within one object, and pairs of objects that move `together`.
+    """
     pairs = ((assembly.face(a), assembly.face(b)) for a, b in found.tolist())
-    own = frozenset(_key(a, b) for a, b in pairs if a.object == b.object)
-    return Exclusions(excluded.pairs | own, excluded.shapes)
+    chosen = frozenset(
+        _key(a, b) for a, b in pairs if a.object == b.object or (a.object in together and b.object in together)
+    )
+    return Exclusions(excluded.pairs | chosen, excluded.shapes)
 
 
-def self_intersection_notes(excluded: Exclusions) -> tuple[str, ...]:
-    """A note for each object that has excluded pairs of its own faces, with their number."""
-    faces: dict[str, set[int]] = {}
-    for (first, number), (second, other) in excluded.pairs:
-        if first == second:
-            faces.setdefault(first.partition("\n")[0], set()).update((number, other))
-    return tuple(_self_intersection_note(name, len(numbers)) for name, numbers in sorted(faces.items()))
+def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:
+    """Pairs of different objects in pairs of triangles, (k, 2), with the number of their faces."""
+    faces: dict[tuple[str, str], set[Element]] = {}
+    for a, b in found.tolist():
+        elements = (assembly.face(a), assembly.face(b))
+        first, second = sorted(each.object for each in elements)
+        if first != second:
+            faces.setdefault((first, second), set()).update(elements)
+    return tuple((*names, len(each)) for names, each in sorted(faces.items()))
 
 
-def _self_intersection_note(name: str, count: int) -> str:
-    text = f" intersects itself, {count} faces, left as it is"
-    return _shortened(name, _MOST_CHARACTERS - len(text)) + text
+def intersection_text(first: str, second: str, count: int, ending: str = "") -> str:
+    """ "A cuts B, 12 faces" with an ending, shortened to the length of a message in Blender."""
+    text = f", {count} faces{ending}"
+    most = (_MOST_CHARACTERS - len(text) - len(" cuts ")) // 2
+    return f"{_shortened(first, most)} cuts {_shortened(second, most)}{text}"
+
+
+def intersection_notes(excluded: Exclusions) -> tuple[str, ...]:
+    """A note for each object that intersects itself, and for each pair of excluded objects."""
+    faces: dict[tuple[str, str], set[FaceKey]] = {}
+    for pair in excluded.pairs:
+        first, second = sorted(name.partition("\n")[0] for name, _ in pair)
+        faces.setdefault((first, second), set()).update(pair)
+    return tuple(_intersection_note(*names, len(keys)) for names, keys in sorted(faces.items()))
+
+
+def _intersection_note(first: str, second: str, count: int) -> str:
+    if first == second:
+        text = f" intersects itself, {count} faces, left as it is"
+        return _shortened(first, _MOST_CHARACTERS - len(text)) + text
+    return intersection_text(first, second, count, ", may only part")
 
 
 def _shortened(name: str, most: int) -> str:
@@ -67,26 +94,43 @@ def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exc
 
 
 def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> Indices:
-    """Find the pairs of triangles, (k, 2), of excluded faces that intersect at positions, (N, 3)."""
-    if not excluded.pairs:
+    """Find the pairs of triangles, (k, 2), of excluded faces of one object that intersect at positions, (N, 3)."""
+    if len(excluded.pairs) == 0:
         return np.empty((0, 2), np.int32)
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
-    rows = [_key(assembly.face(a), assembly.face(b)) in excluded.pairs for a, b in found.tolist()]
+    faces = [(assembly.face(a), assembly.face(b)) for a, b in found.tolist()]
+    rows = [a.object == b.object and _key(a, b) in excluded.pairs for a, b in faces]
     chosen: Indices = found[np.array(rows, bool)]
     return chosen
 
 
+def excluded_bodies(excluded: Exclusions, surface: stiv.Surface) -> list[tuple[str | int, str | int]]:
+    """Pairs of bodies of different objects with excluded faces."""
+    bodies: dict[str, list[int]] = {}
+    for number, body in enumerate(surface.bodies):
+        bodies.setdefault(body.name, []).append(number)
+    return [
+        (a, b)
+        for first, second in sorted(excluded.objects)
+        for a in bodies.get(first, [])
+        for b in bodies.get(second, [])
+    ]
+
+
 def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> bool:
-    """Is every intersection at positions, (N, 3), between excluded faces?"""
+    """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
-    if not excluded.pairs:
-        return len(found) == 0
-    return all(_key(assembly.face(a), assembly.face(b)) in excluded.pairs for a, b in found.tolist())
+    return all(_is_excluded(excluded, assembly.face(a), assembly.face(b)) for a, b in found.tolist())
 
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:
-    """The pairs that are not excluded."""
-    return tuple(pair for pair in pairs if _key(pair.first, pair.second) not in excluded.pairs)
+    """The pairs that are not excluded, and not of two objects with excluded faces."""
+    return tuple(pair for pair in pairs if not _is_excluded(excluded, pair.first, pair.second))
+
+
+def _is_excluded(excluded: Exclusions, first: Element, second: Element) -> bool:
+    a, b = sorted((first.object, second.object))
+    return (a, b) in excluded.objects if a != b else _key(first, second) in excluded.pairs
 
 
 def _key(first: Element, second: Element) -> tuple[FaceKey, FaceKey]:

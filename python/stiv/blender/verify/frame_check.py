@@ -21,6 +21,7 @@ from stiv.blender.scene.elements import Element as FoundElement
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
 from stiv.blender.scene.evaluations import RENDER, VIEWPORT
 from stiv.blender.scene.face_pairs import EventElements
+from stiv.blender.scene.passing import passing_note, passing_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import find_pairs_and_seams, tested_names
 from stiv.blender.verify.untested import find_untested
@@ -54,8 +55,9 @@ def check_frames(
                 yield look if evaluation == evaluations[0] else replace(look, notes=())
         tested = {name for pose in present.values() for name in pose.look.shapes.names}
         untested = find_untested(context, tested, objects) if number == 0 else ()
+        note = passing_note(passing_pairs(context.scene)) if number == 0 else ""
         for pose in present.values():
-            yield replace(pose.look, untested=untested)
+            yield replace(pose.look, untested=untested, notes=(note,) if note else ())
         before = present
 
 
@@ -91,10 +93,11 @@ def _check_names(context: bpy.types.Context, objects: Collection[str]) -> None:
 
 @dataclass(frozen=True)
 class Pose:
-    """An evaluation at one frame, and the intersections in it."""
+    """An evaluation at one frame, the intersections in it, and pairs of names that were not tested."""
 
     assembly: Assembly
     look: Look
+    passing: tuple[tuple[str, str], ...] = ()
 
 
 def _read(
@@ -103,14 +106,15 @@ def _read(
     """Poses by evaluation; evaluations equal to the first are left out."""
     is_counted = tested_names(context, EditSettings(), objects or None)
     scene = read_scene(context, is_counted, evaluations=evaluations, strands=True)
+    passing = passing_pairs(context.scene)
     poses = {}
     for number, evaluation in enumerate(evaluations):
         if number and all(mesh.shown_in >= set(evaluations) for mesh in scene.meshes):
             continue
         meshes = [mesh for mesh in scene.meshes if evaluation in mesh.shown_in]
-        assembly = assemble_with_seams(meshes)
+        assembly = assemble_with_seams(meshes, passing)
         look = _test_pose(assembly, evaluation, frame, threads)
-        poses[evaluation] = Pose(assembly, replace(look, seams=()) if number else look)
+        poses[evaluation] = Pose(assembly, replace(look, seams=()) if number else look, passing)
     return poses
 
 
@@ -142,7 +146,8 @@ def _test_motion(start: Pose, end: Pose, evaluation: str, threads: int) -> Look:
     when = f"between frames {start.look.frame:g} and {end.look.frame:g}"
     pairs, notes = _match_meshes(start.assembly, end.assembly, when)
     seams = [_seams_of_both(one, other) for one, other in pairs]
-    moving = assemble([one for one, _ in pairs], [_mobility(one, other) for one, other in pairs], seams=seams)
+    mobility = [_mobility(one, other) for one, other in pairs]
+    moving = assemble([one for one, _ in pairs], mobility, ignored=start.passing, seams=seams)
     world = (moving.merge_seams(place, other.world()) for place, (_, other) in enumerate(pairs))
     goal = np.concatenate([np.empty((0, 3)), *world])
     known = {finding.objects for look in (start.look, end.look) for finding in look.findings}

@@ -13,7 +13,7 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_tolerance, read_positions_of
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import find_excluded_triangles, without_excluded
+from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
 from stiv.blender.scene.references import SceneChangedError
@@ -48,8 +48,7 @@ class Verifier:
     def __init__(
         self, assembly: Assembly, is_step_free: StepTest, threads: int = 0, excluded: Exclusions | None = None
     ) -> None:
-        """Test the meshes of an assembly; threads 0 uses all cores. No more excluded pairs may intersect than at the
-        start.
+        """Test the meshes of an assembly; threads 0 uses all cores. Excluded pairs may intersect.
 
         is_step_free: stiv.StepCheck.is_free of its surface, or the method of an EditSession.
         """
@@ -57,7 +56,6 @@ class Verifier:
         self._threads = threads
         self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
-        self._most = len(find_excluded_triangles(self._excluded, assembly, assembly.positions, threads))
 
     def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
         """Is this the verifier of an assembly and its exclusions? Both may change during an edit."""
@@ -79,26 +77,27 @@ class Verifier:
         message = _displacement_message(self.assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
-        if self._most:
-            found = self._verify_excluded(shown)
-            if found is not None:
-                return found
+        if self._excluded.pairs:
+            pairs = self._not_excluded(accepted, shown)
+            if pairs:
+                return self._failure(pairs)
         elif not self._is_step_free(accepted, shown):
             return self._failure(find_face_pairs(self.assembly, shown, self._threads))
         flips = find_flips(context, self.assembly, opened)
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
-    def _verify_excluded(self, shown: Floats) -> Verification | None:
-        """Test a surface with excluded pairs: other pairs, or more excluded ones, may not intersect.
+    def _not_excluded(self, accepted: Floats, shown: Floats) -> tuple[FacePair, ...]:
+        """Intersecting pairs of a surface that are not excluded, or of excluded objects that the edit has parted.
 
         Only the end of the step is tested; the step is shorter than the rounding of single precision.
         """
-        pairs = without_excluded(find_face_pairs(self.assembly, shown, self._threads), self._excluded)
-        if pairs:
-            return self._failure(pairs)
-        if len(find_excluded_triangles(self._excluded, self.assembly, shown, self._threads)) > self._most:
-            return Verification(False, (), "more excluded pairs would intersect in Blender's evaluation")
-        return None
+        found = find_face_pairs(self.assembly, shown, self._threads)
+        others = without_excluded(found, self._excluded)
+        between = [pair for pair in set(found).difference(others) if pair.first.object != pair.second.object]
+        if not between:
+            return others
+        overlapping = {_objects(pair) for pair in find_face_pairs(self.assembly, accepted, self._threads)}
+        return (*others, *(pair for pair in between if _objects(pair) not in overlapping))
 
     def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
         pairs = without_excluded(
@@ -121,6 +120,10 @@ class Verifier:
         if not pairs:
             return Verification(False, (), "surfaces come too close in Blender; use a larger minimum distance")
         return Verification(False, pairs, _intersection_message(pairs), flips)
+
+
+def _objects(pair: FacePair) -> frozenset[str]:
+    return frozenset((pair.first.object, pair.second.object))
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:

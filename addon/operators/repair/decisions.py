@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The popup that offers the ways out where the start of an edit intersects."""
+
+from __future__ import annotations
+
+import bpy
+
+from ... import stiv_blender
+from .passing import STIV_OT_let_pass
+from .repair import STIV_OT_repair
+from .separate import STIV_OT_separate
+
+MAX_PAIRS = 5  # pairs of objects in the popup
+
+
+def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Exception) -> set[str]:
+    """Show the popup if objects intersect each other, and report the first pair.
+
+    Returns the operator's result; nothing without a window, or for any other error.
+    """
+    if bpy.app.background or context.window is None:
+        return set()
+    if not isinstance(error, stiv_blender.ObjectsIntersectError) or not error.objects:
+        return set()
+    lines = [stiv_blender.intersection_text(*pair) for pair in error.objects]
+
+    def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+        for line in lines[1:MAX_PAIRS]:
+            menu.layout.label(text=line, translate=False)
+        draw_ways_out(menu.layout)
+
+    context.window_manager.popup_menu(draw, title=lines[0], icon="ERROR")
+    operator.report({"INFO"}, lines[0])
+    return {"CANCELLED"}
+
+
+def draw_ways_out(layout: bpy.types.UILayout) -> None:
+    """Draw a button for each operator that resolves or allows the intersections."""
+    layout.operator_context = "INVOKE_DEFAULT"
+    layout.operator(STIV_OT_repair.bl_idname, text="Repair", icon="MODIFIER")
+    layout.operator(STIV_OT_separate.bl_idname, icon="FULLSCREEN_ENTER")
+    layout.operator(STIV_OT_let_pass.bl_idname, icon="GHOST_ENABLED")

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.let_pass`, `stiv.let_pass_remove`: pairs of objects that pass through each other."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import IntProperty
+
+from ... import stiv_blender
+from ...native_module import NeedsNativeModule
+from ...scene.edit_settings import edit_settings
+from ...translations import translate
+from ..reports import report_error
+
+LISTED = 3  # pairs in a line
+
+
+class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
+    """Let the selected objects pass through the objects that they intersect now"""
+
+    bl_idname = "stiv.let_pass"
+    bl_label = "Let These Pass"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add a row for each intersecting pair of a selected object and another one."""
+        try:
+            found = stiv_blender.check_scene(context, edit_settings(context.scene)).pairs
+        except ValueError as error:
+            return report_error(self, error)
+        selected = {obj.name for obj in context.selected_objects}
+        names = {tuple(sorted((pair.first.object, pair.second.object))) for pair in found}
+        pairs = sorted(pair for pair in names if len(set(pair)) == 2 and selected.intersection(pair))
+        if not pairs:
+            self.report({"INFO"}, translate("The selection intersects no other object"))
+            return {"CANCELLED"}
+        for first, second in pairs:
+            row = context.scene.stiv.passing_pairs.add()
+            row.first, row.second = context.scene.objects[first], context.scene.objects[second]
+        self.report({"INFO"}, passing_text(context.scene))
+        return {"FINISHED"}
+
+
+class STIV_OT_let_pass_remove(NeedsNativeModule, bpy.types.Operator):
+    """Guard this pair of objects again"""
+
+    bl_idname = "stiv.let_pass_remove"
+    bl_label = "Guard Pair Again"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    index: IntProperty(name="Index", min=0)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Remove the row."""
+        rows = context.scene.stiv.passing_pairs
+        if self.index >= len(rows):
+            self.report({"ERROR"}, translate("Pair {} does not exist: the list has {}").format(self.index, len(rows)))
+            return {"CANCELLED"}
+        rows.remove(self.index)
+        return {"FINISHED"}
+
+
+def passing_text(scene: bpy.types.Scene) -> str:
+    """The pairs of objects that nothing tests against each other, as a line; "" without any."""
+    pairs = edit_settings(scene).ignored_pairs
+    if not pairs:
+        return ""
+    listed = ", ".join(" / ".join(pair) for pair in pairs[:LISTED]) + (", …" if len(pairs) > LISTED else "")
+    return translate("{}: excluded, may pass").format(listed)

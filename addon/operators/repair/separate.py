@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.separate`: moves the selected objects out of all others by the least distance."""
+
+from __future__ import annotations
+
+import bpy
+
+from ... import stiv_blender
+from ...native_module import NeedsNativeModule
+from ...scene.edit_settings import edit_settings
+from ...translations import translate
+from ...units import length_text
+from ..reports import report_error
+
+
+class STIV_OT_separate(NeedsNativeModule, bpy.types.Operator):
+    """Move the selected objects by the least distance until they intersect no other object"""
+
+    bl_idname = "stiv.separate"
+    bl_label = "Separate"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    @classmethod
+    def is_available(cls, context: bpy.types.Context) -> bool:
+        """In Object Mode."""
+        return bool(context.mode == "OBJECT")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Find the translation, write it, test the result, report the distance."""
+        try:
+            found = stiv_blender.separate(context, edit_settings(context.scene))
+        except Exception as error:  # nothing may stay half done, whatever went wrong
+            return report_error(self, error)
+        if not found.others:
+            self.report({"INFO"}, translate("The selection intersects no other object"))
+            return {"CANCELLED"}
+        distance = length_text(found.distance, context.scene.unit_settings)
+        self.report({"INFO"}, translate("{}: moved {} away from {}").format(found.moved[0], distance, found.others[0]))
+        return {"FINISHED"}

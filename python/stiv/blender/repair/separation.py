@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Moves the selected objects together, by the least distance found, until they intersect no other object."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+
+from stiv import InputError
+from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.face_pairs import find_face_pairs
+from stiv.blender.settings import EditSettings
+from stiv.blender.verify.verification import read_shown
+from stiv.separating import find_separation
+
+
+@dataclass(frozen=True)
+class SeparationReport:
+    """The objects that were moved, those that they intersected, and the translation, (3,); 0 if nothing intersected."""
+
+    moved: tuple[str, ...]
+    others: tuple[str, ...]
+    translation: Floats
+
+    @property
+    def distance(self) -> float:
+        """Length of the translation."""
+        return float(np.linalg.norm(self.translation))
+
+
+def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationReport:
+    """Translate the selected objects by the least distance found that parts them from all other visible objects.
+
+    Pairs of `ignored_pairs` may intersect. Raises InputError, with nothing changed, if nothing can be moved, or no
+    direction parts them.
+    """
+    free = replace(settings, interference=False, object_response="rigid", responders="selected")
+    edit = BlenderEdit.begin(context, free, "move")
+    moving = edit.moving
+    surfaces = _against_others(edit.assembly, moving, settings)
+    pairs = find_face_pairs(surfaces, surfaces.positions, settings.threads)
+    if not pairs:
+        return SeparationReport(tuple(sorted(moving)), (), np.zeros(3))
+    others = _others(pairs, moving)
+    is_moving = np.zeros(len(surfaces.positions), bool)
+    is_moving[surfaces.vertices_of(_indices(surfaces, moving))] = True
+    gap = settings.separation or 1e-4 * float(np.ptp(surfaces.positions[is_moving], axis=0).max())
+    translation = find_separation(surfaces.surface, surfaces.positions, is_moving, gap, settings.threads)
+    if translation is None:
+        raise InputError(f"{others[0]}: no direction parts it from the selection; repair it, or let it pass")
+    _write(context, edit, surfaces, translation, settings)
+    return SeparationReport(tuple(sorted(moving)), others, translation)
+
+
+def _write(
+    context: bpy.types.Context, edit: BlenderEdit, surfaces: Assembly, translation: Floats, settings: EditSettings
+) -> None:
+    """Translate, and test what Blender shows; if it intersects, restore and raise InputError."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = translation
+    edit.drag(matrix)
+    edit.write()
+    left = find_face_pairs(surfaces, read_shown(context, surfaces), settings.threads)
+    if left:
+        edit.restore()
+        raise InputError(f"{left[0].first.object}: still intersects {left[0].second.object}; clear its locks")
+
+
+def _against_others(assembly: Assembly, moving: frozenset[str], settings: EditSettings) -> Assembly:
+    """The assembly in which only pairs of a moving and a resting object meet."""
+    mobility = ["rigid" if mesh.owner.name in moving else "fixed" for mesh in assembly.meshes]
+    return assemble(assembly.meshes, mobility, (moving,), settings.ignored_pairs)
+
+
+def _indices(assembly: Assembly, names: frozenset[str]) -> list[int]:
+    return [index for index, mesh in enumerate(assembly.meshes) if mesh.owner.name in names]
+
+
+def _others(pairs: tuple[FacePair, ...], moving: frozenset[str]) -> tuple[str, ...]:
+    names = {name for pair in pairs for name in (pair.first.object, pair.second.object)}
+    return tuple(sorted(names - moving))
