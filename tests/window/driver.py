@@ -39,6 +39,7 @@ class Driver:
         from guard_uncorrected import GUARD_UNCORRECTED
         from guide_pictures import PICTURES
         from interface import INTERFACE
+        from intersecting_starts import INTERSECTING_STARTS
         from languages import LANGUAGES
         from latency import LATENCIES
         from layout_scenarios import LAYOUT
@@ -54,7 +55,7 @@ class Driver:
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
-        drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES
+        drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | PICTURES
         chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual

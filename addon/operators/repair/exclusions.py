@@ -22,7 +22,7 @@ class ExclusionOperator(NeedsNativeModule):
 
 
 class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
-    """Allow the current intersections, which may only shrink; all other pairs stay guarded"""
+    """Allow current intersections to stay or shrink; all other pairs stay guarded"""
 
     bl_idname = "stiv.exclude_intersections"
     bl_label = "Exclude Collisions"

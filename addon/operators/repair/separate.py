@@ -14,7 +14,7 @@ from ..reports import report_error
 
 
 class STIV_OT_separate(NeedsNativeModule, bpy.types.Operator):
-    """Move the selected objects by the least distance until they intersect no other object"""
+    """Move the selected objects the least distance that parts them from all others"""
 
     bl_idname = "stiv.separate"
     bl_label = "Separate"

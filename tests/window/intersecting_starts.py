@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drags whose start intersects: the popup and its buttons, and an object that intersects itself."""
+
+from __future__ import annotations
+
+import bpy
+import scenes
+from playing import FURTHEST, box_x, click, expect_free, expect_near, prepared, start
+from scenes import WALL_FACE
+from simulation import Steps, Window
+
+INSIDE = WALL_FACE - 0.3  # of the box's center: the box reaches through the wall's face
+
+
+def in_the_wall(window: Window) -> Steps:
+    """A box that cuts the wall, and the key that moves it: a popup instead of a drag."""
+    yield from prepared(window, scenes.add_box, "Box")
+    bpy.data.objects["Box"].location.x = INSIDE
+    with window.override():
+        bpy.ops.ed.undo_push(message="box in the wall")
+    yield from window.settle()
+    yield from window.rest_at((-1.0, 0.0, 0.0))
+    window.key("M", shift=True, alt=True)
+    yield from window.settle()
+    assert not window.dragging()
+    expect_near(box_x(), INSIDE, 1e-6, "the box that has not moved")
+
+
+def start_popup_separate(window: Window) -> Steps:
+    """The popup names the objects; its button Separate parts them in one undo step, and the drag works."""
+    yield from in_the_wall(window)
+    window.picture("start_popup")
+    window.key("S")  # the letter that the menu underlines
+    yield from window.settle()
+    expect_near(box_x(), FURTHEST, 0.01, "the box beside the wall")
+    expect_free(window)
+    yield from start(window)
+    yield from window.glide(window.pixel((-2.0, 0.0, 0.0)))
+    yield from click(window)
+    assert box_x() < FURTHEST - 0.5, box_x()
+
+
+def start_popup_let_pass(window: Window) -> Steps:
+    """Let These Pass: the box then moves through the wall, and the panel lists the pair."""
+    yield from in_the_wall(window)
+    window.key("L")
+    yield from window.settle()
+    assert len(bpy.context.scene.stiv.passing_pairs) == 1
+    window.area.spaces.active.show_region_ui = True
+    yield from start(window)
+    yield from window.glide(window.pixel((0.5, 1.0, 0.0)))
+    yield from click(window)
+    window.picture("start_let_pass")
+    assert abs(box_x() - INSIDE) > 0.3, box_x()
+    bpy.context.scene.stiv.passing_pairs.clear()
+    window.area.spaces.active.show_region_ui = False
+
+
+def start_suzanne(window: Window) -> Steps:
+    """Suzanne, whose eyes cut her face, is deformed by a drag against the wall."""
+
+    def monkey() -> None:
+        bpy.ops.mesh.primitive_monkey_add(size=1.0)
+        bpy.context.scene.stiv.object_response = "deform"
+
+    yield from prepared(window, monkey, "Suzanne")
+    yield from start(window)
+    yield from window.glide(window.pixel((1.6, 0.0, 0.0)))
+    window.picture("start_suzanne")
+    yield from click(window)
+    assert "itself" in bpy.context.window_manager.stiv_check.summary
+    vertices = bpy.data.objects["Suzanne"].data.vertices
+    assert max(vertex.co.x for vertex in vertices) > 0.9
+
+
+INTERSECTING_STARTS = {
+    scenario.__name__: scenario for scenario in (start_popup_separate, start_popup_let_pass, start_suzanne)
+}
