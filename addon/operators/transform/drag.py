@@ -187,7 +187,7 @@ class DragOperator(Mixin):
         drag = self._drag
         self._leave(context)
         if drag.error is not None:
-            return report_error(self, drag.error)
+            return decisions.offer(self, context, drag.error) or report_error(self, drag.error)
         if drag.progress is Progress.CANCELLED or drag.transform is None:
             return {"CANCELLED"}
         try:
