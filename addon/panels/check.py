@@ -49,8 +49,8 @@ class STIV_PT_repair(SubPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         for operator, icon in zip(RESHAPING, ICONS, strict=True):
             column.operator(operator.bl_idname, text=BUTTON_TEXTS[operator.bl_idname], icon=icon)
-        column.operator(STIV_OT_separate.bl_idname, icon="UNLINKED")
-        self.layout.operator(STIV_OT_let_pass.bl_idname, icon="HIDE_OFF")
+        column.operator(STIV_OT_separate.bl_idname, text="Separate", icon="UNLINKED")
+        self.layout.operator(STIV_OT_let_pass.bl_idname, text="Let These Pass", icon="HIDE_OFF")
         for index, pair in enumerate(context.scene.stiv.passing_pairs):
             row = self.layout.row(align=True)
             row.prop(pair, "first", text="")

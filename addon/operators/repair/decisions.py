@@ -38,5 +38,5 @@ def draw_ways_out(layout: bpy.types.UILayout) -> None:
     """Draw a button for each operator that resolves or allows the intersections."""
     layout.operator_context = "INVOKE_DEFAULT"
     layout.operator(STIV_OT_repair.bl_idname, text="Repair", icon="MODIFIER")
-    layout.operator(STIV_OT_separate.bl_idname, icon="FULLSCREEN_ENTER")
-    layout.operator(STIV_OT_let_pass.bl_idname, icon="GHOST_ENABLED")
+    layout.operator(STIV_OT_separate.bl_idname, text="Separate", icon="FULLSCREEN_ENTER")
+    layout.operator(STIV_OT_let_pass.bl_idname, text="Let These Pass", icon="GHOST_ENABLED")

@@ -19,7 +19,7 @@ class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
     """Let the selected objects pass through the objects that they intersect now"""
 
     bl_idname = "stiv.let_pass"
-    bl_label = "Let These Pass"
+    bl_label = "Let Collisions Pass"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -45,7 +45,7 @@ class STIV_OT_let_pass_remove(NeedsNativeModule, bpy.types.Operator):
     """Guard this pair of objects again"""
 
     bl_idname = "stiv.let_pass_remove"
-    bl_label = "Guard Pair Again"
+    bl_label = "Guard Collisions Again"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     index: IntProperty(name="Index", min=0)

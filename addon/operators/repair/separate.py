@@ -17,7 +17,7 @@ class STIV_OT_separate(NeedsNativeModule, bpy.types.Operator):
     """Move the selected objects the least distance that parts them from all others"""
 
     bl_idname = "stiv.separate"
-    bl_label = "Separate"
+    bl_label = "Collision Separate"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
