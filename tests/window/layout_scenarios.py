@@ -14,19 +14,20 @@ from playing import expect_free, prepared
 from simulation import Steps, Window
 
 
-def add_monkeys(count: int = 3, levels: int = 0) -> None:
-    """Heads above a floor, the lowest first; with a Subdivision Surface of this level."""
+def add_bricks(count: int = 3, levels: int = 0) -> None:
+    """Tilted bricks above a floor, the lowest first; with a Subdivision Surface of this level."""
     scenes.add_mesh("Floor", lambda content: bmesh.ops.create_grid(content, x_segments=8, y_segments=8, size=4.0))
     for number in range(count):
-        head = scenes.add_mesh(f"Head {number}", bmesh.ops.create_monkey, (-0.4 + 0.3 * number, 0.2, 1.5 + 2 * number))
-        head.scale, head.rotation_euler = (0.5, 0.5, 0.5), (0.4 * number, 0.3, number)
+        place = (-0.4 + 0.3 * number, 0.2, 1.5 + 2 * number)
+        brick = scenes.add_mesh(f"Brick {number}", partial(bmesh.ops.create_cube, size=1.0), place)
+        brick.scale, brick.rotation_euler = (1.0, 0.6, 0.4), (0.4 * number, 0.3, number)
         if levels:
-            head.modifiers.new("Subdivision", "SUBSURF").levels = levels
+            brick.modifiers.new("Subdivision", "SUBSURF").levels = levels
 
 
 def add_stone() -> None:
     """A stone beside waves."""
-    add_monkeys(0)
+    add_bricks(0)
     floor = bpy.data.objects["Floor"]
     for vertex in floor.data.vertices:
         vertex.co.z = 0.3 * math.sin(2 * vertex.co.x) * math.cos(vertex.co.y)
@@ -79,13 +80,13 @@ def places() -> dict[str, tuple[float, ...]]:
 
 
 def layout_drop(window: Window) -> Steps:
-    """Three heads fall, turn and come to rest on the floor and on each other."""
-    yield from played(window, add_monkeys, "Head 0", "drop", "Head")
+    """Three bricks fall, turn and come to rest on the floor and on each other."""
+    yield from played(window, add_bricks, "Brick 0", "drop", "Brick")
 
 
 def layout_settle_contact(window: Window) -> Steps:
-    """A tilted head settles on the floor, the nearest surface."""
-    yield from played(window, partial(add_monkeys, 1), "Head 0", "settle_contact", max_distance=4.0)
+    """A tilted brick settles on the floor, the nearest surface."""
+    yield from played(window, partial(add_bricks, 1), "Brick 0", "settle_contact", max_distance=4.0)
 
 
 def layout_place(window: Window) -> Steps:
@@ -95,14 +96,14 @@ def layout_place(window: Window) -> Steps:
 
 
 def layout_push_apart(window: Window) -> Steps:
-    """Heads that intersect come apart."""
+    """Bricks that intersect come apart."""
 
     def build() -> None:
-        add_monkeys()
+        add_bricks()
         for number in range(3):
-            bpy.data.objects[f"Head {number}"].location = (0.3 * number, 0.1 * number, 1.0)
+            bpy.data.objects[f"Brick {number}"].location = (0.3 * number, 0.1 * number, 1.0)
 
-    yield from played(window, build, "Head 0", "push_apart", "Head")
+    yield from played(window, build, "Brick 0", "push_apart", "Brick")
 
 
 def layout_fit_into(window: Window) -> Steps:
@@ -113,7 +114,7 @@ def layout_fit_into(window: Window) -> Steps:
 
 def layout_escape(window: Window) -> Steps:
     """Esc during a drop leaves the scene unchanged; the header showed the progress."""
-    yield from prepared(window, partial(add_monkeys, 2, 4), "Head 0")
+    yield from prepared(window, partial(add_bricks, 2, 6), "Brick 0")
     before = places()
     with window.override():
         bpy.ops.stiv.drop("INVOKE_DEFAULT", True)
