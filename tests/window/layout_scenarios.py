@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from functools import partial
@@ -74,6 +75,11 @@ def played(
     assert places() == after
 
 
+def changed() -> int:
+    """The number of objects that the last layout changed."""
+    return len(json.loads(bpy.context.window_manager.stiv_last_edit)["changed"])
+
+
 def places() -> dict[str, tuple[float, ...]]:
     """The world matrix of each object."""
     return {ob.name: tuple(value for row in ob.matrix_world for value in row) for ob in bpy.data.objects}
@@ -92,7 +98,7 @@ def layout_settle_contact(window: Window) -> Steps:
 def layout_place(window: Window) -> Steps:
     """Stones on waves; the name of the surface comes from the pointer."""
     yield from played(window, add_stone, "Stone", "place", count=20, scale_variation=0.4)
-    assert bpy.context.window_manager.stiv_check.summary == "Placed 20 of 20"
+    assert changed() == 20
 
 
 def layout_push_apart(window: Window) -> Steps:
@@ -109,7 +115,7 @@ def layout_push_apart(window: Window) -> Steps:
 def layout_fit_into(window: Window) -> Steps:
     """Balls fall into a crate."""
     yield from played(window, add_crate, "Crate", "fit_into", "Ball")
-    assert bpy.context.window_manager.stiv_check.summary == "Packed 6 of 6"
+    assert changed() == 6
 
 
 def layout_escape(window: Window) -> Steps:
