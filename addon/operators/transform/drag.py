@@ -164,6 +164,8 @@ class DragOperator(Mixin):
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.written is not None and drag.written is drag.result:
             display.show_edit(drag.edit, drag.written, self._motion_of_all())
+        elif drag.written is None and drag.report is not None:  # Blender shows another state than the result's
+            display.end_edit()
 
     def _show_waiting(self, context: bpy.types.Context) -> None:
         """The wait cursor during a long start, and the progress of a start and of the last solve."""

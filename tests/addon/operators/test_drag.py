@@ -224,3 +224,17 @@ def test_a_second_window_cannot_begin_an_edit_until_the_first_one_ends(started: 
     assert not STIV_OT_move.is_available(context)
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     assert STIV_OT_move.is_available(context) and not running.obstacle()
+
+
+@pytest.mark.parametrize(("message", "expected"), [("", ["show_edit"]), ("stopped early: Box", ["end_edit"])])
+def test_the_overlay_shows_only_the_result_that_the_scene_shows(
+    started: Any, edit: FakeEdit, monkeypatch: pytest.MonkeyPatch, message: str, expected: list[str]
+) -> None:
+    operator, context = started
+    calls: list[str] = []
+    for name in ("show_edit", "end_edit"):
+        monkeypatch.setattr(drag.display, name, lambda *given, name=name: calls.append(name))
+    monkeypatch.setattr(edit, "write", lambda: SimpleNamespace(passed=True, message=message, result=None))
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    operator.modal(context, event("TIMER"))
+    assert calls[:1] == expected and set(calls) == set(expected)
