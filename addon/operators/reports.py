@@ -37,16 +37,18 @@ def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blen
     """Report an error after restoring `edit`; unexpected errors print their trace."""
     if edit is not None:
         restore_after_error(edit, error)
-    _report_with_details(operator, "; ".join([error_text(error), *getattr(error, "__notes__", ())]))
+    text = "; ".join([error_text(error), *getattr(error, "__notes__", ())])
+    objects = getattr(error, "objects", ())  # of stiv.blender.ObjectsIntersectError
+    _report_with_details(operator, text, stiv_blender.intersection_text(*objects[0]) if objects else "")
     return {"CANCELLED"}
 
 
-def _report_with_details(operator: bpy.types.Operator, text: str) -> None:
-    """Report as much of an error as fits; the tab shows the whole. Scripts get all of it as an exception."""
+def _report_with_details(operator: bpy.types.Operator, text: str, short: str = "") -> None:
+    """Report an error in short, or as much as fits; the tab shows the whole. Scripts get it as an exception."""
     panel = getattr(bpy.context.window_manager, "stiv_check", None)  # None once the extension is disabled
     if panel is not None and len(text) > LENGTH:
         panel.summary = text
-    operator.report({"ERROR"}, text if bpy.app.background else brief(text))
+    operator.report({"ERROR"}, text if bpy.app.background else short or brief(text))
 
 
 def error_text(error: Exception) -> str:
