@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from ..transform import Transform
 
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
-FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation: how much work Esc may lose
+FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
-MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then the goal counts as reached
+MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
@@ -239,7 +239,7 @@ class DragLoop:
             self.note = str(error)
             return
         self._unfinished = None
-        budget = FINAL_BUDGET if self._confirmed else BUDGET
+        budget = FINAL_BUDGET * 2 ** min(self._fruitless, 4) if self._confirmed else BUDGET
         steps = self.edit.drag_steps(goal.motion, time_budget=budget)
         self._run(_noting(steps), lambda found: self._take_solved(goal, found))
 
@@ -280,7 +280,8 @@ class DragLoop:
         gained = solved != state or result.energy < GAIN * least
         self._fruitless = 0 if gained else self._fruitless + 1
         if result.status == "budget":
-            return self._fruitless < (MAX_SLOW if len(result.path) > 0 else MAX_FRUITLESS)
+            most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
+            return self._fruitless < most
         return result.status == "corrected" and gained
 
     def _begin_again(self) -> bool:
@@ -318,6 +319,8 @@ class DragLoop:
             return
         self._confirmed = True
         self._unfinished = None  # the goal is the position where the mouse was released
+        if self.result is not None and self.result.status == "budget":
+            self._pending, self._fruitless = True, 0
         if self.edit is not None or self._settled:
             self.progress = Progress.FINISHING
             self._finish_at_once()

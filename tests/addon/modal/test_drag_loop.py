@@ -214,12 +214,15 @@ def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> No
     assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 4 + ["settle"]
 
 
-def test_a_goal_that_is_reached_late_is_not_solved_for_again_and_again() -> None:
-    edit = FakeEdit(statuses=["budget"] * 1000)
+def test_a_goal_that_solves_come_no_closer_to_is_left_until_the_confirmation() -> None:
+    edit = FakeEdit(statuses=["budget"] * (1 + MAX_SLOW) + ["budget", "reached"])
     drag = new_drag(edit)
     drag.handle(move_to(50))
+    for _ in range(20):
+        drag.tick()
+    assert edit.calls.count("drag") == 1 + MAX_SLOW and drag.at_rest
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == 1 + MAX_SLOW
+    assert drag.progress is Progress.FINISHED and drag.result.status == "reached"
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:
