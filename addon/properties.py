@@ -67,6 +67,13 @@ def _guard_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Contex
     watcher.switched(context)
 
 
+def _live_transforms_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from .tools import live_switch
+
+    settings.live_guard = settings.live_transforms
+    live_switch.switched()
+
+
 def _exclusions_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     from .guard import watcher
 
@@ -130,6 +137,12 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         description="Correct the results of Blender's tools so that surfaces do not intersect",
         default=False,
         update=_guard_switched,
+    )
+    live_transforms: BoolProperty(
+        name="Live Collisions",
+        description="Stop Blender's move, rotate and scale at surfaces; Live Guard corrects other tools",
+        default=False,
+        update=_live_transforms_switched,
     )
     responders: EnumProperty(
         name="Yields", description="Which side moves out of the way", items=RESPONDERS, default="selected"

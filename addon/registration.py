@@ -10,6 +10,7 @@ from .guard import watcher
 from .operators import running
 from .operators.transform import drag_results
 from .overlay import display
+from .tools import gizmo_group, live_switch, toolbar
 
 CLASSES = (
     *properties.CLASSES,
@@ -18,6 +19,7 @@ CLASSES = (
     *panels.CLASSES,
     *menus.CLASSES,
     *preferences.CLASSES,
+    *gizmo_group.CLASSES,
 )
 
 
@@ -33,13 +35,17 @@ def register() -> None:
     loop_updates.register()
     watcher.register()
     display.register()
+    toolbar.register()
     header.register()
+    live_switch.register()
 
 
 def unregister() -> None:
     """Remove everything; a running edit restores its start first."""
     running.cancel(bpy.context)
+    live_switch.unregister()
     header.unregister()
+    toolbar.unregister()
     display.unregister()
     watcher.unregister()
     loop_updates.unregister()

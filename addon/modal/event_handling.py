@@ -28,6 +28,8 @@ def step(state: State, event: Event) -> tuple[State, Effect]:
         return _point(state, event)
     if event.type in SHIFT_KEYS | CTRL_KEYS:
         return _hold(state, event)
+    if state.release and (event.type, event.value) == (state.release, "RELEASE"):
+        return replace(state, phase=Phase.CONFIRMED), Effect.CONFIRM
     if event.navigates and not (_resizes(state, event) and event.pressed):
         return state, Effect.PASS
     return _press(state, event) if event.pressed else (state, Effect.NONE)

@@ -48,6 +48,7 @@ class State:
         snap: whether snapping is turned on; Ctrl inverts it.
         ctrl: whether Ctrl is held.
         precise: whether Shift is held.
+        release: the button whose release confirms, since it was held when the drag began; empty if none.
         phase: whether the drag continues.
 
     """
@@ -60,6 +61,7 @@ class State:
     snap: bool = False
     ctrl: bool = False
     precise: bool = False
+    release: str = ""
     phase: Phase = Phase.DRAGGING
 
     @property

@@ -23,6 +23,7 @@ from .transform.drag import STIV_OT_drag
 from .transform.move import STIV_OT_move
 from .transform.rotate import STIV_OT_rotate
 from .transform.scale import STIV_OT_scale
+from .transform.start_drag import STIV_OT_live_transform, STIV_OT_transform
 
 TRANSFORMS = (STIV_OT_move, STIV_OT_rotate, STIV_OT_scale)
 RESHAPING = (STIV_OT_repair, STIV_OT_contract, STIV_OT_expand, STIV_OT_settle)
@@ -37,6 +38,8 @@ LAYOUT = tuple(operator for operator, _ in LAYOUT_ICONS)
 CLASSES = (
     *TRANSFORMS,
     STIV_OT_drag,
+    STIV_OT_transform,
+    STIV_OT_live_transform,
     STIV_OT_check,
     STIV_OT_measure,
     *LAYOUT,

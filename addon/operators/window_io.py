@@ -35,6 +35,11 @@ def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Even
     )
 
 
+def press_position(event: bpy.types.Event, region: bpy.types.Region) -> tuple[float, float]:
+    """The pixel of the region where a button was last pressed, before it was dragged."""
+    return float(event.mouse_prev_press_x - region.x), float(event.mouse_prev_press_y - region.y)
+
+
 def start_timer(context: bpy.types.Context, step: float) -> bpy.types.Timer:
     """Timer events every `step` seconds, until `stop_timer`."""
     return context.window_manager.event_timer_add(step, window=context.window)

@@ -51,13 +51,14 @@ class Driver:
         from sequences import SEQUENCES
         from simulation import Window
         from snapping_and_pivots import SNAPPING_AND_PIVOTS
+        from tools import TOOLS
 
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | PROPORTIONAL_EDITING | REDO_PANEL
-        usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | PICTURES
+        usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES
         chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

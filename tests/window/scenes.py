@@ -22,7 +22,7 @@ def clear() -> None:
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     scene = bpy.context.scene
-    scene.stiv.live_guard = False
+    scene.stiv.live_transforms = scene.stiv.live_guard = False
     response = "responders", "object_response", "slide_out_of_axis", "smoothness", "constraints"
     for name in ("separation", "interference", *response):
         scene.stiv.property_unset(name)

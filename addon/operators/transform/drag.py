@@ -8,9 +8,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import bpy
-from bpy.props import EnumProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
+from ...modal.axis_lock import AxisLock
 from ...modal.drag_loop import DragCalls, DragEnded, DragLoop, Progress
 from ...modal.header_texts import turned_text
 from ...modal.pointer import Pointer
@@ -44,7 +45,11 @@ OPERATORS: dict[str, type[TransformOperator]] = {
 
 
 class DragOperator(Mixin):
-    """The operator without its registration; `kind` is the kind of transform at the start."""
+    """The operator without its registration.
+
+    `kind` is the kind of transform at the start; `axis` (0 to 2, -1 for none) and `plane` lock it as an `AxisLock`.
+    `release` names the button that is held, and whose release confirms; empty if none.
+    """
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Begin the drag; if the edit is rejected, nothing changes. A long start continues in jobs."""
@@ -82,10 +87,13 @@ class DragOperator(Mixin):
         self._snap = read_snap(context, self._moving, lambda: self._frame.view)
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
-        pointer = Pointer.at(window_io.plain_event(event, context.region).mouse, window_io.centre(self._frame))
+        held = window_io.press_position(event, context.region) if self.release else None
+        mouse = held or window_io.plain_event(event, context.region).mouse
+        pointer = Pointer.at(mouse, window_io.centre(self._frame))
         request = Request(self.kind, scene.stiv.responders, scene.stiv.interference, scene.stiv.object_response)
         proportional, snap = read_proportional(context), scene.tool_settings.use_snap
-        state = State(pointer, request, proportional=proportional, snap=snap)
+        axis_lock = AxisLock(self.axis, self.plane) if self.axis >= 0 else AxisLock()
+        state = State(pointer, request, axis_lock, proportional=proportional, snap=snap, release=self.release)
         self._launch(context, state, lambda request: begin_drag(context, request))
 
     def _launch(
@@ -231,3 +239,6 @@ class STIV_OT_drag(DragOperator, bpy.types.Operator):
     bl_options = {"INTERNAL", "BLOCKING", "GRAB_CURSOR"}  # noqa: RUF012 (Blender reads a set)
 
     kind: EnumProperty(name="Transform", items=[(kind, kind.title(), "") for kind in OPERATORS], options={"SKIP_SAVE"})
+    axis: IntProperty(default=-1, min=-1, max=2, options={"HIDDEN", "SKIP_SAVE"})
+    plane: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    release: StringProperty(options={"HIDDEN", "SKIP_SAVE"})

@@ -4,6 +4,7 @@
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.controls.participants import may_have_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit, begin_culled_steps
@@ -120,6 +121,7 @@ __all__ = [
     "follow",
     "guard_result",
     "intersection_text",
+    "may_have_surface",
     "nearest_pair",
     "object_pair",
     "place",

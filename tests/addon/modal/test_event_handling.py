@@ -41,6 +41,15 @@ def test_a_release_does_nothing(key: str) -> None:
     assert step(start(), Event(key, "RELEASE")) == (start(), Effect.NONE)
 
 
+def test_the_release_of_a_button_held_from_the_start_confirms() -> None:
+    held = replace(start(), release="LEFTMOUSE")
+    moved, _ = step(held, Event("MOUSEMOVE", "NOTHING", (150.0, 100.0)))
+    assert step(moved, Event("RIGHTMOUSE", "RELEASE")) == (moved, Effect.NONE)
+    state, effect = step(moved, Event("LEFTMOUSE", "RELEASE"))
+    assert (state.phase, effect) == (Phase.CONFIRMED, Effect.CONFIRM)
+    assert state.pointer.last == (150.0, 100.0)
+
+
 @pytest.mark.parametrize(("key", "axis"), [("X", 0), ("Y", 1), ("Z", 2)])
 def test_axis_keys_lock(key: str, axis: int) -> None:
     state, effect = step(start(), Event(key))
