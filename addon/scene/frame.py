@@ -66,10 +66,11 @@ def selected_points(context: bpy.types.Context) -> Vector:
 def _selected_elements(obj: bpy.types.Object) -> list[Vector]:
     """Selected vertices or lattice points of an object in Edit Mode, in world space."""
     if obj.type == "MESH":
-        positions = [vertex.co for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
+        positions = [vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
     else:
-        positions = [point.co_deform for point in obj.data.points if point.select]
-    return [np.array(obj.matrix_world @ position) for position in positions]
+        positions = [point.co_deform[:] for point in obj.data.points if point.select]
+    matrix = np.array(obj.matrix_world)
+    return list(np.array(positions).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3])
 
 
 def active_point(context: bpy.types.Context) -> Vector | None:

@@ -127,7 +127,7 @@ def _place(gizmo: bpy.types.Gizmo, handle: Handle, kinds: frozenset[str], basis:
     gizmo.matrix_offset = Matrix(placement(handle, start).tolist())
 
 
-def _set_target(gizmo: bpy.types.Gizmo, handle: Handle, collides: bool) -> None:  # noqa: FBT001 (internal)
+def _set_target(gizmo: bpy.types.Gizmo, handle: Handle, collides: bool) -> None:
     """Let the handle start a drag, or Blender's own transform if nothing selected has a surface."""
     if collides:
         target = gizmo.target_set_operator("stiv.drag")

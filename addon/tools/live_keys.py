@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keys that take the place of Blender's own transforms while these collide: the same keys, read from the user's keymap.
 
-An operator of these keys does nothing where the scene's switch is off: then Blender goes on to its own key.
+An operator of these keys does nothing where the scene's switch is off: then Blender continues with its own key.
 """
 
 from __future__ import annotations

@@ -51,6 +51,7 @@ class Driver:
         from sequences import SEQUENCES
         from simulation import Window
         from snapping_and_pivots import SNAPPING_AND_PIVOTS
+
         from tools import TOOLS
 
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS

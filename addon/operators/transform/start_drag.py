@@ -18,7 +18,7 @@ MOUSE_BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE", "MIDDLEMOUSE"})
 
 
 class StartsDrag(NeedsNativeModule):
-    """Base of both operators: drags the selection, or starts Blender's own transform of what has no surface."""
+    """Base of both operators: drags the selection, or starts Blender's own transform if it has no surface."""
 
     kind: EnumProperty(name="Transform", items=[(kind, kind.title(), "") for kind in OPERATORS], options={"SKIP_SAVE"})
     axis: IntProperty(default=-1, min=-1, max=2, options={"HIDDEN", "SKIP_SAVE"})
@@ -27,7 +27,7 @@ class StartsDrag(NeedsNativeModule):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """In the modes of the transforms; elsewhere Blender goes on to its own key."""
+        """In the modes of the transforms; elsewhere Blender continues with its own key."""
         return context.mode in MODES and context.region_data is not None
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -65,7 +65,7 @@ class STIV_OT_live_transform(StartsDrag, bpy.types.Operator):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """Where the switch is on; elsewhere Blender goes on to its own key."""
+        """Where the switch is on; elsewhere Blender continues with its own key."""
         return super().is_available(context) and is_live(context)
 
 
@@ -89,7 +89,7 @@ def may_collide(context: bpy.types.Context) -> bool:
     )
 
 
-def constrained_axes(axis: int, plane: bool) -> tuple[bool, bool, bool]:  # noqa: FBT001 (two properties of operators)
+def constrained_axes(axis: int, plane: bool) -> tuple[bool, bool, bool]:
     """Blender's `constraint_axis` for a lock; no axis without one."""
     x, y, z = (axis >= 0 and (each == axis) != plane for each in range(3))
     return x, y, z
