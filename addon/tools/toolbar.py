@@ -37,7 +37,6 @@ def _make_tool(kind: str, mode: str) -> type[bpy.types.WorkSpaceTool]:
         "bl_label": f"Collision {kind.title()}",
         "bl_description": DESCRIPTIONS[kind],
         "bl_icon": f"ops.transform.{BLENDER_OPERATORS[kind]}",
-        "bl_options": {"KEYMAP_FALLBACK"},
         "bl_operator": f"stiv.{kind}",
         "bl_keymap": (("stiv.transform", drag, {"properties": [("kind", kind), ("release_confirm", True)]}),),
         "draw_settings": staticmethod(draw_settings),

@@ -6,11 +6,14 @@ from __future__ import annotations
 import math
 
 import bpy
+import numpy as np
 import scenes
 from playing import FURTHEST, INTO_WALL, NEAR, box, box_x, click, expect_free, expect_near, prepared
 from simulation import Steps, Window
 
 HANDLE = 0.8  # of the length of an arrow: on its line
+AROUND = 120  # pixels
+SAME_PIXELS = 0.995  # move and rotate share 0.92 of them
 FLAGS = ("show_gizmo_tool", "show_gizmo_object_translate", "show_gizmo_object_rotate", "show_gizmo_object_scale")
 
 
@@ -179,8 +182,21 @@ def switch_spares_lights(window: Window) -> Steps:
     yield from with_switch(window, on=False)
 
 
+def equal_pixels(window: Window, first: str, second: str) -> float:
+    """The fraction of equal pixels in a square around the gizmo of two pictures."""
+    pictures = [bpy.data.images.load(str(window.output / f"{name}.png")) for name in (first, second)]
+    x, y = window.pixel((0.0, 0.0, 0.0))
+    crops = []
+    for picture in pictures:
+        width, height = picture.size
+        pixels = np.array(picture.pixels[:]).reshape(height, width, -1)
+        crops.append(pixels[y - AROUND : y + AROUND, x - AROUND : x + AROUND, :3])
+        bpy.data.images.remove(picture)
+    return float((np.abs(crops[0] - crops[1]).max(axis=2) < 0.1).mean())
+
+
 def gizmos_beside_blenders(window: Window) -> Steps:
-    """Pictures of each gizmo and of Blender's own, seen from a corner."""
+    """Each gizmo beside Blender's own, seen from a corner: the pictures are nearly equal."""
     yield from prepared(window, scenes.add_box, "Box")
     scenes.look_from_corner(window.area)
     window.move(30, 200)
@@ -189,6 +205,8 @@ def gizmos_beside_blenders(window: Window) -> Steps:
         window.picture(f"gizmo_{kind}_blender")
         yield from with_switch(window, on=True)
         window.picture(f"gizmo_{kind}")
+        same = equal_pixels(window, f"gizmo_{kind}", f"gizmo_{kind}_blender")
+        assert same > SAME_PIXELS, f"{kind}: {same:.4f} of the pixels around the gizmo are equal"
         yield from with_switch(window, on=False)
     yield from with_tool(window, "stiv.collision_rotate")
     window.picture("tool_header")

@@ -77,7 +77,7 @@ def users_key(name: str) -> Any:
     )
 
 
-def test_unregistering_leaves_blender_as_it_was() -> None:
+def test_unregistering_restores_blender() -> None:
     header = bpy.types.VIEW3D_HT_header
     before = keys(), toolbar(), header.draw_xform_template
     stiv_addon.register()
