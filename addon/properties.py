@@ -140,7 +140,7 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     )
     live_transforms: BoolProperty(
         name="Live Collisions",
-        description="Stop Blender's move, rotate and scale at surfaces; Live Guard corrects other tools",
+        description="Stop Blender's own transforms at surfaces; Live Guard corrects other tools",
         default=False,
         update=_live_transforms_switched,
     )

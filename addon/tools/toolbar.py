@@ -6,7 +6,6 @@ from __future__ import annotations
 import bpy
 
 from ..operators.transform.start_drag import BLENDER_OPERATORS
-from ..panels.edit import draw_separation
 
 TOOL_MODES = ("OBJECT", "EDIT_MESH", "EDIT_LATTICE")
 KINDS = ("move", "rotate", "scale")
@@ -25,7 +24,12 @@ def draw_settings(context: bpy.types.Context, layout: bpy.types.UILayout, tool: 
     layout.prop(settings, "responders")
     if context.mode == "OBJECT":
         layout.prop(settings, "object_response")
-    draw_separation(layout, settings)
+    if settings.automatic_separation:
+        layout.row(heading="Minimum Distance").prop(settings, "automatic_separation", text="Auto", toggle=True)
+    else:
+        row = layout.row(align=True)
+        row.prop(settings, "separation")
+        row.prop(settings, "automatic_separation", text="", icon="X")
 
 
 def _make_tool(kind: str, mode: str) -> type[bpy.types.WorkSpaceTool]:

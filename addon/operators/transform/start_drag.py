@@ -49,7 +49,7 @@ class StartsDrag(NeedsNativeModule):
 
 
 class STIV_OT_transform(StartsDrag, bpy.types.Operator):
-    """Drag the selection; surfaces collide. Without surfaces, Blender's own transform runs"""
+    """Drag the selection; surfaces collide instead of intersecting"""
 
     bl_idname = "stiv.transform"
     bl_label = "Collision Transform"
