@@ -41,7 +41,7 @@ def guard_mirrored(window: Window) -> Steps:
     window.picture("guard_mirrored")
     yield from click_in_status_bar(window, lambda: watcher.problem() is None)
     assert xs() == before, xs()
-    assert steps() == [*named, "'Move'", f"'{BUTTON}'"], steps()
+    assert steps() == [*named, "'Move'", f"'{BUTTON}'"], (named, steps())
     expect_free(window)
     window.picture("guard_mirrored_taken_back")
     yield from window.undo()
