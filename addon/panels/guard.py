@@ -13,7 +13,13 @@ from ..intersection_texts import details
 from ..translations import translate
 from .base import SubPanel, draw_lines
 
-OPERATORS = {"stiv.check": "VIEWZOOM", "stiv.repair": "MODIFIER", "stiv.exclude_intersections": "GHOST_ENABLED"}
+OPERATORS = {
+    "stiv.check": "VIEWZOOM",
+    "stiv.repair": "MODIFIER",
+    "stiv.separate": "FULLSCREEN_ENTER",
+    "stiv.let_pass": "GHOST_DISABLED",
+    "stiv.exclude_intersections": "GHOST_ENABLED",
+}
 REVERT = {"stiv.guard_revert": "LOOP_BACK"}
 
 

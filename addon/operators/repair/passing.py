@@ -7,6 +7,7 @@ import bpy
 from bpy.props import IntProperty
 
 from ... import stiv_blender
+from ...guard import watcher
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
@@ -38,6 +39,7 @@ class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
             row = context.scene.stiv.passing_pairs.add()
             row.first, row.second = context.scene.objects[first], context.scene.objects[second]
         self.report({"INFO"}, passing_text(context.scene))
+        watcher.exclusions_changed(context)
         return {"FINISHED"}
 
 
@@ -57,6 +59,7 @@ class STIV_OT_let_pass_remove(NeedsNativeModule, bpy.types.Operator):
             self.report({"ERROR"}, translate("Pair {} does not exist: the list has {}").format(self.index, len(rows)))
             return {"CANCELLED"}
         rows.remove(self.index)
+        watcher.exclusions_changed(context)
         return {"FINISHED"}
 
 

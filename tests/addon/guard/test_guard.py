@@ -190,3 +190,15 @@ def test_a_cage_is_corrected_by_its_loop_subdivision() -> None:
     shown = [vertex.co.x for vertex in bpy.data.objects["Box.loop"].data.vertices]
     assert 1.8 < max(shown) < 2.0
     bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_pairs_that_pass_are_intersections_no_more() -> None:
+    bpy.ops.object.duplicate("EXEC_DEFAULT", True)
+    look()
+    assert watcher.state(bpy.context) == "intersecting"
+    bpy.ops.stiv.let_pass("EXEC_DEFAULT", True)
+    look()
+    assert watcher.state(bpy.context) == "guarded"
+    bpy.ops.stiv.let_pass_remove("EXEC_DEFAULT", True, index=0)
+    look()
+    assert watcher.state(bpy.context) == "intersecting"
