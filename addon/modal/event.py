@@ -9,7 +9,8 @@ POINTER_MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 SHIFT_KEYS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"})
 CTRL_KEYS = frozenset({"LEFT_CTRL", "RIGHT_CTRL"})
 WHEEL = frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "WHEELINMOUSE", "WHEELOUTMOUSE"})
-OTHER_NAVIGATION = frozenset({"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM"})
+AXIS_BUTTON = "MIDDLEMOUSE"
+OTHER_NAVIGATION = frozenset({"TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM"})
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,9 @@ class Event:
         mouse: position of the pointer in pixels of the region, y upwards.
         modifiers: subset of {"shift", "ctrl", "alt", "oskey"} held down.
         text: the character that the key types, empty if none.
+        pan: vertical motion of a trackpad, in pixels.
+        target: (3,) what the pointer snaps to, for the keys that use it; None without a target.
+        axis: index of the axis along which the pointer has moved in the view, for the button that uses it.
 
     """
 
@@ -30,6 +34,9 @@ class Event:
     mouse: tuple[float, float] = (0.0, 0.0)
     modifiers: frozenset[str] = frozenset()
     text: str = ""
+    pan: float = 0.0
+    target: tuple[float, float, float] | None = None
+    axis: int | None = None
 
     @property
     def pressed(self) -> bool:
@@ -43,5 +50,7 @@ class Event:
 
     @property
     def navigates(self) -> bool:
-        """Whether the event orbits, pans or zooms the view, and is left to Blender during a drag."""
+        """Whether the event orbits, pans or zooms the view; the middle button does with Alt."""
+        if self.type == AXIS_BUTTON:
+            return "alt" in self.modifiers
         return self.type in WHEEL or self.type in OTHER_NAVIGATION or self.type.startswith("NDOF_")

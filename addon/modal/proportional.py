@@ -6,9 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 FALLOFFS = ("SMOOTH", "SPHERE", "ROOT", "INVERSE_SQUARE", "SHARP", "LINEAR", "CONSTANT", "RANDOM")
-GROWTH = 1.1  # factor of the size for one notch of the wheel
-LARGER_KEYS = frozenset({"PAGE_UP", "WHEELDOWNMOUSE"})  # as in Blender's own transforms
-SMALLER_KEYS = frozenset({"PAGE_DOWN", "WHEELUPMOUSE"})
+GROWTH, FINE_GROWTH = 1.1, 1.01  # factors of the size for one notch of the wheel, and with Shift
+PAN_GROWTH = 0.005  # of the size for each pixel of a pan on a trackpad
+LARGER_KEYS = frozenset({"PAGE_UP", "WHEELDOWNMOUSE", "NUMPAD_PLUS"})  # as in Blender's own transforms
+SMALLER_KEYS = frozenset({"PAGE_DOWN", "WHEELUPMOUSE", "NUMPAD_MINUS"})
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,15 @@ class Proportional:
         """With the next falloff of the list."""
         return replace(self, falloff=FALLOFFS[(FALLOFFS.index(self.falloff) + 1) % len(FALLOFFS)])
 
-    def resized(self, key: str) -> Proportional:
+    def with_other_distances(self) -> Proportional:
+        """With distances along the edges instead of in space, or the other way round."""
+        return replace(self, connected=not self.connected)
+
+    def resized(self, key: str, *, fine: bool = False) -> Proportional:
         """With the size changed by one notch of the wheel or one press of a page key."""
-        return replace(self, size=self.size * (GROWTH if key in LARGER_KEYS else 1.0 / GROWTH))
+        growth = FINE_GROWTH if fine else GROWTH
+        return replace(self, size=self.size * (growth if key in LARGER_KEYS else 1.0 / growth))
+
+    def panned(self, pixels: float) -> Proportional:
+        """With the size changed by a pan on a trackpad."""
+        return replace(self, size=self.size * max(1.0 + PAN_GROWTH * pixels, 1.0 / GROWTH))

@@ -12,6 +12,8 @@ from .proportional import Proportional
 from .request import Request
 from .typed_numbers import TypedValues
 
+Point = tuple[float, float, float]
+
 
 class Phase(Enum):
     """The phase of a drag; the last two are final."""
@@ -29,6 +31,8 @@ class Effect(Enum):
     """The goal changed: solve and show."""
     PASS = "pass"
     """The event belongs to the view: leave it to Blender."""
+    NAVIGATE = "navigate"
+    """The event would turn, shift or zoom the view without Alt."""
     CONFIRM = "confirm"
     CANCEL = "cancel"
     STOP = "stop"
@@ -45,11 +49,16 @@ class State:
         axis_lock: the axes that the transform may use.
         typed: typed numbers.
         proportional: proportional editing.
-        snap: whether snapping is turned on; Ctrl inverts it.
+        snap: the kinds of transform that snap; Ctrl inverts it.
         ctrl: whether Ctrl is held.
         precise: whether Shift is held.
         release: the button whose release confirms, since it was held when the drag began; empty if none.
         phase: whether the drag continues.
+        picking_axis: "axis" or "plane" while the motion of the pointer chooses the lock; otherwise empty.
+        trackball: a rotation follows the pointer about both axes of the view.
+        snap_points: targets added to that under the pointer: the selection moves to their mean.
+        picking_base: whether the pointer picks the point of the selection that moves onto the target.
+        base: (3,) that point, None before it is picked.
 
     """
 
@@ -58,11 +67,16 @@ class State:
     axis_lock: AxisLock = field(default_factory=AxisLock)
     typed: TypedValues = field(default_factory=TypedValues)
     proportional: Proportional = field(default_factory=Proportional)
-    snap: bool = False
+    snap: frozenset[str] = frozenset()
     ctrl: bool = False
     precise: bool = False
     release: str = ""
     phase: Phase = Phase.DRAGGING
+    picking_axis: str = ""
+    trackball: bool = False
+    snap_points: tuple[Point, ...] = ()
+    picking_base: bool = False
+    base: Point | None = None
 
     @property
     def kind(self) -> str:
@@ -72,9 +86,11 @@ class State:
     @property
     def snapping(self) -> bool:
         """Whether the goal snaps."""
-        return self.snap != self.ctrl
+        return (self.kind in self.snap) != self.ctrl
 
     @property
     def components(self) -> int:
         """Number of values that can be typed."""
-        return 1 if self.kind == "rotate" else len(self.axis_lock.axes)
+        if self.kind == "rotate":
+            return 2 if self.trackball else 1
+        return len(self.axis_lock.axes)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import blf
 import bpy
 
-from ..modal.event import Event
+from ..modal.event import AXIS_BUTTON, WHEEL, Event
 from ..modal.header_texts import fitted, header_parts, progress_text
 from ..modal.key_hints import KeyHint, hints_that_fit, key_hints, stop_hints
 from ..modal.pointer import Pointer
@@ -21,23 +21,46 @@ from ..translations import translate
 MODIFIERS = ("shift", "ctrl", "alt", "oskey")
 ICON, GAP, MARGIN = 20, 20, 20  # pixels of an icon, after a hint, and beside a header's text, at scale 1
 WIDE = frozenset({"EVENT_ESC", "EVENT_CTRL", "EVENT_BACKSPACE"})  # icons that reach over their right edge
+NAVIGATION = WHEEL | {AXIS_BUTTON, "TRACKPADPAN"}
 
 
 def plain_event(event: bpy.types.Event, region: bpy.types.Region | None) -> Event:
     """An event with the pointer in pixels of the region in which the drag began."""
     corner = (region.x, region.y) if region is not None else (0, 0)
+    modifiers = frozenset(name for name in MODIFIERS if getattr(event, name))
+    if event.type in NAVIGATION and not _navigates_with_alt():
+        modifiers ^= {"alt"}
     return Event(
         type=event.type,
         value=event.value,
         mouse=(float(event.mouse_x - corner[0]), float(event.mouse_y - corner[1])),
-        modifiers=frozenset(name for name in MODIFIERS if getattr(event, name)),
+        modifiers=modifiers,
         text=event.unicode,
+        pan=float(event.mouse_y - event.mouse_prev_y) if event.type == "TRACKPADPAN" else 0.0,
     )
 
 
 def press_position(event: bpy.types.Event, region: bpy.types.Region) -> tuple[float, float]:
     """The pixel of the region where a button was last pressed, before it was dragged."""
     return float(event.mouse_prev_press_x - region.x), float(event.mouse_prev_press_y - region.y)
+
+
+def _navigates_with_alt() -> bool:
+    """Blender's keymap preference: during a transform, the middle button and the wheel navigate with Alt only."""
+    configuration = bpy.context.window_manager.keyconfigs.active
+    return bool(getattr(getattr(configuration, "preferences", None), "use_alt_navigation", True))
+
+
+def navigate(event: bpy.types.Event) -> None:
+    """Turn, shift or zoom the view as the event would without Alt."""
+    if event.type in WHEEL:
+        bpy.ops.view3d.zoom(delta=1 if event.type in ("WHEELUPMOUSE", "WHEELINMOUSE") else -1)
+    elif event.shift:
+        bpy.ops.view3d.move("INVOKE_DEFAULT")
+    elif event.ctrl:
+        bpy.ops.view3d.zoom("INVOKE_DEFAULT")
+    else:
+        bpy.ops.view3d.rotate("INVOKE_DEFAULT")
 
 
 def start_timer(context: bpy.types.Context, step: float) -> bpy.types.Timer:

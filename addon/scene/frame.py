@@ -57,13 +57,22 @@ def view_areas(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
 def selected_points(context: bpy.types.Context) -> Vector:
     """Origins of the selected objects, or the selected vertices or lattice points, (k, 3) in world space."""
     if context.mode == "OBJECT":
-        points = [np.array(obj.matrix_world.translation) for obj in context.selected_objects]
+        points = [np.array(obj.matrix_world.translation) for obj in moved_objects(context)]
     else:
-        points = [point for obj in context.objects_in_mode for point in _selected_elements(obj)]
+        points = [point for obj in context.objects_in_mode for point in selected_elements(obj)]
     return np.array(points, dtype=float).reshape(-1, 3)
 
 
-def _selected_elements(obj: bpy.types.Object) -> list[Vector]:
+def moved_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The selected objects, without those that follow a selected parent."""
+
+    def follows(parent: bpy.types.Object | None) -> bool:
+        return parent is not None and (parent.select_get() or follows(parent.parent))
+
+    return [obj for obj in context.selected_objects if not follows(obj.parent)]
+
+
+def selected_elements(obj: bpy.types.Object) -> list[Vector]:
     """Selected vertices or lattice points of an object in Edit Mode, in world space."""
     if obj.type == "MESH":
         positions = [vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
@@ -86,3 +95,9 @@ def active_point(context: bpy.types.Context) -> Vector | None:
     vertices = getattr(active, "verts", [active]) if active is not None else []
     positions = [np.array(obj.matrix_world @ vertex.co) for vertex in vertices]
     return np.asarray(np.mean(positions, axis=0)) if positions else None
+
+
+def selected_active_point(context: bpy.types.Context) -> Vector | None:
+    """The active point if it is selected; None otherwise."""
+    obj = context.active_object
+    return active_point(context) if obj is not None and (context.mode != "OBJECT" or obj.select_get()) else None

@@ -13,8 +13,10 @@ from ..modal.header_texts import Translate, entry_text, fixed_text
 from ..modal.state import State
 from ..modal.typed_numbers import Read
 from .frame import Frame, about
-from .snapping import Snap
+from .snapping import Snap, rotation_axis
 from .view import Vector
+
+TRACKBALL = 0.01  # radians for each pixel
 
 
 @dataclass(frozen=True)
@@ -58,11 +60,32 @@ def requested_rotation(state: State, frame: Frame, read: Read = read_degrees, sn
 
     `read` returns radians. ValueError for invalid text.
     """
-    toward = np.array([0.0, 0.0, 1.0]) if frame.view is None else frame.view.toward_viewer(frame.pivot)
-    locked = state.axis_lock.axis
-    axis = toward if locked is None else frame.axes_of(state.axis_lock)[:, locked]
+    if state.trackball:
+        return _trackball(state, frame, read, snap)
+    axis = rotation_axis(state, frame)
     if state.typed.active:
         return Rotation(state.typed.value(0, read) or 0.0, axis)
+    if state.picking_base:
+        return Rotation(0.0, axis)
     # An axis that points away from the viewer turns the other way.
-    angle = state.pointer.turn * (1.0 if axis @ toward >= 0.0 else -1.0)
-    return Rotation(snap.angle(angle, fine=state.precise) if snap is not None and snap.applies(state) else angle, axis)
+    faces_viewer = frame.view is None or axis @ frame.view.backward >= 0.0
+    angle = state.pointer.turn * (1.0 if faces_viewer else -1.0)
+    return Rotation(snap.angle(angle, axis, state, frame) if snap is not None and state.snapping else angle, axis)
+
+
+def _trackball(state: State, frame: Frame, read: Read, snap: Snap | None) -> Rotation:
+    """The rotation that follows the pointer like the surface of a ball: angles about both axes of the view."""
+    if state.typed.active:
+        angles = np.array([state.typed.value(i, read) or 0.0 for i in range(2)])
+    elif state.picking_base:
+        angles = np.zeros(2)
+    else:
+        right, up = np.subtract(state.pointer.effective, state.pointer.start)
+        angles = TRACKBALL * np.array([-up, right])
+    if snap is not None and state.snapping and not state.typed.active:
+        angles = np.array([snap.increment(angle, state) for angle in angles])
+    view = frame.view
+    axes = np.eye(3)[:2] if view is None else np.array([view.right, np.cross(view.backward, view.right)])
+    vector = angles @ axes
+    angle = float(np.linalg.norm(vector))
+    return Rotation(angle, vector / angle if angle > 0.0 else axes[0])

@@ -61,9 +61,9 @@ def requested_scaling(state: State, frame: Frame, read: Read = float, snap: Snap
     if state.typed.active:
         factors[free] = _typed(state, read)
     else:
-        factor = _dragged(state.pointer)
-        applies = snap is not None and snap.applies(state)
-        factors[free] = snap.factor(factor, fine=state.precise) if snap is not None and applies else factor
+        factor = 1.0 if state.picking_base else _dragged(state.pointer)
+        snaps = state.snapping and not state.picking_base
+        factors[free] = snap.factor(factor, state, frame) if snap is not None and snaps else factor
     return Scaling(factors, frame.axes_of(state.axis_lock))
 
 

@@ -10,17 +10,16 @@ import numpy as np
 
 from ..modal.axis_lock import AxisLock
 from ..modal.header_texts import Translate, entry_text, fixed_text
+from ..modal.pointer import Pointer
 from ..modal.state import State
 from ..modal.typed_numbers import Read
 from .frame import Frame
 from .snapping import Snap
 from .view import Vector, View
 
-GRAZING = np.sin(np.radians(5.0))  # below this angle to the view, an axis or plane cannot be pointed at
+NEARLY_ALIGNED = np.cos(np.radians(5.0))  # an axis at a smaller angle to the view cannot be pointed at
+EDGE_ON = 1e-3  # sine of the angle below which a plane cannot be pointed at
 HORIZON = 100.0  # a motion longer than this many motions in the view plane is beyond the horizon
-
-
-Ray = tuple[Vector, Vector]
 
 
 @dataclass(frozen=True)
@@ -64,9 +63,12 @@ def requested_translation(state: State, frame: Frame, read: Read = float, snap: 
         return Translation(_typed(state, frame, read))
     if frame.view is None:
         return Translation(np.zeros(3))
-    vector = _dragged(state, frame, frame.view)
-    if snap is not None and snap.applies(state):
-        vector = snap.translation(vector, state.pointer.last, frame, state.axis_lock, fine=state.precise)
+    if state.picking_base:
+        return Translation(np.zeros(3))
+    vector = _dragged(state.pointer, state.axis_lock, frame, frame.view)
+    if snap is not None and state.snapping:
+        from_pivot = Pointer.at(frame.view.project(frame.pivot) or state.pointer.last).moved(state.pointer.last)
+        vector = snap.translation(vector, _dragged(from_pivot, state.axis_lock, frame, frame.view), state, frame)
     return Translation(vector)
 
 
@@ -76,53 +78,47 @@ def _typed(state: State, frame: Frame, read: Read) -> Vector:
     return np.asarray(axes @ np.array(values))
 
 
-def _dragged(state: State, frame: Frame, view: View) -> Vector:
-    start, end = state.pointer.start, state.pointer.effective
+def _dragged(pointer: Pointer, axis_lock: AxisLock, frame: Frame, view: View) -> Vector:
+    """The motion of the pointer at the depth of the pivot; with a lock, where that takes the pivot on axis or plane."""
+    start, end = pointer.start, pointer.effective
     shift = view.at_depth_of(end, frame.pivot) - view.at_depth_of(start, frame.pivot)
-    if state.axis_lock.axis is None or not shift.any():
+    if axis_lock.axis is None or not shift.any():
         return shift
-    rays = view.ray(start, frame.pivot), view.ray(end, frame.pivot)
-    axis = frame.axes_of(state.axis_lock)[:, state.axis_lock.axis]
-    exact = _on_locked(state.axis_lock, axis, frame.pivot, rays)
-    if exact is not None and _before_horizon(exact, shift, view, frame.pivot):
+    axis = frame.axes_of(axis_lock)[:, axis_lock.axis]
+    if not axis_lock.plane and abs(axis @ view.backward) > NEARLY_ALIGNED:
+        return _by_height(shift, axis, view)
+    along = _in_plane if axis_lock.plane else _on_line
+    exact = along(shift, axis, frame.pivot, view)
+    if _before_horizon(exact, shift, view, frame.pivot):
         return exact
-    return _in_view_plane(state.axis_lock, axis, shift, view, frame.pivot)
+    flat = axis * (axis @ shift)
+    return shift - flat if axis_lock.plane else flat
 
 
-def _on_locked(axis_lock: AxisLock, axis: Vector, pivot: Vector, rays: tuple[Ray, Ray]) -> Vector | None:
-    """From the point of the first view ray on the locked plane or line to that of the second; None if grazing."""
-    intersect = _intersect_plane if axis_lock.plane else _closest_on_line
-    points = [intersect(pivot, axis, origin, direction) for origin, direction in rays]
-    return None if points[0] is None or points[1] is None else points[1] - points[0]
-
-
-def _intersect_plane(pivot: Vector, normal: Vector, origin: Vector, direction: Vector) -> Vector | None:
+def _in_plane(shift: Vector, normal: Vector, pivot: Vector, view: View) -> Vector:
+    """Along the view ray onto the plane; if that is seen from its edge, the part of the motion in the plane."""
+    if abs(normal @ view.toward_viewer(pivot)) < EDGE_ON:
+        return shift - normal * (normal @ shift)
+    direction = view.toward_viewer(pivot + shift)
     slope = direction @ normal
-    if abs(slope) < GRAZING:
-        return None
-    return origin + direction * ((pivot - origin) @ normal / slope)
+    return shift - direction * (shift @ normal / slope) if slope else shift
 
 
-def _closest_on_line(pivot: Vector, axis: Vector, origin: Vector, direction: Vector) -> Vector | None:
-    """The point of the line closest to the view ray."""
-    across = axis - direction * (axis @ direction)
-    if np.linalg.norm(across) < GRAZING:
-        return None
-    return pivot + axis * ((origin - pivot) @ across / (across @ across))
+def _on_line(shift: Vector, axis: Vector, pivot: Vector, view: View) -> Vector:
+    """Along the view ray onto the line."""
+    across = np.cross(view.toward_viewer(pivot), axis)
+    seen = shift - across * (across @ shift / (across @ across))
+    direction = view.toward_viewer(pivot + seen)
+    away = axis - direction * (axis @ direction)
+    return np.asarray(axis * (seen @ away / (axis @ away)))
+
+
+def _by_height(shift: Vector, axis: Vector, view: View) -> Vector:
+    """Along an axis in the line of sight: by the motion up and down, squared."""
+    up = 2.0 * (shift @ np.cross(view.backward, view.right))
+    return np.asarray(-axis * up * abs(up))
 
 
 def _before_horizon(exact: Vector, shift: Vector, view: View, pivot: Vector) -> bool:
     near = bool(np.linalg.norm(exact) <= HORIZON * np.linalg.norm(shift))
     return near and view.project(pivot + exact) is not None
-
-
-def _in_view_plane(axis_lock: AxisLock, axis: Vector, shift: Vector, view: View, pivot: Vector) -> Vector:
-    """For grazing angles: the component in the plane; along an axis, the pointer moving down approaches the viewer."""
-    if axis_lock.plane:
-        return shift - axis * (axis @ shift)
-    across = axis - (toward := view.toward_viewer(pivot)) * (axis @ toward)
-    if np.linalg.norm(across) >= GRAZING:
-        return axis * (shift @ across / (across @ across))
-    middle = view.size[0] / 2.0, view.size[1] / 2.0
-    up = view.at_depth_of((middle[0], middle[1] + 1.0), pivot) - view.at_depth_of(middle, pivot)
-    return axis * (shift @ up / np.linalg.norm(up)) * -np.sign(axis @ toward)

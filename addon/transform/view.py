@@ -49,6 +49,36 @@ class View:
         along = self.unproject(pixel, 1.0) - self.unproject(pixel, -1.0)
         return self.at_depth_of(pixel, reference), along / np.linalg.norm(along)
 
+    def segment(self, pixel: Pixel) -> tuple[Vector, Vector]:
+        """Where the view ray of a pixel starts, and its unit direction from the viewer."""
+        origin = self.unproject(pixel, -1.0)
+        along = self.unproject(pixel, 1.0) - origin
+        return origin, along / np.linalg.norm(along)
+
+    @property
+    def backward(self) -> Vector:
+        """Unit direction against which the view looks: the view's z axis."""
+        away = -self.projection[3, :3]  # zero in a parallel projection
+        if not away.any():
+            return -self.segment((self.size[0] / 2.0, self.size[1] / 2.0))[1]
+        return np.asarray(away / np.linalg.norm(away))
+
+    @property
+    def right(self) -> Vector:
+        """Unit direction to the right: the view's x axis."""
+        across = self.projection[0, :3] - self.backward * (self.projection[0, :3] @ self.backward)
+        return np.asarray(across / np.linalg.norm(across))
+
+    @property
+    def looks_along_axis(self) -> bool:
+        """Whether this is a parallel view along an axis of the world."""
+        return not self.projection[3, :3].any() and bool(np.abs(self.backward).max() > 1.0 - 1e-6)
+
+    def shows(self, point: Vector) -> bool:
+        """Whether a world position is between the near and the far end of the view."""
+        clip = self._clip(point)
+        return bool(abs(clip[2]) < clip[3])
+
     def toward_viewer(self, point: Vector) -> Vector:
         """Unit direction from a world position to the viewer."""
         pixel = self.project(point) or (self.size[0] / 2.0, self.size[1] / 2.0)

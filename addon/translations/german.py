@@ -390,7 +390,7 @@ MESSAGES = {
     "shape reached": "Form erreicht",
     "slide and turn": "gleiten und drehen",
     "snap": "einrasten",
-    "snapping to {} is not supported": "Einrasten an {} wird nicht unterstützt",
+    "aligning rotation to the snap target is not supported": "die Ausrichtung der Drehung am Snap-Ziel wird nicht unterstützt",
     "still solving": "rechnet noch",
     "stopped": "angehalten",
     "strand {}": "Strang {}",

@@ -390,7 +390,7 @@ MESSAGES = {
     "shape reached": "形に達しました",
     "slide and turn": "スライドと回転",
     "snap": "スナップ",
-    "snapping to {} is not supported": "{} へのスナップは使えません",
+    "aligning rotation to the snap target is not supported": "スナップ先への回転の整列には対応していません",
     "still solving": "計算中",
     "stopped": "停止しました",
     "strand {}": "ストランド {}",

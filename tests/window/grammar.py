@@ -115,7 +115,7 @@ def view_navigation(window: Window) -> Steps:
     assert view.view_distance < distance, "the wheel did not zoom"
     yield from window.glide(window.pixel((0.6, 0.4, 0.0)))
     expect_near(box_x(), 0.6, CLOSE, "the box under the mouse in the zoomed view")
-    window.event("MIDDLEMOUSE", "PRESS")
+    window.event("MIDDLEMOUSE", "PRESS", alt=True)
     yield
     before = view.view_rotation.copy()
     yield from window.glide((window.mouse[0] + 60, window.mouse[1] + 30), 4)

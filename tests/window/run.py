@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -128,6 +129,7 @@ def drive(folder: Path, chosen: argparse.Namespace, simulated: bool, scenarios: 
     command = [
         "env", "LIBGL_ALWAYS_SOFTWARE=1", f"STIV_WINDOW_SEQUENCES={chosen.sequences}",
         f"STIV_WINDOW_FIRST_SEQUENCE={chosen.first}",
+        *(f"{name}={value}" for name, value in os.environ.items() if name.startswith("STIV_WINDOW_")),
         "xvfb-run", "-a", "-s", f"-screen 0 {width}x{height}x24",
         *BLENDER, *(["--enable-event-simulate"] if simulated else []), "--window-geometry", "0", "0", width, height,
         "--python", f"{INSIDE}/source/tests/window/driver.py", "--", f"{INSIDE}/results", *scenarios,

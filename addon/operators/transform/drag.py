@@ -20,9 +20,17 @@ from ...modal.state import Effect, State
 from ...native_module import Mixin
 from ...overlay import display
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame
-from ...scene.tool_settings import read_proportional, read_snap, store_proportional, unsupported_settings
+from ...scene.tool_settings import (
+    read_proportional,
+    read_snap,
+    snapping_kinds,
+    store_proportional,
+    store_snap,
+    unsupported_settings,
+)
 from ...transform import Transform, requested_transform
 from ...transform.frame import Frame
+from ...transform.pointing import with_view
 from ...transform.view import Vector
 from ...translations import translate
 from ...units import length_text, readers
@@ -84,14 +92,14 @@ class DragOperator(Mixin):
         self._frame = read_frame(context)
         self._orientations = orientation_names(context)
         self._notes = unsupported_settings(context)
-        self._snap = read_snap(context, self._moving, lambda: self._frame.view)
+        self._snap = read_snap(context)
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
         held = window_io.press_position(event, context.region) if self.release else None
         mouse = held or window_io.plain_event(event, context.region).mouse
         pointer = Pointer.at(mouse, window_io.centre(self._frame))
         request = Request(self.kind, scene.stiv.responders, scene.stiv.interference, scene.stiv.object_response)
-        proportional, snap = read_proportional(context), scene.tool_settings.use_snap
+        proportional, snap = read_proportional(context), snapping_kinds(context)
         axis_lock = AxisLock(self.axis, self.plane) if self.axis >= 0 else AxisLock()
         state = State(pointer, request, axis_lock, proportional=proportional, snap=snap, release=self.release)
         self._launch(context, state, lambda request: begin_drag(context, request))
@@ -120,7 +128,7 @@ class DragOperator(Mixin):
 
     def _motion(self, transform: Transform, state: State) -> stiv_blender.Motion:
         influence, constraint = make_influence(state.proportional), constraint_of(state, self._frame)
-        return make_motion(transform, self._frame, influence, constraint)
+        return make_motion(transform, self._frame, influence, constraint, self._snap.place(state, self._frame))
 
     def _apply_values(
         self, context: bpy.types.Context, transform: Transform, state: State
@@ -138,7 +146,10 @@ class DragOperator(Mixin):
         if event.type == "TIMER":
             self._drag.tick()
             return Effect.NONE
-        effect = self._drag.handle(window_io.plain_event(event, context.region))
+        plain = window_io.plain_event(event, context.region)
+        effect = self._drag.handle(with_view(plain, self._drag.state, self._frame, self._snap))
+        if effect is Effect.NAVIGATE:
+            window_io.navigate(event)
         if event.type == "MOUSEMOVE":  # the latest motion: solve now, and redraw once
             self._drag.tick()
         return effect
@@ -150,9 +161,6 @@ class DragOperator(Mixin):
             pointer = window_io.pointer_in_new_view(self._drag.state.pointer, self._frame, frame)
             self._frame = frame
             self._drag.change_view(pointer)
-
-    def _moving(self) -> frozenset[str]:
-        return self._drag.edit.moving if self._drag.edit is not None else frozenset()
 
     def _show(self, context: bpy.types.Context) -> None:
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
@@ -219,6 +227,7 @@ class DragOperator(Mixin):
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             report_outcome(self, translate("stopped") if drag.stopped else outcome_text(result), write_failure(report))
         store_proportional(context, drag.state.proportional)
+        store_snap(context, drag.state)
         getattr(bpy.ops.stiv, drag.state.kind)("EXEC_DEFAULT", True, **values)
         return {"FINISHED"}
 

@@ -16,6 +16,7 @@ from ...scene.edit_settings import DRAG_BUDGET, edit_settings
 from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
+from ...transform.view import Vector
 from .. import last_edit, running
 from ..repair.passing import passing_text
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
@@ -148,12 +149,16 @@ def _reused(
 
 
 def make_motion(
-    transform: Transform, frame: Frame, influence: stiv_blender.Influence | None, constraint: Constraint
+    transform: Transform,
+    frame: Frame,
+    influence: stiv_blender.Influence | None,
+    constraint: Constraint,
+    place: Callable[[Vector, Vector], Vector] | None = None,
 ) -> stiv_blender.Motion:
-    """The motion that an edit takes for a transform in its frame."""
+    """The motion that an edit takes for a transform in its frame; `place` puts each point where it ends."""
     matrix = transform.matrix(frame)
     free = free_directions(transform, constraint)
-    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free)
+    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free, place)
 
 
 def apply_values(

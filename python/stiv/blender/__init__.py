@@ -38,8 +38,8 @@ from stiv.blender.repair.separation import SeparationReport, separate
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
-from stiv.blender.scene.ray_casting import first_hit
 from stiv.blender.scene.references import SceneChangedError
+from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
 from stiv.blender.scripts.enabling import enable
 from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
@@ -95,6 +95,8 @@ __all__ = [
     "SeparationReport",
     "SettleIntoContact",
     "SettleSettings",
+    "SnapMesh",
+    "SnapTarget",
     "Steps",
     "Task",
     "ToolCorrection",
@@ -116,7 +118,6 @@ __all__ = [
     "faces_of",
     "find_exclusions",
     "find_intersections",
-    "first_hit",
     "fit_into",
     "follow",
     "guard_result",
@@ -126,6 +127,7 @@ __all__ = [
     "object_pair",
     "place",
     "push_apart",
+    "read_snap_targets",
     "read_state",
     "read_surface",
     "refresh",

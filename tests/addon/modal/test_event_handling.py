@@ -13,7 +13,7 @@ from stiv_addon.modal.proportional import Proportional
 from stiv_addon.modal.request import RESPONSES, Request
 from stiv_addon.modal.state import Effect, Phase, State
 
-SHIFT = frozenset({"shift"})
+SHIFT, ALT = frozenset({"shift"}), frozenset({"alt"})
 ENDS = {Effect.CONFIRM: Phase.CONFIRMED, Effect.CANCEL: Phase.CANCELLED}
 
 
@@ -91,7 +91,8 @@ def test_other_events_change_nothing(key: str) -> None:
 @pytest.mark.parametrize(("key", "kind"), [("G", "move"), ("R", "rotate"), ("S", "scale")])
 def test_another_kind_keeps_lock_number_and_pointer(key: str, kind: str) -> None:
     before = after(Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)), Event("X"), Event("TWO"))
-    for state, _ in (step(replace(before, request=Request(other)), Event(key)) for other in ("move", "rotate")):
+    for other in {"move", "rotate", "scale"} - {kind}:
+        state, _ = step(replace(before, request=Request(other)), Event(key))
         assert state == replace(before, request=Request(kind))
 
 
@@ -117,7 +118,7 @@ def test_an_expression_can_be_confirmed_and_cancelled(key: str) -> None:
     assert step(after(Event("EQUAL", text="=")), Event(key))[0].phase is not Phase.DRAGGING
 
 
-@pytest.mark.parametrize("key", ["MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION", "TRACKPADPAN"])
+@pytest.mark.parametrize("key", ["MOUSEROTATE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION", "TRACKPADPAN"])
 @pytest.mark.parametrize("value", ["PRESS", "RELEASE", "NOTHING"])
 def test_the_view_is_left_to_blender(key: str, value: str) -> None:
     assert step(start(), Event(key, value)) == (start(), Effect.PASS)
@@ -128,8 +129,11 @@ def test_the_wheel_changes_the_size_of_proportional_editing() -> None:
     larger, effect = step(before, Event("WHEELDOWNMOUSE"))
     assert effect is Effect.UPDATE and larger.proportional.size > 2.0
     assert step(before, Event("PAGE_DOWN"))[0].proportional.size < 2.0
-    assert step(before, Event("WHEELDOWNMOUSE", modifiers=frozenset({"alt"}))) == (before, Effect.PASS)
-    assert step(before, Event("MIDDLEMOUSE")) == (before, Effect.PASS)
+    assert step(before, Event("WHEELDOWNMOUSE", modifiers=SHIFT))[0].proportional.size == pytest.approx(2.02)
+    assert step(before, Event("NUMPAD_PLUS", modifiers=ALT))[0].proportional.size == larger.proportional.size
+    assert step(before, Event("TRACKPADPAN", "NOTHING", pan=-10.0))[0].proportional.size == pytest.approx(1.9)
+    assert step(before, Event("C", modifiers=ALT))[0].proportional.connected
+    assert step(before, Event("WHEELDOWNMOUSE", modifiers=ALT)) == (before, Effect.NAVIGATE)
     assert not step(before, Event("O"))[0].proportional.on
     assert step(before, Event("O", modifiers=SHIFT))[0].proportional.falloff == "SPHERE"
     assert step(start(), Event("O")) == (start(), Effect.NONE)
@@ -144,6 +148,55 @@ def test_ctrl_and_shift_tab_invert_snapping() -> None:
     assert switched.snapping and effect is Effect.UPDATE
     assert step(switched, Event("LEFT_SHIFT"))[1] is Effect.UPDATE  # finer steps
     assert step(start(), Event("LEFT_SHIFT"))[1] is Effect.NONE
+
+
+def test_with_alt_the_middle_button_and_the_wheel_navigate() -> None:
+    for key in ("MIDDLEMOUSE", "WHEELUPMOUSE"):
+        assert step(start(), Event(key, modifiers=ALT)) == (start(), Effect.NAVIGATE)
+    assert step(start(), Event("MIDDLEMOUSE", "RELEASE", modifiers=ALT)) == (start(), Effect.PASS)
+
+
+@pytest.mark.parametrize(("modifiers", "plane"), [(frozenset(), False), (SHIFT, True)])
+def test_the_middle_button_picks_the_axis_that_the_pointer_follows(modifiers: frozenset, plane: bool) -> None:
+    held, effect = step(start(), Event("MIDDLEMOUSE", modifiers=modifiers, axis=0))
+    assert (held.axis_lock, effect) == (AxisLock(0, plane), Effect.UPDATE)
+    held, _ = step(held, Event("MOUSEMOVE", "NOTHING", axis=2))
+    assert held.axis_lock == AxisLock(2, plane)
+    released, _ = step(held, Event("MIDDLEMOUSE", "RELEASE"))
+    assert step(released, Event("MOUSEMOVE", "NOTHING", axis=1))[0].axis_lock == AxisLock(2, plane)
+    again, _ = step(released, Event("MIDDLEMOUSE", modifiers=modifiers, axis=1))
+    assert again.axis_lock == AxisLock() and step(again, Event("MIDDLEMOUSE", "RELEASE"))[0].axis_lock == AxisLock()
+    assert step(again, Event("X"))[0].axis_lock == AxisLock(0)
+    assert step(released, Event("C"))[0].axis_lock == AxisLock()
+
+
+def test_r_in_a_rotation_switches_the_trackball() -> None:
+    ball = after(Event("R"), Event("R"))
+    assert ball.trackball and ball.components == 2
+    assert not step(ball, Event("R"))[0].trackball
+    assert not step(ball, Event("G"))[0].trackball
+
+
+def test_snap_points_are_added_and_removed() -> None:
+    assert step(start(), Event("A")) == (start(), Effect.NONE)
+    first, effect = step(start(), Event("A", target=(1.0, 0.0, 0.0)))
+    both, _ = step(first, Event("A", target=(0.0, 2.0, 0.0)))
+    assert both.snap_points == ((1.0, 0.0, 0.0), (0.0, 2.0, 0.0)) and effect is Effect.UPDATE
+    assert step(both, Event("A", modifiers=ALT))[0] == first
+
+
+@pytest.mark.parametrize("key", sorted(CONFIRM_KEYS | {"B"}))
+def test_the_snap_base_is_picked_before_the_drag_continues(key: str) -> None:
+    picking = after(Event("MOUSEMOVE", "NOTHING", (130.0, 90.0)), Event("B"))
+    assert picking.picking_base and picking.snapping
+    assert step(picking, Event(key)) == (picking, Effect.NONE)  # nothing under the pointer
+    assert step(picking, Event("X")) == (picking, Effect.NONE)
+    marked, _ = step(picking, Event("A", target=(2.0, 0.0, 0.0)))
+    picked, effect = step(marked, Event(key, target=(0.0, 4.0, 0.0)))
+    assert (picked.base, picked.picking_base, picked.snap_points, effect) == ((1.0, 2.0, 0.0), False, (), Effect.UPDATE)
+    assert picked.pointer.start == picked.pointer.effective == (130.0, 90.0) and picked.phase is Phase.DRAGGING
+    assert step(picked, Event("LEFTMOUSE"))[1] is Effect.CONFIRM
+    assert step(picking, Event("ESC"))[1] is Effect.CANCEL
 
 
 def test_keys_change_the_responders_and_collisions() -> None:

@@ -75,7 +75,8 @@ def test_numbers_have_a_fixed_number_of_digits_and_no_rounding_noise(value: floa
 
 def test_the_header_names_modes_that_differ_from_the_defaults() -> None:
     proportional = Proportional(available=True, on=True, size=1.5, falloff="INVERSE_SQUARE", connected=True)
-    state = replace(PLAIN, request=Request("move", "all"), precise=True, snap=True, proportional=proportional)
+    state = replace(PLAIN, request=Request("move", "all"), precise=True, snap=frozenset({"move"}))
+    state = replace(state, proportional=proportional)
     assert header_parts(state, "D", "clear", ["a note"]) == [
         "D Proportional Size: 1.50, Inverse Square, connected", "clear", "precision, snap, yields: both", "a note",
     ]  # fmt: skip

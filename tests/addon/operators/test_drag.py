@@ -21,6 +21,7 @@ from stiv_addon.operators.transform import drag  # noqa: E402
 from stiv_addon.operators.transform.drag import DragOperator  # noqa: E402
 from stiv_addon.operators.transform.move import STIV_OT_move  # noqa: E402
 from stiv_addon.transform.frame import Frame  # noqa: E402
+from stiv_addon.transform.snapping import Snap  # noqa: E402
 
 UNEXPECTED = "Unexpected error, the edit is undone; the system console has the details"
 
@@ -60,7 +61,7 @@ class Probe(DragOperator):
 
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
-        self._frame, self._snap, self._readers, self._length = Frame(np.zeros(3)), None, {}, str
+        self._frame, self._snap, self._readers, self._length = Frame(np.zeros(3)), Snap(), {}, str
         self._orientations, self._notes = ("GLOBAL", "LOCAL"), []
 
     def report(self, kind: set, text: str) -> None:
@@ -185,7 +186,7 @@ def test_a_failure_to_restore_is_reported(started: Any, edit: FakeEdit) -> None:
 
 def test_navigation_is_left_to_blender(started: Any) -> None:
     operator, context = started
-    assert operator.modal(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
+    assert operator.modal(context, event("NDOF_MOTION")) == {"PASS_THROUGH"}
     assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Motions of the selection: a transform, its pivot, and the influence of proportional editing."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -61,6 +62,8 @@ class Motion:
         influence: proportional editing; None for none.
         rotation: (3,) rotation vector of the matrix if it exceeds half a turn; otherwise None.
         free: directions in which an axis lock lets points and objects move; None without one.
+        place: where points end, (k, 3), from where they start and where the matrix takes them, (k, 3) each; for
+            instance on faces. Objects follow their origins. None: where the matrix takes them.
     """
 
     matrix: Floats
@@ -69,6 +72,7 @@ class Motion:
     influence: Influence | None = None
     rotation: Floats | None = None
     free: FreeDirections | None = None
+    place: Callable[[Floats, Floats], Floats] | None = None
 
     @staticmethod
     def of(max_weights: "Motion | ArrayLike") -> "Motion":
@@ -116,12 +120,16 @@ class Motion:
 
     def whole(self, points: Floats) -> Floats:
         """Transform points, (k, 3)."""
-        return transform_points(self.matrix, points)
+        return self.placed(points, transform_points(self.matrix, points))
+
+    def placed(self, points: Floats, moved: Floats) -> Floats:
+        """Where points end that the matrix takes from `points` to `moved`, (k, 3) each."""
+        return moved if self.place is None else self.place(points, moved)
 
     def about(self, points: Floats, origins: Floats) -> Floats:
         """Transform points, (k, 3), each about its own origin, (k, 3) or (3,)."""
         moved: Floats = origins + (points - origins) @ self.linear.T + self.shift
-        return moved
+        return self.placed(points, moved)
 
     def shared(self, points: Floats, shares: NDArray[Any]) -> Floats:
         """Transform points, (k, 3), each by a fraction, (k,): rotations by that fraction of the angle."""
@@ -131,8 +139,7 @@ class Motion:
             moved = _turned(arms, vector, shares)
         else:
             moved = arms + shares[:, None] * (arms @ self.linear.T - arms)
-        result: Floats = self.pivot + moved + shares[:, None] * self.shift
-        return result
+        return self.placed(points, self.pivot + moved + shares[:, None] * self.shift)
 
 
 def _turned(arms: Floats, vector: Floats, shares: NDArray[Any]) -> Floats:

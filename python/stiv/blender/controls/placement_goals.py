@@ -48,7 +48,10 @@ class PlacementGoal:
         """Goal of centre and second row, (2, 3)."""
         if not self.selected:
             return controls
-        centre = motion.about(controls[0], self.origin) if motion.individual else motion.whole(controls[:1])[0]
+        # Where the origin is placed, the centre follows.
+        points, moved = np.stack([controls[0], self.origin]), replace(motion, place=None)
+        centre, origin = moved.about(points, self.origin) if motion.individual else moved.whole(points)
+        centre = centre + motion.placed(points[1:], origin[None])[0] - origin
         for free in (self.free, motion.free):
             centre = centre if free is None else controls[0] + free.along(centre - controls[0])
         return np.array([centre, self.second_goal(controls, last, motion)])
