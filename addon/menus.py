@@ -5,12 +5,32 @@ from __future__ import annotations
 
 import bpy
 
-from .operators import LAYOUT_ICONS, TRANSFORMS
+from .operators import LAYOUT_ICONS, RESHAPING, TRANSFORMS
 from .operators.check.check import STIV_OT_check
+from .operators.check.measure import STIV_OT_measure
+from .operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
+from .operators.repair.guard_revert import STIV_OT_guard_revert
 from .operators.repair.repair import STIV_OT_repair
 
 # Object > Transform; Mesh > Transform and Lattice > Transform are one menu.
 MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
+# Blender's search (F3) finds an operator only through a menu.
+TOOL_MENUS = (
+    "VIEW3D_MT_object",
+    "VIEW3D_MT_object_context_menu",
+    "VIEW3D_MT_edit_mesh",
+    "VIEW3D_MT_edit_mesh_context_menu",
+    "VIEW3D_MT_edit_lattice",
+)
+TOOLS = (
+    *TRANSFORMS,
+    STIV_OT_check,
+    STIV_OT_measure,
+    *RESHAPING,
+    STIV_OT_exclude_intersections,
+    STIV_OT_clear_exclusions,
+    STIV_OT_guard_revert,
+)
 
 
 def draw(self: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -26,8 +46,16 @@ def draw_layout(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     self.layout.menu(STIV_MT_layout.bl_idname)
 
 
+def draw_tools(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Append the menu of all tools."""
+    self.layout.separator()
+    self.layout.menu(STIV_MT_tools.bl_idname)
+
+
 def register() -> None:
     """Add the entries."""
+    for name in TOOL_MENUS:
+        getattr(bpy.types, name).append(draw_tools)
     bpy.types.VIEW3D_MT_object.append(draw_layout)
     for name in MENUS:
         getattr(bpy.types, name).append(draw)
@@ -35,6 +63,8 @@ def register() -> None:
 
 def unregister() -> None:
     """Remove the entries."""
+    for name in TOOL_MENUS:
+        getattr(bpy.types, name).remove(draw_tools)
     bpy.types.VIEW3D_MT_object.remove(draw_layout)
     for name in MENUS:
         getattr(bpy.types, name).remove(draw)
@@ -58,6 +88,18 @@ class STIV_MT_pie(bpy.types.Menu):
         pie.operator(STIV_OT_repair.bl_idname)
 
 
+class STIV_MT_tools(bpy.types.Menu):
+    """Collision transforms, checks and repair"""
+
+    bl_idname = "STIV_MT_tools"
+    bl_label = "Collision Tools"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """An entry for each operator."""
+        for operator in TOOLS:
+            self.layout.operator(operator.bl_idname)
+
+
 class STIV_MT_layout(bpy.types.Menu):
     """Drop, settle, place, part and pack objects without collisions"""
 
@@ -70,4 +112,4 @@ class STIV_MT_layout(bpy.types.Menu):
             self.layout.operator(operator.bl_idname, icon=icon)
 
 
-CLASSES = (STIV_MT_pie, STIV_MT_layout)
+CLASSES = (STIV_MT_pie, STIV_MT_tools, STIV_MT_layout)

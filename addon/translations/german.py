@@ -62,6 +62,7 @@ MESSAGES = {
     "Collision Settle": "Kollision: Setzen lassen",
     "Collision Tools": "Kollisionswerkzeuge",
     "Collision Transform": "Transformieren mit Kollision",
+    "Collision transforms, checks and repair": "Kollisionstransformationen, Prüfungen und Reparatur",
     "Collision transforms, checks and switches": "Transformieren mit Kollision, Prüfungen und Schalter",
     "Collisions": "Kollisionen",
     "Confirm": "Bestätigen",

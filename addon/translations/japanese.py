@@ -62,6 +62,7 @@ MESSAGES = {
     "Collision Settle": "コリジョンを落ち着かせる",
     "Collision Tools": "衝突判定ツール",
     "Collision Transform": "衝突判定付きトランスフォーム",
+    "Collision transforms, checks and repair": "衝突を考慮した変形、チェック、修復",
     "Collision transforms, checks and switches": "衝突判定付きトランスフォーム、チェック、スイッチ",
     "Collisions": "衝突判定",
     "Confirm": "確定",

@@ -45,6 +45,16 @@ def test_the_pie_has_its_eight_places_filled() -> None:
     assert layout.put[:4] == ["stiv.move", "stiv.rotate", "stiv.scale", "stiv.check"]
 
 
+def test_the_search_finds_every_tool_by_collision() -> None:
+    """Blender's search (F3) walks the menus of a mode."""
+    layout = Layout()
+    menus.STIV_MT_tools.draw(SimpleNamespace(layout=layout), bpy.context)
+    labels = [getattr(bpy.ops.stiv, name.partition(".")[2]).get_rna_type().name for name in layout.put]
+    assert len(labels) >= 10 and all("Collision" in label for label in labels), labels
+    for name in menus.TOOL_MENUS:
+        assert menus.draw_tools in getattr(bpy.types, name)._dyn_ui_initialize()
+
+
 def test_every_key_belongs_to_the_extension_and_none_stays() -> None:
     assert len(our_keys()) == len(keymap.KEYMAPS) * (len(keymap.KEYS) + 1)
     stiv_addon.unregister()
