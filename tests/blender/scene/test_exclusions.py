@@ -121,3 +121,19 @@ def test_loose_elements_cannot_be_excluded() -> None:
 def test_unreadable_exclusions_name_the_way_out(text: str) -> None:
     with pytest.raises(stiv.InputError, match="use Clear Excluded Collisions"):
         Exclusions.from_json(text)
+
+
+def test_a_value_that_only_goes_deeper_costs_the_same_however_far_it_is() -> None:
+    add_cube("Rest", (0, 0, 0))
+    cube = add_cube("Cube", (1.7, 0.1, 0.2))
+    select(cube)
+    settings = EditSettings(excluded=excluded_now())
+    tries = []
+    for way in (-2.0, -200.0):
+        edit = BlenderEdit.begin(bpy.context, settings, "move")
+        result = edit.apply(shift(x=way))
+        assert result.status == "blocked"
+        assert edit.write().passed
+        tries.append(result.counters["acceptance_tries"])
+        edit.restore()
+    assert tries[0] == tries[1] > 0

@@ -280,6 +280,9 @@ class BlenderEdit:
             results.append((yield from self.drag_steps(increment)))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
+            if _only_goes_deeper(results[-1]):
+                self._goal = self._goal_of(self._motion_of(motion))
+                return merge_results(results)
         return merge_results([*results, (yield from self.settle_steps())])
 
     def settle(self, **execution: Any) -> stiv.EditResult:
@@ -341,3 +344,8 @@ class BlenderEdit:
                 for control_set, old in zip(self.control_sets, last, strict=True)
             ]
         )
+
+
+def _only_goes_deeper(result: stiv.EditResult) -> bool:
+    """Did nothing move because overlapping objects would overlap more? Then each further increment would fail alike."""
+    return result.status == "blocked" and len(result.events) == 0 and len(result.path) == 0
