@@ -26,7 +26,7 @@ FIRST_FRACTIONS = (1 / 16, 1 / 64, 1 / 256)  # of an extrusion, from which its c
 
 
 def find_originals(accepted: AcceptedScene, present: SceneState, new: Collection[int]) -> dict[int, int]:
-    """The object of which each new one is a copy, by session number; objects that are no copies are left out.
+    """The object of which each new one is a copy, by session number; all other objects are left out.
 
     Of several, it is one that was selected, and the nearest.
     """
@@ -106,7 +106,7 @@ def correct_extrusion(
     accepted: AcceptedScene,
     reference: ObjectReference,
 ) -> ToolCorrection | None:
-    """Pull an extrusion out again up to where it is blocked; None if the new vertices are no extrusion.
+    """Pull an extrusion out again up to where it is blocked; None if the new vertices were not extruded.
 
     Raises InputError and SceneChangedError, with nothing changed.
     """
