@@ -10,10 +10,10 @@ ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs/user_guide.md").read_text(encoding="utf-8")
 BLENDERS = {
     "Add-ons", "Adjust Last Operation", "Affect Only", "Align Rotation to Target", "Alt Navigation", "Closest",
-    "Cursor", "Edge", "Edge Center", "Face", "Gimbal", "Grid", "Increment", "Individual Origins", "Is Viewport",
-    "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh", "Normal", "Object", "Object Gizmos",
-    "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To", "Transform", "Transform Modal Map", "Undo",
-    "Vertex", "View",
+    "Cursor", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
+    "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
+    "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
+    "Transform", "Transform Modal Map", "Undo", "Vertex", "View",
 }  # fmt: skip
 
 

@@ -238,8 +238,8 @@ def choose(scene: Any, rng: random.Random, case: Case) -> None:
     tools.transform_pivot_point = rng.choice(("MEDIAN_POINT", "MEDIAN_POINT", "ACTIVE_ELEMENT", "CURSOR"))
     scene.cursor.location = [rng.uniform(-1, 1) for _ in range(3)]
     scene.transform_orientation_slots[0].type = rng.choice(("GLOBAL", "GLOBAL", "LOCAL"))
-    if case.kind == "scale" and case.mode == "OBJECT":
-        case.lock = ""  # an object is scaled along its own axes
+    if (case.kind == "scale" and case.mode == "OBJECT") or case.elements & {"FACE_PROJECT", "FACE_NEAREST"}:
+        case.lock = ""  # an object is scaled along its own axes; faces of its own would take it off the axis
     if len(bpy.context.selected_objects) > 1 and case.lock in ("XX", "ZZ", "shift ZZ"):
         case.lock = case.lock[:-1]  # several objects each along their own axes
     if len(bpy.context.selected_objects) > 1:
