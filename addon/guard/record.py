@@ -62,7 +62,7 @@ class Record:
         return bool(added)
 
     def uncorrected_of(self, outcome: Outcome) -> Problem | None:
-        """What is left of uncorrected results in an outcome; None if nothing is."""
+        """The rest of uncorrected results in an outcome; None if nothing is."""
         if outcome.failed:
             return Problem(reason=outcome.reason)
         left = tuple(pair for pair in outcome.pairs if stiv_blender.object_pair(pair) in self.uncorrected)

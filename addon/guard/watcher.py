@@ -68,7 +68,7 @@ def last_clear_state() -> tuple[stiv_blender.SceneState, int] | None:
 
 
 def uncorrected_of(outcome: correction.Outcome) -> Problem | None:
-    """What is left of uncorrected results in the outcome of a test; None if nothing is."""
+    """The rest of uncorrected results in the outcome of a test; None if nothing is."""
     return _watch.record.uncorrected_of(outcome)
 
 
@@ -172,7 +172,7 @@ def _test_and_correct(context: bpy.types.Context, record: Record, action: Action
 
 
 def _first_text(first: bool) -> str:
-    """What the guard leaves alone, when it is turned on."""
+    """A message about the known intersections, when the guard is turned on."""
     found = problem()
     if not first or found is None or not found.known:
         return ""
