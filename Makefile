@@ -12,7 +12,7 @@ WHEEL := build/wheel/ready
 EXTENSION := build/extension
 ZIP_VENV := build/venv-blender-$(firstword $(BLENDERS))
 EXTENSION_TOOLS := tools/build_extension.py tools/build_guide.py addon/blender_manifest.toml \
-	$(wildcard docs/user_guide.md docs/images/*)
+	$(wildcard docs/user_guide.md docs/images/* docs/films/* blend_fixtures/examples/*)
 FUZZ_SECONDS := 30
 WINDOW_RELEASE := trixie
 WINDOW_SEQUENCES := 200

@@ -5,7 +5,19 @@ import sys
 
 import bpy
 
-from . import header, keymap, loop_updates, manual, menus, operators, panels, preferences, properties, translations
+from . import (
+    getting_started,
+    header,
+    keymap,
+    loop_updates,
+    manual,
+    menus,
+    operators,
+    panels,
+    preferences,
+    properties,
+    translations,
+)
 from .guard import watcher
 from .operators import running
 from .operators.transform import drag_results
@@ -16,6 +28,7 @@ CLASSES = (
     *properties.CLASSES,
     *display.CLASSES,
     *operators.CLASSES,
+    *getting_started.CLASSES,
     *panels.CLASSES,
     *menus.CLASSES,
     *preferences.CLASSES,
@@ -50,6 +63,7 @@ def unregister() -> None:
     watcher.unregister()
     loop_updates.unregister()
     manual.unregister()
+    getting_started.examples.unregister()
     keymap.unregister()
     menus.unregister()
     translations.unregister()

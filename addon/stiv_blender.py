@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from stiv import EditResult as EditResult
     from stiv import InputError as InputError
     from stiv import LeastDistance as LeastDistance
+    from stiv import self_test as self_test
     from stiv.blender import *  # noqa: F403
     from stiv.checks.findings import untested_text as untested_text
 

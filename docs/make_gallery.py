@@ -23,8 +23,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import bpy  # noqa: E402
-from films import Film, films  # noqa: E402
 from PIL import Image  # noqa: E402
+from session_films import Film, films  # noqa: E402
 
 import stiv  # noqa: E402
 from blend_fixtures.blender_objects import build_scene  # noqa: E402

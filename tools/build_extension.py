@@ -14,6 +14,7 @@ import build_guide
 
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
+EXAMPLES = ROOT / "blend_fixtures" / "examples"
 EMPTY_WHEELS = "wheels = []\n"
 NO_VERSION = 'version = "0.0.0"\n'
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
@@ -49,6 +50,8 @@ def contents(wheels: list[Path]) -> dict[str, bytes]:
         files[f"licenses/{text.name}"] = text.read_bytes()
     for name, data in build_guide.files().items():
         files[f"guide/{name}"] = data
+    for example in EXAMPLES.iterdir():
+        files[f"examples/{example.name}"] = example.read_bytes()
     for wheel in wheels:
         files[f"wheels/{wheel.name}"] = wheel.read_bytes()
     return files

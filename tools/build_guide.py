@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The user guide as a web page that needs only its pictures."""
+"""The user guide as a web page that needs only its pictures and films."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ DOCS = Path(__file__).resolve().parent.parent / "docs"
 STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 52em; margin: 2em auto; padding: 0 1em; color: #222; background: #fff }
 table { border-collapse: collapse } th, td { border: 1px solid #ccc; padding: .3em .6em; text-align: left }
-img { max-width: 100% } code { background: #f2f2f2; padding: 0 .2em } a[id] { scroll-margin-top: 1em }
+img, video { max-width: 100% } code { background: #f2f2f2; padding: 0 .2em } a[id] { scroll-margin-top: 1em }
 @media (prefers-color-scheme: dark) {
   body { color: #ddd; background: #1e1e1e } th, td { border-color: #555 } code { background: #333 }
 }
@@ -28,9 +28,9 @@ def page(name: str = "user_guide") -> str:
 
 
 def files() -> dict[str, bytes]:
-    """The page and its pictures by name."""
+    """The page with its pictures and films by name."""
     text = page()
-    pictures = sorted(set(re.findall(r'src="(images/[^"]+)"', text)))
+    pictures = sorted(set(re.findall(r'src="((?:images|films)/[^"]+)"', text)))
     return {"user_guide.html": text.encode()} | {name: (DOCS / name).read_bytes() for name in pictures}
 
 

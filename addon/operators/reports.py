@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import traceback
+from collections import deque
 
 import bpy
 
@@ -13,6 +14,14 @@ from ..modal.drag_loop import DragEnded, restore_after_error
 from ..modal.header_texts import result_text
 from ..translations import translate
 from ..units import length_text
+
+last_messages: deque[str] = deque(maxlen=10)  # for the report that a user copies into an issue
+
+
+def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
+    """Report a message of a kind ("INFO", "WARNING", "ERROR"), and remember it."""
+    last_messages.append(f"{operator.bl_idname}: {kind}: {text}")
+    operator.report({kind}, text)
 
 
 def outcome_text(result: stiv_blender.EditResult) -> str:
@@ -28,9 +37,9 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str) -> None:
     """Report the outcome of an edit, or the failure to write it."""
     if failure:
-        operator.report({"WARNING"}, failure)
+        say(operator, "WARNING", failure)
     elif outcome:
-        operator.report({"INFO"}, outcome)
+        say(operator, "INFO", outcome)
 
 
 def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blender.Edit | None = None) -> set[str]:
@@ -48,7 +57,7 @@ def _report_with_details(operator: bpy.types.Operator, text: str, short: str = "
     panel = getattr(bpy.context.window_manager, "stiv_check", None)  # None once the extension is disabled
     if panel is not None and len(text) > LENGTH:
         panel.summary = text
-    operator.report({"ERROR"}, text if bpy.app.background else short or brief(text))
+    say(operator, "ERROR", text if bpy.app.background else short or brief(text))
 
 
 def error_text(error: Exception) -> str:

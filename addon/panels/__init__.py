@@ -3,6 +3,7 @@
 
 from .check import STIV_PT_check, STIV_PT_overlay, STIV_PT_repair
 from .edit import STIV_PT_edit
+from .getting_started import STIV_PT_getting_started
 from .guard import STIV_PT_guard, STIV_PT_guard_state
 from .layout import STIV_PT_layout
 from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
@@ -19,4 +20,5 @@ CLASSES = (
     STIV_PT_check,
     STIV_PT_repair,
     STIV_PT_overlay,
+    STIV_PT_getting_started,
 )

@@ -10,9 +10,14 @@ from __future__ import annotations
 
 import bpy
 
-from . import german, japanese
+from . import chinese, german, japanese, korean
 
-CATALOGUES = {"de_DE": german.MESSAGES, "ja_JP": japanese.MESSAGES}
+CATALOGUES = {
+    "de_DE": german.MESSAGES,
+    "ja_JP": japanese.MESSAGES,
+    "ko_KR": korean.MESSAGES,
+    "zh_HANS": chinese.MESSAGES,
+}
 CONTEXTS = ("*", "Operator")  # Blender looks up labels of buttons in the second, other texts in the first
 
 

@@ -33,6 +33,7 @@ from stiv.job import CancelledError, Job, JobProgress
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.paper_preset import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair, start_repair
+from stiv.self_test import SelfTest, self_test
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
 from stiv.weights import Weights
@@ -59,6 +60,7 @@ __all__ = [
     "LeastDistance",
     "RepairOptions",
     "RepairResult",
+    "SelfTest",
     "StartIntersectsError",
     "StepCheck",
     "StorageFrame",
@@ -92,6 +94,7 @@ __all__ = [
     "rigid_rest_controls",
     "scaling",
     "scaling_rest_controls",
+    "self_test",
     "start_contract",
     "start_contraction_step",
     "start_expand",

@@ -16,7 +16,7 @@ from stiv_addon.registration import CLASSES  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
-SAME_IN_GERMAN = {"Global", "Rest", "Threads", "Vertices"}
+SAME_IN_GERMAN = {"Animation", "Global", "Layout", "Rest", "Threads", "Vertices"}
 
 
 @pytest.fixture

@@ -30,6 +30,7 @@ class Driver:
         from disturbed_drags import DISTURBED_DRAGS
         from drags import DRAGS
         from finishing import FINISHING
+        from getting_started import GETTING_STARTED
         from grammar import GRAMMAR
         from guard_edit_mode import GUARD_EDIT_MODE
         from guard_new_geometry import GUARD_NEW_GEOMETRY
@@ -61,6 +62,7 @@ class Driver:
         drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | SNAPPING_BESIDE_BLENDER | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES
+        usual |= GETTING_STARTED
         chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"
