@@ -18,7 +18,7 @@ MANIFEST = Path(__file__).resolve().parents[1] / "blender_manifest.toml"
 
 
 class STIV_OT_copy_report(bpy.types.Operator):
-    """Copy versions, settings, last messages and the result of a self-test to the clipboard"""
+    """Copy versions, settings, last messages and a self-test to the clipboard"""
 
     bl_idname = "stiv.copy_report"
     bl_label = "Copy Report"
