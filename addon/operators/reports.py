@@ -20,7 +20,7 @@ last_messages: deque[str] = deque(maxlen=10)  # for the report that a user copie
 
 def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
     """Report a message of a kind ("INFO", "WARNING", "ERROR"), and remember it."""
-    last_messages.append(f"{operator.bl_idname}: {kind}: {text}")
+    last_messages.append(f"{type(operator).__name__}: {kind}: {text}")
     operator.report({kind}, text)
 
 

@@ -9,6 +9,7 @@ from .layout import STIV_PT_layout
 from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
 
 CLASSES = (
+    STIV_PT_getting_started,
     STIV_PT_edit,
     STIV_PT_guard,
     STIV_PT_layout,
@@ -20,5 +21,4 @@ CLASSES = (
     STIV_PT_check,
     STIV_PT_repair,
     STIV_PT_overlay,
-    STIV_PT_getting_started,
 )

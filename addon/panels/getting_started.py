@@ -18,7 +18,6 @@ class STIV_PT_getting_started(SidebarPanel, bpy.types.Panel):
 
     bl_idname = "STIV_PT_getting_started"
     bl_label = "Getting Started"
-    bl_order = 1  # below the tools
 
     def draw(self, context: bpy.types.Context) -> None:
         """Steps of the open example, the examples, then buttons."""

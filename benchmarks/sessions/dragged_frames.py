@@ -17,11 +17,12 @@ import bpy
 
 import stiv
 from benchmarks.sessions.frame_times import goal_matrix, name_of
-from stiv.blender.edit.culled_edit import begin_culled_edit
+from stiv.blender.edit.culled_edit import begin_culled_steps
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scripts.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings
 from stiv.edit_scripts import TRANSFORMS, EditScript, EditStep
+from stiv.task import Steps
 
 SPEED = 24.0  # repetitions a second: each would be a frame of its own in a film
 TICK = 1.0 / 60.0  # seconds, of the add-on's timer
@@ -44,6 +45,10 @@ class Drag(Protocol):
         """The error that ended the drag."""
 
     @property
+    def starting(self) -> bool:
+        """Whether the edit has not begun yet."""
+
+    @property
     def at_rest(self) -> bool:
         """Whether nothing is left to solve."""
 
@@ -54,7 +59,7 @@ class Drag(Protocol):
         """A timer event."""
 
     def confirm(self) -> None:
-        """Enter."""
+        """Enter, until the drag has ended."""
 
 
 NewDrag = Callable[[str, Callable[[], Any], Callable[[float], Floats]], Drag]
@@ -109,8 +114,8 @@ def dragged_stages(
 ) -> list[DraggedStage]:
     """Drags a script in the open scene. Steps that reshape run in between, without timing.
 
-    settings_of: returns the add-on's settings of a scene. new_drag: makes the add-on's drag from a kind, a
-    function that begins an edit of the scene, and the goal for a position of the mouse. Raises InputError.
+    settings_of: returns the add-on's settings of a scene. new_drag: makes the add-on's drag from a kind, the
+    steps that begin an edit of the scene, and the goal for a position of the mouse. Raises InputError.
     """
     stages = []
     for number, step in enumerate(script.steps):
@@ -138,6 +143,8 @@ class _Dragging:
     def stage(self) -> DraggedStage:
         begun = time.perf_counter()
         drag = self.new_drag(self.step.operator, self._begin, self._goal)
+        while drag.starting:
+            drag.tick()
         beginning, moving = time.perf_counter() - begun, self.step.repeat / SPEED
         self._start = time.perf_counter()
         while self._now() < moving:
@@ -158,8 +165,9 @@ class _Dragging:
     def _now(self) -> float:
         return time.perf_counter() - self._start
 
-    def _begin(self) -> Any:
-        edit = begin_culled_edit(bpy.context, self.settings_of(bpy.context.scene), self.step.operator)
+    def _begin(self) -> Steps[Any]:
+        settings = self.settings_of(bpy.context.scene)
+        edit = yield from begin_culled_steps(bpy.context, settings, self.step.operator)
         self._pivot = edit.controls.mean(axis=0)
         return edit
 
@@ -171,12 +179,14 @@ class _Dragging:
         if drag.at_rest:
             time.sleep(TICK)
             return
-        report, begun = drag.report, self._now()
+        report, previous, begun = drag.report, drag.result, self._now()
         drag.tick()
         ended = self._now()
         shown = drag.report is not report
         behind = ended - self.solved_for / SPEED if shown else 0.0
         result = drag.result
+        if result is None or result is previous:  # a job is still running
+            return
         touches = result.rounds > 0 or len(result.events) > 0
         passed = not shown or drag.report.passed
         self.ticks.append(Tick(ended, ended - begun, result.timings["total"], shown, behind, touches, passed))

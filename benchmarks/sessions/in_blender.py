@@ -12,6 +12,7 @@ from typing import Any
 
 from stiv.command_line.blender_module import addon_registered, quiet_blender, require_blender
 from stiv.edit_scripts import EditScript, read_edit_script
+from stiv.task import Task
 
 PIXELS = 1000.0  # of the pointer's x for one repetition of a script
 
@@ -53,13 +54,14 @@ class ScriptedDrag:
     ) -> ScriptedDrag:
         """A drag of a kind; `modal` are the modules of the add-on by their names."""
         state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["request"].Request(kind))
-        drag = modal["drag_loop"].DragLoop(
-            lambda request: begin(),
-            lambda state: state.pointer.effective[0] / PIXELS,
-            lambda where, state: goal_of(where),
-            state,
+        calls = modal["drag_loop"].DragCalls(
+            begin=lambda request: begin(),
+            transform_of=lambda state: state.pointer.effective[0] / PIXELS,
+            motion_of=lambda where, state: goal_of(where),
+            apply=_no_typed_values,
+            task=Task,
         )
-        return cls(drag, modal["event"].Event)
+        return cls(modal["drag_loop"].DragLoop(calls, state), modal["event"].Event)
 
     def point(self, where: float) -> None:
         """Move the mouse."""
@@ -70,8 +72,15 @@ class ScriptedDrag:
         self.drag.tick()
 
     def confirm(self) -> None:
-        """Enter."""
+        """Enter, until the drag has ended."""
         self.drag.handle(self.event("RET"))
+        while not self.drag.progress.ended:
+            self.drag.tick()
+
+    @property
+    def starting(self) -> bool:
+        """Whether the edit has not begun yet."""
+        return self.drag.edit is None and not self.drag.progress.ended
 
     @property
     def at_rest(self) -> bool:
@@ -93,6 +102,10 @@ class ScriptedDrag:
         """The error that ended the drag."""
         error: Exception | None = self.drag.error
         return error
+
+
+def _no_typed_values(where: float, state: Any) -> Any:
+    raise AssertionError("a scripted drag types no values")
 
 
 def _modal(path: Path) -> dict[str, ModuleType]:

@@ -28,8 +28,9 @@ import building  # noqa: E402
 import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
 
-from stiv.blender import EditSettings, begin_culled_edit  # noqa: E402
-from stiv_addon.modal.drag_loop import DragLoop, Progress  # noqa: E402
+from stiv.blender import EditSettings, begin_culled_steps  # noqa: E402
+from stiv.task import Task  # noqa: E402
+from stiv_addon.modal.drag_loop import DragCalls, DragLoop, Progress  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.request import Request  # noqa: E402
@@ -62,12 +63,19 @@ def digest() -> str:
 def new_drag(threads: int) -> DragLoop:
     """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
-    return DragLoop(
-        lambda request: begin_culled_edit(bpy.context, settings, kind=request.kind),
-        lambda state: state.pointer.effective[0] / 1000,
-        lambda share, state: building.shift(*(share * SHIFT)),
-        State(Pointer.at((0.0, 0.0)), Request("move")),
+    calls = DragCalls(
+        begin=lambda request: begin_culled_steps(bpy.context, settings, kind=request.kind),
+        transform_of=lambda state: state.pointer.effective[0] / 1000,
+        motion_of=lambda share, state: building.shift(*(share * SHIFT)),
+        apply=no_typed_values,
+        task=Task,
     )
+    return DragLoop(calls, State(Pointer.at((0.0, 0.0)), Request("move")))
+
+
+def no_typed_values(share: float, state: State) -> None:
+    """Typed values do not occur here."""
+    raise AssertionError("no values are typed")
 
 
 def clocks() -> tuple[float, float]:

@@ -23,7 +23,9 @@ def press(window: Window, operator: str, **properties: object) -> None:
 
 def show_tab(window: Window) -> Steps:
     """The extension's tab of the sidebar."""
+    yield from window.next_draw()  # the regions of a loaded file exist once they are drawn
     window.area.spaces.active.show_region_ui = True
+    yield from window.next_draw()
     yield from window.settle()
     next(region for region in window.area.regions if region.type == "UI").active_panel_category = "STIV"
     window.area.tag_redraw()

@@ -29,10 +29,10 @@ pytestmark = pytest.mark.usefixtures("registered")
 class Motion(SimpleNamespace):
     """Replaces that of `stiv.blender`."""
 
-    def __init__(self, matrix: Any, pivot: Any, individual: bool, influence: Any, rotation: Any, free: Any) -> None:
-        super().__init__(
-            matrix=matrix, pivot=pivot, individual=individual, influence=influence, rotation=rotation, free=free
-        )
+    NAMES = ("matrix", "pivot", "individual", "influence", "rotation", "free", "place")
+
+    def __init__(self, *given: Any) -> None:
+        super().__init__(**dict(zip(self.NAMES, given, strict=True)))
 
 
 class FreeDirections(SimpleNamespace):

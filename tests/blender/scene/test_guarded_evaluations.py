@@ -97,7 +97,7 @@ def test_a_posed_armature_is_refused_in_edit_mode() -> None:
     assert snapshot() == before
 
 
-@pytest.mark.parametrize("response", ["rigid", "deform"])
+@pytest.mark.parametrize("response", ["slide_and_turn", "deform"])
 def test_render_levels_are_guarded(response: str) -> None:
     add_wall()
     cube = add_cube("Cube")
@@ -194,7 +194,7 @@ def test_random_stacks_modes_and_levels(seed: int) -> None:
     random_stack(choose, cube)
     mode = edit_mode if choose.random() < 0.5 else select
     mode(cube)
-    bpy.context.scene.stiv.object_response = choose.choice(("rigid", "deform"))
+    bpy.context.scene.stiv.object_response = choose.choice(("slide", "deform"))
     kept, before = counts(), snapshot()
     error = move()
     assert counts() == kept
