@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What intersects in a guarded scene, and why, in the texts of status bar, view and panel."""
+"""The intersections of a guarded scene and their cause, in the texts of status bar, view and panel."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the guard knows about the scene: the accepted state, and what intersects in it."""
+"""The guard's knowledge of the scene: the accepted state, and its intersections."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Record:
     uncorrected: Pairs = frozenset()
 
     def note_selection(self, context: bpy.types.Context) -> None:
-        """Store the selection, which is no change to guard."""
+        """Store the selection, which is not a change to guard."""
         if self.accepted is not None:
             self.accepted = self.accepted.with_selection(context)
 

@@ -45,7 +45,7 @@ _watch = Watch()
 
 
 def problem() -> Problem | None:
-    """What intersects, and why; None if nothing does."""
+    """The intersections and their cause; None if there are none."""
     return _watch.record.problem
 
 

@@ -36,7 +36,7 @@ def draw_steps(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     column = layout.column(align=True)
     for number, step in enumerate(examples.steps_of(scene)):
         text = f"{number + 1}. {translate(step.text)}"
-        column.operator(examples.STIV_OT_example_step.bl_idname, text=text, translate=False).step = number
+        column.operator(examples.STIV_OT_example_step.bl_idname, text=text, translate=False, icon="PLAY").step = number
 
 
 def draw_examples(layout: bpy.types.UILayout) -> None:

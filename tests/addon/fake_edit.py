@@ -69,7 +69,7 @@ class FakeEdit:
         return self, SimpleNamespace(status="cancelled" if self.cancelled else "reached", blocking=(), path=())
 
     def _delayed(self, name: str) -> "Steps[None]":
-        """Take so many turns, as a job does; cancelled jobs take none."""
+        """Take this many turns, as a job does; cancelled jobs take none."""
         for _ in range(self.delays.get(name, 0)):
             if not self.cancelled:
                 yield None

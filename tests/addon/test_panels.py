@@ -63,7 +63,7 @@ def test_settings_have_no_keyframe_dots_and_buttons_have_icons(panel: Any) -> No
     for call, subject, options in drawn(panel):
         if call == "prop" and options["use_property_split"]:
             assert not options["use_property_decorate"], subject
-        if call == "operator":
+        if call == "operator" and subject != ("stiv.open_example",):  # its picture is above it
             assert options.get("icon", "NONE") != "NONE", subject
 
 
