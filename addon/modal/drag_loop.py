@@ -24,6 +24,7 @@ FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double wh
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
+MAX_IDLE = 200  # repeated solves that settle and gain little, each going on where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
@@ -110,6 +111,7 @@ class DragLoop:
         self.result: EditResult | None = None
         self.report: WriteReport | None = None
         self.written: EditResult | None = None  # the result that the scene shows
+        self.turned = 0.0  # radians by which contact has turned a moving object in it
         self.note = ""
         self.error: Exception | None = None
         self.edit: Edit | None = None
@@ -124,7 +126,7 @@ class DragLoop:
         self._refusal = ""
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
-        self._fruitless = 0
+        self._fruitless = self._idle = 0
         self._run(calls.begin(state.request), self._take_first_edit)
         self._advance_task(START_WAIT)
 
@@ -252,19 +254,29 @@ class DragLoop:
         if isinstance(found, ValueError):
             self.note = str(found)
             return
-        if self.stopped:
+        if self.stopped and not found.path:
             return
         self.result, self.transform, self.note = found, goal.transform, self._refusal
         self._refusal = ""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
-        self._pending = self._may_gain(goal.state, found) or goal.state != self.state
+        self._pending = not self.stopped and (self._may_gain(goal.state, found) or goal.state != self.state)
         self._unfinished = goal if nothing_accepted else None
         self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
 
     def _take_settled(self, settled: EditResult) -> None:
+        """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
         self._solves += 1
-        if settled.status not in ("unchanged", "cancelled"):
+        if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
             self.result, self._unwritten = settled, True
+        if settled.status != "budget" or self.stopped:
+            return
+        state, least = self._solved
+        gained = settled.energy < GAIN * least
+        self._solved = (state, settled.energy if gained else least)
+        self._idle = 0 if gained else self._idle + 1
+        self._settled = self._idle == MAX_IDLE
+        if self._settled and self.result is not None and self.result.status == "budget" and self.result.path:
+            self.result = replace(self.result, status="corrected")
 
     def _new_goal(self) -> Goal:
         transform = self._calls.transform_of(self.state)
@@ -276,8 +288,9 @@ class DragLoop:
         While the mouse rests, this makes the final state independent of the number of motions before it.
         """
         solved, least = self._solved
-        self._solved = (state, result.energy)
         gained = solved != state or result.energy < GAIN * least
+        if gained:
+            self._solved = (state, result.energy)
         self._fruitless = 0 if gained else self._fruitless + 1
         if result.status == "budget":
             most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
@@ -306,7 +319,7 @@ class DragLoop:
         if isinstance(found, ValueError):
             self.state, self._refusal = replace(self.state, request=self._begun), str(found)
             return
-        self.edit, self._begun = found, request
+        self.edit, self._begun, self.turned = found, request, 0.0
 
     def _switch_interference(self) -> None:
         assert self.edit is not None
@@ -366,6 +379,7 @@ class DragLoop:
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
         self.written = self.result if self.report is None or not self.report.message else None
+        self.turned = self.edit.turned  # a session in a job cannot be asked
 
     def _fail(self, error: Exception) -> None:
         self.error = None if self.stopped else error

@@ -2,17 +2,29 @@
 """A replacement of `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
 
 from dataclasses import dataclass, field
-from types import SimpleNamespace
+from types import MappingProxyType
 from typing import Any
 
 from stiv.task import Steps, Task
+
+
+@dataclass(frozen=True)
+class FakeResult:
+    """Replaces an EditResult."""
+
+    status: str
+    path: tuple[float, ...] = ()
+    energy: float = 0.0
+    blocking = ()
+    timings = MappingProxyType({"total": 0.0})
 
 
 @dataclass
 class FakeEdit:
     """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
-    `furthest`: how far one solve goes. `delays`: from the name of a call to the turns that it takes.
+    `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
+    from the name of a call to the turns that it takes.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -27,9 +39,17 @@ class FakeEdit:
     interference: bool = True
     moving = frozenset({"Box"})
     furthest: float = 10.0
-    turned = 0.0
+    settling: bool = False
+    busy: bool = False
     start_digest = "start"
     controls = ()
+
+    @property
+    def turned(self) -> float:
+        """A session in a job cannot be asked."""
+        if self.busy:
+            raise RuntimeError("the session is in use by another call")
+        return 0.0
 
     def begin_steps(self, request: Any) -> "Steps[FakeEdit]":
         """Replaces the beginning of an edit, of the first and of each that is requested later ("again")."""
@@ -55,7 +75,7 @@ class FakeEdit:
     def settle_steps(self) -> "Steps[Any]":
         yield from self._delayed("settle")
         self._called("settle")
-        return SimpleNamespace(status="unchanged", blocking=())
+        return self._solve(self.goals[-1]) if self.settling else FakeResult("unchanged")
 
     def apply_steps(self, matrix: Any, state: Any) -> "Steps[Any]":
         """Typed values: in two halves."""
@@ -66,13 +86,15 @@ class FakeEdit:
                 break
             self._called("apply")
             self._solve(fraction * float(matrix))
-        return self, SimpleNamespace(status="cancelled" if self.cancelled else "reached", blocking=(), path=())
+        return self, FakeResult("cancelled" if self.cancelled else "reached")
 
     def _delayed(self, name: str) -> "Steps[None]":
         """Take this many turns, as a job does; cancelled jobs take none."""
         for _ in range(self.delays.get(name, 0)):
             if not self.cancelled:
+                self.busy = True
                 yield None
+                self.busy = False
 
     def write(self) -> Any:
         self._called("write")
@@ -93,8 +115,7 @@ class FakeEdit:
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
         path = (self.accepted,) if self.furthest > 0 else ()
-        energy, timings = (float(matrix) - self.accepted) ** 2, {"total": 0.0}
-        return SimpleNamespace(status=status, blocking=(), energy=energy, path=path, timings=timings)
+        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2)
 
 
 class FakeTask(Task[Any]):

@@ -92,7 +92,7 @@ def esc_during_a_typed_value(window: Window) -> Steps:
     yield from window.until(lambda: progress_of_drag() == "RUNNING", "the start of the drag", 60.0)
     yield from window.type("9")
     window.key("X")
-    yield from window.until(lambda: drag_of_window().at_rest, "the solve while typing", 120.0)
+    yield from window.until(lambda: drag_of_window().state.axis_lock.axis == 0, "the axis lock")
     window.key("RET")
     yield from window.until(
         lambda: drag_of_window() is None or drag_of_window().fraction > 0.1, "a part of the way", 120.0

@@ -175,7 +175,7 @@ class DragOperator(Mixin):
         if news == self._shown:  # a moved pointer alone is drawn with its result
             return
         self._shown = news
-        turned = turned_text(drag.edit.turned, translate)
+        turned = turned_text(drag.turned, translate)
         notes = [text for text in (turned, drag.note, write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.written is not None and drag.written is drag.result:

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_SLOW, DragCalls, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
@@ -223,6 +223,45 @@ def test_a_goal_that_solves_come_no_closer_to_is_left_until_the_confirmation() -
     assert edit.calls.count("drag") == 1 + MAX_SLOW and drag.at_rest
     drag.handle(Event("LEFTMOUSE"))
     assert drag.progress is Progress.FINISHED and drag.result.status == "reached"
+
+
+@pytest.mark.parametrize("idle", [0, MAX_IDLE // 2])
+def test_settling_that_uses_up_its_budget_is_continued_until_it_has_settled(idle: int) -> None:
+    statuses = ["blocked", *["budget"] * (idle + 6), "blocked"]
+    edit = FakeEdit(statuses=statuses, furthest=0.0, delays={"settle": 1}, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    while edit.calls.count("settle") < idle:
+        assert drag.tick() is Progress.FINISHING
+    edit.furthest = 0.1
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.result.status == "blocked"
+    assert edit.shown == edit.accepted > 0.4
+
+
+def test_settling_that_gains_no_more_ends_as_deflected() -> None:
+    edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(500))
+    drag.handle(Event("LEFTMOUSE"))
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.result.status == "corrected" and edit.shown == edit.accepted == 1.0
+    assert edit.calls.count("settle") == MAX_IDLE
+
+
+def test_esc_stops_settling_and_keeps_the_accepted_state() -> None:
+    edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, furthest=0.001, delays={"settle": 2}, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    while edit.shown < 0.1:
+        assert drag.tick() is Progress.FINISHING
+    drag.handle(Event("ESC"))
+    drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.stopped and 0.1 <= edit.shown == edit.accepted < 0.2
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:

@@ -57,7 +57,7 @@ class Value(SimpleNamespace):
 class Probe(DragOperator):
     """A drag whose value is a hundredth of the pointer's x."""
 
-    kind = "move"
+    kind, bl_idname = "move", "STIV_OT_drag"
 
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
@@ -141,6 +141,16 @@ def test_a_long_start_shows_the_wait_cursor_until_it_ends_or_esc_is_pressed(
             assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
         operator.cancel(context)
     assert shown == [True, False]
+
+
+def test_a_key_during_a_solve_does_not_ask_the_session_that_solves(started: Any, edit: FakeEdit) -> None:
+    """The drag once ended with "the session is in use by another call"."""
+    operator, context = started
+    edit.delays["drag"] = 5
+    operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
+    assert edit.busy
+    assert operator.modal(context, event("X")) == {"RUNNING_MODAL"}
+    assert "along" in context.area.header and operator.reports == []
 
 
 def test_a_timer_that_only_waits_draws_nothing(started: Any) -> None:
