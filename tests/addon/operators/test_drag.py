@@ -57,7 +57,7 @@ class Value(SimpleNamespace):
 class Probe(DragOperator):
     """A drag whose value is a hundredth of the pointer's x."""
 
-    kind, bl_idname = "move", "STIV_OT_drag"
+    kind = "move"
 
     def __init__(self) -> None:
         self.reports: list[tuple[set, str]] = []
