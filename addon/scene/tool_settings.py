@@ -74,6 +74,7 @@ def _search(context: bpy.types.Context, elements: frozenset[str], *, selected: b
         elements,
         culling=context.scene.tool_settings.use_snap_backface_culling or _culls(shading),
         occlusion=not _is_xray(shading),
+        as_normals=bpy.app.version >= (5, 1, 0),
     )
 
 

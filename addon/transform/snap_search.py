@@ -64,6 +64,7 @@ class SnapSearch:
         elements: subset of GEOMETRY.
         culling: faces that face away are not snapped to.
         occlusion: faces hide elements behind them; not in an X-ray view.
+        as_normals: Blender transforms the directions of faces and edges as normals, as 5.2 does; 4.3 does not.
 
     """
 
@@ -71,6 +72,7 @@ class SnapSearch:
     elements: frozenset[str]
     culling: bool = False
     occlusion: bool = True
+    as_normals: bool = False
     _projected: dict[int, _Projected] = field(default_factory=dict)
 
     def among(self, elements: frozenset[str]) -> SnapSearch:
@@ -82,7 +84,7 @@ class SnapSearch:
         hit = self._cast(pixel, view) if self.occlusion or "FACE" in self.elements else None
         found = self._on_screen(pixel, view, source, hit) if self.elements & SCREEN_ELEMENTS else None
         if found is None and hit is not None and "FACE" in self.elements:
-            found = Found(hit.position, hit.normal, "FACE")
+            found = Found(hit.position, self._direction(hit.target, hit.normal), "FACE")
         return found
 
     def middle(self, pixel: Pixel, view: View, *, whole: bool) -> Found | None:
@@ -110,16 +112,17 @@ class SnapSearch:
         for target in self.targets:
             inverse = np.linalg.pinv(target.matrix[:3, :3])
             begin, goal = (inverse @ (at - target.matrix[:3, 3]) for at in (start, point))
-            nearest = target.closest(begin if same_object else goal)
-            if nearest is None:
+            tried, linear = begin if same_object else goal, target.matrix[:3, :3]
+            nearest = target.closest(tried)
+            if nearest is None or (away := float(np.linalg.norm(linear @ (nearest - tried)))) >= distance:
                 continue
-            away = float(np.linalg.norm(target.matrix[:3, :3] @ (nearest - (begin if same_object else goal))))
-            if away < distance:
-                place, step = begin, (goal - begin) / steps
-                for _ in range(steps):
-                    reached = target.closest(place + step)
-                    place = place if reached is None else reached
-                best, distance = _world(target, place[None])[0], away
+            place, step = begin, (goal - begin) / steps
+            for _ in range(steps):
+                reached = target.closest(place + step)
+                place = place if reached is None else reached
+            best, distance = _world(target, place[None])[0], away
+            if not same_object:  # Blender compares the next object with a distance in the space of this one
+                distance = float(np.linalg.norm((linear if steps > 1 else np.eye(3)) @ (place - goal)))
         return best
 
     def _cast(self, pixel: Pixel, view: View) -> _Hit | None:
@@ -189,13 +192,14 @@ class SnapSearch:
         fraction = _fraction(target, nearest.edge, pixel, view)
         choices = len(self.elements & {"EDGE", "VERTEX", "EDGE_MIDPOINT"})
         share = 1.0 / (2 * choices - 1)
-        best, distance = Found(nearest.position, nearest.direction, "EDGE"), REACH
+        along_edge = self._direction(target, nearest.direction)
+        best, distance = Found(nearest.position, along_edge, "EDGE"), REACH
 
         def compare(position: Vector, element: str) -> None:
             nonlocal best, distance
             away = _pixels_to(position, pixel, view)
             if away < distance:
-                best, distance = Found(position, nearest.direction, element), away
+                best, distance = Found(position, along_edge, element), away
 
         if fraction is not None and self.elements & (SCREEN_ELEMENTS - {"EDGE"}):
             if "EDGE_MIDPOINT" in self.elements:
@@ -210,6 +214,13 @@ class SnapSearch:
             if "VERTEX" in self.elements and (fraction < share or fraction > 1.0 - share):
                 compare(ends[int(fraction >= 0.5)], "VERTEX")
         return best if best.element in self.elements else None
+
+    def _direction(self, target: SnapTarget, direction: Vector) -> Vector:
+        """The world direction that Blender takes; differs from `direction` on targets with unequal scales."""
+        if not self.as_normals:
+            return direction
+        inverse = np.linalg.pinv(target.matrix[:3, :3])
+        return _unit(inverse.T @ inverse @ direction)
 
     def _projection(self, target: SnapTarget, view: View) -> _Projected:
         known = self._projected.get(id(target))

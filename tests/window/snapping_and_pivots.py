@@ -7,7 +7,7 @@ import math
 
 import bpy
 import scenes
-from playing import NEAR, box, box_x, click, ended, expect_free, expect_near, prepared, start
+from playing import CLOSE, NEAR, box, box_x, click, ended, expect_free, expect_near, prepared, start
 from simulation import Steps, Window
 
 
@@ -55,6 +55,53 @@ def snap_to_face(window: Window) -> Steps:
     expect_free(window)
 
 
+def snap_base(window: Window) -> Steps:
+    """B: the corner clicked first moves onto the block's corner, not the corner that is closest to it."""
+    yield from prepared(window, scenes.add_target, "Box")
+    tools = bpy.context.scene.tool_settings
+    tools.snap_elements, tools.use_snap = {"VERTEX"}, False
+    yield from start(window)
+    window.key("B")
+    yield from window.glide(window.pixel((0.45, 0.45, 0.5)))  # on the upper side: the lower corners are hidden
+    assert box().location.length == 0.0, "the box moved while its snap base was picked"
+    window.picture("snap_base")
+    window.key("LEFTMOUSE")
+    yield from window.settle()
+    assert window.dragging(), "picking the snap base ended the drag"
+    yield from window.glide(window.pixel((-1.05, 1.05, 0.25)), steps=12)
+    for axis, expected in zip("xyz", (-1.5, 0.5, -0.25), strict=True):
+        expect_near(getattr(box().location, axis), expected, NEAR, f"{axis} of the box with that corner on the block's")
+    yield from click(window)
+    assert not tools.use_snap, "the snap base switched the magnet on"
+    expect_free(window)
+
+
+def axis_by_middle_button(window: Window) -> Steps:
+    """The middle button held picks the axis that the pointer follows, with Shift the plane; C frees it."""
+    yield from prepared(window, scenes.add_box, "Box")
+    yield from start(window)
+    yield from window.glide(window.pixel((0.8, 0.3, 0.0)))
+    expect_near(box().location.y, 0.3, CLOSE, "y before an axis is picked")
+    window.event("MIDDLEMOUSE", "PRESS")
+    yield from window.settle()
+    assert box().location.y == 0.0, "the X axis was not picked"
+    yield from window.glide(window.pixel((0.3, 0.8, 0.0)))
+    assert box_x() == 0.0, "the Y axis was not picked as the pointer followed it"
+    window.event("MIDDLEMOUSE", "RELEASE")
+    yield from window.glide(window.pixel((0.9, 0.4, 0.0)))
+    assert box_x() == 0.0, "the axis was lost with the button"
+    expect_near(box().location.y, 0.4, CLOSE, "y along the axis picked")
+    window.key("C")
+    yield from window.settle()
+    expect_near(box_x(), 0.9, CLOSE, "x without the axis")
+    window.event("MIDDLEMOUSE", "PRESS", shift=True)
+    yield from window.settle()
+    assert box_x() == 0.0, "the plane across X was not picked"
+    window.event("MIDDLEMOUSE", "RELEASE", shift=True)
+    yield from click(window, "ESC")
+    assert box().location.length == 0.0, box().location
+
+
 def pivot_at_cursor(window: Window) -> Steps:
     """The 3D cursor as pivot."""
     yield from prepared(window, scenes.add_box, "Box")
@@ -87,6 +134,8 @@ _ALL = (
     snap_to_steps,
     snap_to_vertex,
     snap_to_face,
+    snap_base,
+    axis_by_middle_button,
     pivot_at_cursor,
     individual_origins,
 )

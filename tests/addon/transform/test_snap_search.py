@@ -85,6 +85,35 @@ def test_instances_are_found_where_they_are() -> None:
     np.testing.assert_allclose(target.position, (3, -2, 1.5), atol=1e-6)
 
 
+def test_directions_on_a_stretched_target_are_those_of_either_release() -> None:
+    """4.3 transforms directions of edges and faces by the matrix, 5.2 as normals."""
+
+    class Slope(Quad):
+        def cast(self, origin: np.ndarray, direction: np.ndarray) -> tuple | None:
+            hit = super().cast(origin, direction)
+            return hit and (hit[0], np.array([1.0, 0.0, 1.0]), hit[2])
+
+    slope = Slope(matrix=np.diag([2.0, 1.0, 1.0, 1.0]))
+    for as_normals, expected in ((False, (2, 0, 1)), (True, (0.5, 0, 1))):
+        direction = found({"FACE"}, (2, 1, 1), slope, as_normals=as_normals).direction
+        np.testing.assert_allclose(direction, expected / np.linalg.norm(expected), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "height"),
+    [
+        ({"steps": 1, "same_object": False}, -0.5),  # four units of the first quad's space: more than three
+        ({"steps": 2, "same_object": False}, 0.5),
+        ({"steps": 1, "same_object": True}, 0.5),
+    ],
+)
+def test_the_nearest_face_is_that_of_blenders_comparison(chosen: dict, height: float) -> None:
+    half, lower = np.diag([0.5, 0.5, 0.5, 1.0]), Quad(CORNERS - [0.0, 0.0, 1.5])
+    goal = np.array([0.5, 0.5, 2.5])
+    nearest = SnapSearch((Quad(matrix=half), lower), frozenset()).nearest(goal, goal, **chosen)
+    np.testing.assert_allclose(nearest, (0.5, 0.5, height), atol=1e-12)
+
+
 @pytest.mark.parametrize(("whole", "height"), [(False, -0.5), (True, -0.5)])
 def test_the_middle_of_a_volume(whole: bool, height: float) -> None:
     class Slab(Quad):

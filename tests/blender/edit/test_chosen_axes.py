@@ -229,6 +229,21 @@ def test_a_rotation_that_is_cancelled_at_its_first_step_can_begin_again() -> Non
     assert tuple(cube.location) == pytest.approx((2 * np.cos(1), 2 * np.sin(1), 0), abs=1e-6)
 
 
+def test_a_rotation_that_places_the_origin_moves_it_there_and_still_turns() -> None:
+    """Face Project and Face Nearest put the origin onto a face, off the circle about the pivot."""
+    cube = add_cube("Cube", (2, 0, 0))
+    select(cube)
+    start, place = as_matrix(cube.matrix_world), np.array([0.5, 1.5, 0.25])
+    edit = begin("rotate")
+    edit.drag(Motion(turn(0.5, "Z"), np.zeros(3), place=lambda points, moved: np.tile(place, (len(points), 1))))
+    assert edit.write().passed
+    assert tuple(cube.location) == pytest.approx(tuple(place), abs=1e-6)
+    assert as_matrix(cube.matrix_world)[:3, :3] == pytest.approx((turn(0.5, "Z") @ start)[:3, :3], abs=1e-6)
+    edit.drag(Motion(turn(0.5, "Z"), np.zeros(3)))  # without the face: about the pivot
+    assert edit.write().passed
+    assert tuple(cube.location) == pytest.approx((2 * np.cos(0.5), 2 * np.sin(0.5), 0), abs=1e-6)
+
+
 def test_a_drag_among_distant_obstacles_rotates_about_its_pivot() -> None:
     """Larger boxes of obstacles open new edits, which resume about the same pivot."""
     bar = add_cube("Bar", (2, 0, 0), 0.3)

@@ -117,8 +117,8 @@ class RotationGoal(PlacementGoal):
         return np.array([controls[0], turn if self.axis is None else self.axis * (turn @ self.axis)])
 
     def limits(self, motion: Motion) -> tuple[object, ...]:
-        """Axis and pivot of the rotation, and whether the axis was chosen."""
-        if not self.selected or not self.turns or motion.axis is None:
+        """Axis and pivot of the rotation, and whether the axis was chosen; empty if the motion places the origin."""
+        if not self.selected or not self.turns or motion.axis is None or motion.place is not None:
             return ()
         return motion.axis.tobytes(), self._pivot(motion).tobytes(), motion.free is not None
 
