@@ -133,9 +133,10 @@ def scale_at_wall(window: Window) -> Steps:
 
 
 def keys_are_free(window: Window) -> Steps:
-    """Blender's default keymap of these modes and their windows uses no key of the extension."""
+    """Blender's default keymap of these modes and their windows uses no key of the extension outside its tools."""
     configurations = bpy.context.window_manager.keyconfigs
-    ours = [item for keymap in configurations.addon.keymaps for item in keymap.keymap_items if "stiv" in item.idname]
+    modes = [keymap for keymap in configurations.addon.keymaps if not keymap.name.startswith("3D View Tool: ")]
+    ours = [item for keymap in modes for item in keymap.keymap_items if "stiv" in item.idname]
     assert len(ours) == 12, [item.idname for item in ours]
     around = {"Window", "Screen", "Screen Editing", "Frames", "3D View", "3D View Generic", "Object Non-modal"}
     taken = {
