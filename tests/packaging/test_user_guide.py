@@ -13,7 +13,7 @@ BLENDERS = {
     "Cursor", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
     "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
-    "Transform", "Transform Modal Map", "Undo", "Vertex", "View",
+    "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
 }  # fmt: skip
 
 
