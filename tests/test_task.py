@@ -61,6 +61,25 @@ def test_cancelling_reaches_the_present_and_all_later_jobs(edit: families.Edit) 
     assert np.array_equal(session.controls, edit.controls)
 
 
+@pytest.mark.parametrize("as_jobs", [False, True])
+def test_a_turn_receives_whether_the_work_is_cancelled(as_jobs: bool) -> None:
+    heard = []
+
+    def steps() -> Steps[None]:
+        heard.append((yield None))
+        token.cancel()
+        task.cancel()
+        yield 0.5
+        heard.append((yield None))
+
+    token, task = stiv.CancelToken(), Task(steps())
+    if not as_jobs:
+        run(steps(), cancel=token)
+    while as_jobs and not task.advance():
+        pass
+    assert heard == [False, True]
+
+
 def test_a_closed_task_leaves_the_session_free(edit: families.Edit) -> None:
     fine = families.sheets(0.4, cells=40)
     session = session_of(fine)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import bpy
@@ -18,6 +19,8 @@ TICK = 0.05  # seconds between two looks at the task
 
 class TaskOperator(Mixin):
     """`start_task` runs steps; `finish_task` takes their result."""
+
+    step_seconds = 0.0  # of each look, for the steps between jobs
 
     def start_task(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> set[str]:
         """Begin the steps, and return to Blender."""
@@ -37,7 +40,7 @@ class TaskOperator(Mixin):
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         try:
-            done = self._task.advance()
+            done = self._advance()
         except Exception as error:
             self._leave(context)
             self._restore(error)
@@ -64,6 +67,13 @@ class TaskOperator(Mixin):
 
     def restore_scene(self) -> None:
         """Restore the start exactly. Does nothing if nothing was written."""
+
+    def _advance(self) -> bool:
+        end = time.perf_counter() + self.step_seconds
+        while not self._task.advance(max(0.0, end - time.perf_counter())):
+            if time.perf_counter() >= end:
+                return False
+        return True
 
     def _abandon(self, context: bpy.types.Context) -> None:
         self._task.abandon()

@@ -37,7 +37,8 @@ class Call(Generic[Result]):
 Steps = Generator[Call[Any] | float | None, Any, Result]
 """Work in steps: yields calls and receives their results.
 
-A number is the fraction of all steps that is done; None gives a waiting caller a turn.
+A number is the fraction of all steps that is done. None gives a waiting caller a turn, and receives whether the work is
+cancelled.
 """
 
 
@@ -121,7 +122,7 @@ class Task(Generic[Result]):
             self._done.append(end.value)
             return False
         if not isinstance(call, Call):
-            self._resume = partial(next, self._steps)
+            self._resume = lambda: self._steps.send(self._cancelled)
             self._fraction = self._fraction if call is None else call
             return call is not None
         try:
@@ -136,7 +137,10 @@ class Task(Generic[Result]):
 
 
 def _run(call: Call[Any] | float | None, execution: dict[str, Any]) -> Any:
-    return call.run(**execution) if isinstance(call, Call) else None
+    if isinstance(call, Call):
+        return call.run(**execution)
+    cancel = execution.get("cancel")
+    return cancel is not None and cancel.cancelled
 
 
 def _outcome(steps: Steps[Any], result: Callable[[], Any]) -> Callable[[], Call[Any] | float | None]:

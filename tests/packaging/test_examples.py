@@ -37,7 +37,12 @@ WRITTEN = {
 }
 PRINTED = {
     "README": [r"corrected \d+ 0"],
-    "scripting": [r"corrected \[.*\] \(0\.99\d+, .*\)", r"(corrected|budget) True 0\nTrue \(.*\) 0\.99\d+"],
+    "scripting": [
+        r"corrected \[.*\] \(0\.99\d+, .*\)",
+        r"(corrected|budget) True 0\nTrue \(.*\) 0\.99\d+",
+        r"done \('Cube',\) 1\.01",
+        r"corrected",
+    ],
     "checks": [r"1 passed"],
 }
 ONE_BLENDER = Path(sys.prefix).resolve() == (ROOT / "build/venv-blender").resolve()  # the Blender of the demo

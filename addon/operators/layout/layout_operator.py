@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Base of the layout operators: they solve as repair does, at once or in a thread, and report names and counts."""
+"""Base of the layout operators: they solve as repair does, at once or in steps, and report names and counts."""
 
 from __future__ import annotations
 
@@ -39,6 +39,8 @@ STATUS_TEXTS = {
 
 class LayoutOperator(ReshapeOperator):
     """Base of an operator; a subclass has its properties and `begin`."""
+
+    step_seconds = 0.04  # many short steps, a few of them jobs
 
     time_limit: FloatProperty(
         name="Time Limit",

@@ -13,9 +13,11 @@ from mathutils import Euler
 
 import stiv
 from stiv.blender import (
+    Drop,
     DropSettings,
     EditSettings,
     SettleSettings,
+    Task,
     check_scene,
     drop,
     nearest_pair,
@@ -119,6 +121,32 @@ def test_cancelled_or_late_nothing_changes() -> None:
     assert report.status == "cancelled" and tuple(cube.location) == (0, 0, 5)
     late = EditSettings(separation=H, time_budget=1e-9)
     assert drop(bpy.context, DropSettings(late)).status == "budget" and tuple(cube.location) == (0, 0, 5)
+
+
+def test_in_turns_it_ends_as_at_once_and_stopped_it_changes_nothing() -> None:
+    add_grid("Floor", 4, 8.0)
+    cube = add_cube("Cube", (0, 0, 5), rotation_euler=(0.4, 0.7, 0.1))
+    select(cube)
+    start, turns = (cube.location.copy(), cube.rotation_euler.copy()), 0
+    drop(bpy.context, DropSettings(EDIT))
+    expected = cube.location.copy(), cube.rotation_euler.copy()
+    cube.location, cube.rotation_euler = start
+    bpy.context.view_layer.update()
+    stopped, left, whole = (Drop(bpy.context, DropSettings(EDIT)) for _ in range(3))
+    cancelled, abandoned, task = (Task(each.solve_steps()) for each in (stopped, left, whole))
+    for _ in range(8):
+        cancelled.advance(1.0)
+        abandoned.advance(1.0)
+    cancelled.cancel()
+    while not cancelled.advance(1.0):
+        pass
+    abandoned.abandon()
+    left.restore()
+    assert stopped.write().status == "cancelled" and (cube.location, cube.rotation_euler) == start
+    while not task.advance(1.0):
+        turns += 1
+    whole.write()
+    assert turns > 20 and (cube.location, cube.rotation_euler) == expected
 
 
 def test_settling_presses_a_tilted_cube_against_the_nearest_wall() -> None:

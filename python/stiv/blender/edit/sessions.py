@@ -61,7 +61,7 @@ def make_session(
     )
     try:
         session: stiv.EditSession = yield Call(
-            _open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options
+            open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options
         )
         return session
     except stiv.StartIntersectsError as error:
@@ -84,7 +84,8 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
 
 
-def _open_session(*given: Any, **_execution: Any) -> stiv.EditSession:
+def open_session(*given: Any, **_execution: Any) -> stiv.EditSession:
+    """Make a session at once, for `Call`: it takes no cancellation and reports no progress."""
     return stiv.EditSession(*given)
 
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from stiv.blender.layout.rigid_scene import RigidScene
 from stiv.blender.scene.arrays import Flags, Floats, Indices
+from stiv.task import Steps
 
 MAX_POINTS = 32  # vertices of a body that are tested
 MOSTLY = 0.75  # of a body's box
-CHUNK = 1 << 20  # pairs of a point and a triangle at once
+CHUNK = 1 << 18  # pairs of a point and a triangle at once
 
 
 def is_closed(triangles: Indices) -> bool:
@@ -24,11 +25,17 @@ def is_closed(triangles: Indices) -> bool:
     return len(edges) > 0 and bool(np.array_equal(forward, backward))
 
 
-def winding_numbers(points: Floats, corners: Floats) -> Floats:
-    """Winding numbers, (n,), of a surface, (f, 3, 3), around points, (n, 3) (van Oosterom and Strackee)."""
+def winding_numbers(points: Floats, corners: Floats) -> Steps[Floats]:
+    """Steps that find the winding numbers, (n,), of a surface, (f, 3, 3), around points, (n, 3).
+
+    By the formula of van Oosterom and Strackee.
+    """
     rows = max(1, CHUNK // max(len(corners), 1))
-    parts = [_angles(points[first : first + rows], corners) for first in range(0, len(points), rows)]
-    return np.concatenate([np.zeros(0), *parts]) / (2 * np.pi)
+    parts = [np.zeros(0)]
+    for first in range(0, len(points), rows):
+        parts.append(_angles(points[first : first + rows], corners))
+        yield None
+    return np.concatenate(parts) / (2 * np.pi)
 
 
 def _angles(points: Floats, corners: Floats) -> Floats:
@@ -40,25 +47,31 @@ def _angles(points: Floats, corners: Floats) -> Floats:
     return angles
 
 
-def is_outside(scene: RigidScene, mover: int, among: Flags | None = None) -> bool:
-    """Are all vertices of a mover, of a sample, outside closed obstacles whose normals point outward?"""
+def is_outside(scene: RigidScene, mover: int, among: Flags | None = None) -> Steps[bool]:
+    """Steps that tell whether a sample of a mover's vertices is outside closed obstacles with outward normals."""
     points = scene.positions_of(mover)
-    windings = _windings(scene, mover, among, points[:: max(1, len(points) // MAX_POINTS)])
-    return all(bool((each < 0.5).all()) for each in windings)
+    points = points[:: max(1, len(points) // MAX_POINTS)]
+    for corners in _closed_around(scene, mover, among):
+        if not bool(((yield from winding_numbers(points, corners)) < 0.5).all()):
+            return False
+    return True
 
 
-def is_mostly_inside(scene: RigidScene, mover: int, among: Flags | None = None) -> bool:
-    """Is most of the box of a mover inside a closed obstacle?"""
+def is_mostly_inside(scene: RigidScene, mover: int, among: Flags | None = None) -> Steps[bool]:
+    """Steps that tell whether most of the box of a mover is inside a closed obstacle."""
     low, high = scene.box(mover)
     grid = np.stack(np.meshgrid(*[[-0.75, -0.25, 0.25, 0.75]] * 3), axis=-1).reshape(-1, 3)
-    windings = _windings(scene, mover, among, (low + high) / 2 + grid * (high - low) / 2)
-    return any(float((np.abs(each) > 0.5).mean()) >= MOSTLY for each in windings)
+    points = (low + high) / 2 + grid * (high - low) / 2
+    for corners in _closed_around(scene, mover, among):
+        if float((np.abs((yield from winding_numbers(points, corners))) > 0.5).mean()) >= MOSTLY:
+            return True
+    return False
 
 
-def _windings(scene: RigidScene, mover: int, among: Flags | None, points: Floats) -> Iterator[Floats]:
-    """Winding numbers around points, (n,), of each closed obstacle near a mover."""
+def _closed_around(scene: RigidScene, mover: int, among: Flags | None) -> Iterator[Floats]:
+    """The corners of each closed obstacle near a mover, (f, 3, 3)."""
     for body, triangles in scene.bodies_around(mover, among):
         if body not in scene.closed:
             scene.closed[body] = is_closed(triangles)
         if scene.closed[body]:
-            yield winding_numbers(points, scene.corners(triangles))
+            yield scene.corners(triangles)

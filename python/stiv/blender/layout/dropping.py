@@ -16,6 +16,7 @@ from stiv.blender.layout.parting import part
 from stiv.blender.layout.resting import Rest, rest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps
 
 MAX_PASSES = 4  # over the objects: one may have rested on another that then fell
 GRAVITY = (0.0, 0.0, -1.0)
@@ -66,15 +67,15 @@ class Drop(LayoutTask):
         self._edit = LayoutEdit(context, settings.edit, context.selected_objects, settings.ground)
         self._rests: dict[int, Rest] = {}
 
-    def _solve(self, watch: Watch) -> None:
+    def _solve(self, watch: Watch) -> Steps[None]:
         scene, count = self._edit.scene, len(self._edit.control_sets)
-        check_start(self._edit)
+        yield from check_start(self._edit, watch)
         order = sorted(range(count), key=lambda k: -float((scene.positions_of(k) @ self._direction).max()))
         for number in range(MAX_PASSES):
             moved = False
             for done, mover in enumerate(order):
-                watch.at(scene.movers[mover].name, (done + number * count) / (MAX_PASSES * count))
-                found = self._drop(mover, watch)
+                yield from watch.at(scene.movers[mover].name, (done + number * count) / (MAX_PASSES * count))
+                found = yield from self._drop(mover, watch)
                 before = self._rests.get(mover)
                 moved |= found.distance > scene.separation
                 if before is None or found.status == "rests":
@@ -82,14 +83,14 @@ class Drop(LayoutTask):
             if not moved or count == 1:
                 break
 
-    def _drop(self, mover: int, watch: Watch) -> Rest:
+    def _drop(self, mover: int, watch: Watch) -> Steps[Rest]:
         scene = self._edit.scene
         if self._settings.ground:
             above = scene.box(mover)[0, 2] > 0 and self._direction[2] < 0
             scene.leave_out([] if above else [len(scene.movers) - 1])
         if np.linalg.norm(scene.movers[mover].along_free(self._direction) - self._direction) > 1e-6:
             return Rest("locked")
-        return rest(scene, mover, self._direction, self._settings.turn, watch)
+        return (yield from rest(scene, mover, self._direction, self._settings.turn, watch))
 
     def _write(self) -> LayoutReport:
         return write_rests(self._edit, self._rests, "nothing below")
@@ -109,16 +110,16 @@ class SettleIntoContact(LayoutTask):
         self._edit = LayoutEdit(context, settings.edit, context.selected_objects)
         self._rests: dict[int, Rest] = {}
 
-    def _solve(self, watch: Watch) -> None:
+    def _solve(self, watch: Watch) -> Steps[None]:
         scene, count = self._edit.scene, len(self._edit.control_sets)
         for mover in range(count):
-            watch.at(scene.movers[mover].name, mover / count)
-            self._rests[mover] = self._settle(mover, watch)
+            yield from watch.at(scene.movers[mover].name, mover / count)
+            self._rests[mover] = yield from self._settle(mover, watch)
 
-    def _settle(self, mover: int, watch: Watch) -> Rest:
+    def _settle(self, mover: int, watch: Watch) -> Steps[Rest]:
         scene, start = self._edit.scene, self._edit.scene.pose(mover)
         limit = self._settings.max_distance or scene.size(mover)
-        if scene.intersected(mover) and part(scene, mover, watch) is None:
+        if scene.intersected(mover) and (yield from part(scene, mover, watch)) is None:
             return Rest("nothing")
         if self._settings.direction is not None:
             direction = unit_vector(self._settings.direction)
@@ -131,9 +132,9 @@ class SettleIntoContact(LayoutTask):
         if np.linalg.norm(scene.movers[mover].along_free(direction) - direction) > 1e-6:
             scene.set_pose(mover, start)
             return Rest("locked")
-        found = rest(scene, mover, direction, self._settings.turn, watch, limit)
+        found = yield from rest(scene, mover, direction, self._settings.turn, watch, limit)
         if found.status == "nothing":  # it would slide off: the straight stop alone
-            found = rest(scene, mover, direction, False, watch, limit)
+            found = yield from rest(scene, mover, direction, False, watch, limit)
         if found.status == "nothing":
             scene.set_pose(mover, start)
         return found
@@ -146,9 +147,10 @@ class SettleIntoContact(LayoutTask):
         self._edit.restore()
 
 
-def check_start(edit: LayoutEdit) -> None:
-    """Raises InputError naming the first mover that intersects something."""
+def check_start(edit: LayoutEdit, watch: Watch) -> Steps[None]:
+    """Steps that raise InputError naming the first mover that intersects something."""
     for number in range(len(edit.control_sets)):
+        yield from watch.check()
         other = edit.scene.intersected(number)
         if other and other != GROUND:
             raise InputError(f"{edit.scene.movers[number].name}: intersects {other}; use Push Apart")

@@ -20,6 +20,8 @@ from stiv.blender.layout.resting import fall
 from stiv.blender.layout.rigid_scene import RigidScene
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps
+from stiv.task import run as run_steps
 
 GRID = 32  # cells of the heights of a container
 MAX_HITS = 16  # of a vertical line with a container
@@ -93,12 +95,12 @@ class FitInto(LayoutTask):
         if settings.scale:
             _check_scales(self._edit)
 
-    def _solve(self, watch: Watch) -> None:
+    def _solve(self, watch: Watch) -> Steps[None]:
         count = len(self._edit.control_sets)
         for attempt in range(MAX_ATTEMPTS if self._settings.scale else 1):
             self._scale = SHRINKING**attempt
             self._scene = self._edit.scene.with_scaled_movers(self._scale)
-            self._left = _pack(self._scene, range(count), self._container, self._settings, watch)
+            self._left = yield from _pack(self._scene, range(count), self._container, self._settings, watch)
             if not self._left:
                 return
         self._fits = not self._settings.scale
@@ -138,7 +140,7 @@ def _container(edit: LayoutEdit, name: str, choice: str) -> Container:
     if choice == "inside" and not closed:
         raise InputError(f"{name}: is not closed; close it, or use its bounding box")
     if choice == "auto" and closed:
-        center = winding_numbers(box.mean(axis=0)[None], edit.assembly.positions[triangles])
+        center = run_steps(winding_numbers(box.mean(axis=0)[None], edit.assembly.positions[triangles]))
         closed = abs(float(center[0])) > 0.5
     inside = triangles if closed and choice != "box" else None
     floor, ceiling = _columns(edit.assembly.positions, triangles, box, inside is not None)
@@ -184,15 +186,17 @@ def _check_scales(edit: LayoutEdit) -> None:
             raise InputError(f"{control_set.names[0]}: its scale is locked; unlock it")
 
 
-def _pack(scene: RigidScene, movers: range, container: Container, settings: FitSettings, watch: Watch) -> list[int]:
-    """Pack movers, larger ones first; returns those that do not fit, which stay at their start."""
+def _pack(
+    scene: RigidScene, movers: range, container: Container, settings: FitSettings, watch: Watch
+) -> Steps[list[int]]:
+    """Steps that pack movers, larger ones first; they return those that do not fit, which stay at their start."""
     order = sorted(movers, key=lambda k: -float(np.prod(np.ptp(scene.box(k), axis=0))))
     waiting, left = list(order), []
     for number, mover in enumerate(order):
-        watch.at(scene.movers[mover].name, number / len(order))
+        yield from watch.at(scene.movers[mover].name, number / len(order))
         waiting.remove(mover)
         scene.leave_out(waiting)  # they have no place yet
-        if not _pack_one(scene, mover, container, settings, number, watch):
+        if not (yield from _pack_one(scene, mover, container, settings, number, watch)):
             left.append(mover)
     scene.leave_out([])
     return left
@@ -200,17 +204,17 @@ def _pack(scene: RigidScene, movers: range, container: Container, settings: FitS
 
 def _pack_one(
     scene: RigidScene, mover: int, container: Container, settings: FitSettings, number: int, watch: Watch
-) -> bool:
+) -> Steps[bool]:
     start, best = scene.pose(mover), None
     lowest = np.inf
-    for pose, expected in _candidates(scene, mover, container, settings, number):
-        watch.check()
+    for pose, expected in (yield from _candidates(scene, mover, container, settings, number, watch)):
+        yield from watch.check()
         if expected >= lowest:
             break
         scene.set_pose(mover, pose)
-        if not scene.is_clear(mover) or not _is_inside(scene, mover, container, falling=True):
+        if not scene.is_clear(mover) or not (yield from _is_inside(scene, mover, container, falling=True)):
             continue
-        if fall(scene, mover, DOWN) is None or not _is_inside(scene, mover, container):
+        if (yield from fall(scene, mover, DOWN)) is None or not (yield from _is_inside(scene, mover, container)):
             continue
         top = float(scene.box(mover)[1, 2])
         if top < lowest - 1e-9:
@@ -220,15 +224,19 @@ def _pack_one(
 
 
 def _candidates(
-    scene: RigidScene, mover: int, container: Container, settings: FitSettings, number: int
-) -> list[tuple[Floats, float]]:
-    """Poses from which a mover may fall, with the height of its top after the fall if all below were boxes, rising."""
+    scene: RigidScene, mover: int, container: Container, settings: FitSettings, number: int, watch: Watch
+) -> Steps[list[tuple[Floats, float]]]:
+    """Steps that find poses from which a mover may fall.
+
+    Each has the height of the mover's top after the fall if all below were boxes, rising.
+    """
     rng = np.random.default_rng([settings.seed, number])
     free = scene.movers[mover]
     turns = _orientations(rng) if settings.turn and free.can_turn else [np.zeros(3)]
     base, gap = scene.pose(mover), 1.01 * scene.largest_separation
     found: list[tuple[float, float, Floats]] = []
     for turn in turns:
+        yield from watch.check()
         pose = base.copy()
         pose[1] = rotation_vector(rotation_matrix(turn) @ rotation_matrix(base[1]))
         scene.set_pose(mover, pose)
@@ -285,15 +293,15 @@ def _expected_rest(
     return height, start if np.isfinite(start) else float(container.box[1, 2]) + gap
 
 
-def _is_inside(scene: RigidScene, mover: int, container: Container, falling: bool = False) -> bool:
-    """Is a mover within the container? Over an open box while it falls."""
+def _is_inside(scene: RigidScene, mover: int, container: Container, falling: bool = False) -> Steps[bool]:
+    """Steps that tell whether a mover is within the container, or over an open box while it falls."""
     low, high = scene.box(mover)
     inside = (low >= container.box[0]).all() and (high[:2] <= container.box[1, :2]).all()
     if container.inside is None:
         return bool(inside and (falling or high[2] <= container.box[1, 2]))
     if not inside or high[2] > container.box[1, 2]:
         return False
-    windings = winding_numbers(scene.components(mover), scene.corners(container.inside))
+    windings = yield from winding_numbers(scene.components(mover), scene.corners(container.inside))
     return bool((np.abs(windings) > 0.5).all())
 
 

@@ -12,6 +12,7 @@ from stiv.blender.layout.containment import is_mostly_inside, is_outside
 from stiv.blender.layout.layout_task import Watch
 from stiv.blender.layout.rigid_scene import SURPLUS, RigidScene
 from stiv.blender.scene.arrays import Flags, Floats
+from stiv.task import Steps
 
 MAX_NORMALS = 48  # normals of intersecting triangles, tried as directions
 REFINEMENTS = (0.2, 0.05, 0.01)  # radians around the best direction
@@ -19,19 +20,20 @@ SAMPLES = 6  # distances tried along a direction, before the one from outside
 MAX_SWEEPS = 12  # over all pairs that are too near
 
 
-def part(scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None) -> Floats | None:
-    """Translate a mover by the shortest way found to where it is clear; returns the translation, None if there is none.
+def part(scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None) -> Steps[Floats | None]:
+    """Steps that translate a mover by the shortest way found to where it is clear; the translation, None without one.
 
     among: see `RigidScene.facing`.
     """
     if scene.is_clear(mover, among):
         return np.zeros(3)
     pose = scene.pose(mover)
-    search = _Search(scene, mover, among, watch)
+    inside = yield from is_mostly_inside(scene, mover, among)
+    search = _Search(scene, mover, among, watch, inside)
     for direction in _directions(scene, mover, among):
-        search.probe(direction)
+        yield from search.probe(direction)
     for angle in REFINEMENTS:
-        search.refine(angle)
+        yield from search.refine(angle)
     scene.set_pose(mover, pose)
     if search.best is None:
         return None
@@ -39,43 +41,44 @@ def part(scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None
     return search.best
 
 
-def part_all(scene: RigidScene, movers: Sequence[int], watch: Watch) -> list[int]:
-    """Part movers from each other and from everything else; returns those that cannot be parted.
+def part_all(scene: RigidScene, movers: Sequence[int], watch: Watch) -> Steps[list[int]]:
+    """Steps that part movers from each other and from everything else; they return those that cannot be parted.
 
     Both movers of a pair move by half of the way, as long as that converges; then each moves on its own.
     """
     for sweep in range(MAX_SWEEPS):
-        pairs = find_near_pairs(scene, movers)
+        pairs = yield from find_near_pairs(scene, movers, watch)
         if not pairs:
             break
         for number, (first, second) in enumerate(pairs):
-            watch.at(scene.movers[first].name, (sweep + number / len(pairs)) / (MAX_SWEEPS + 1))
-            _part_pair(scene, first, second, watch)
+            yield from watch.at(scene.movers[first].name, (sweep + number / len(pairs)) / (MAX_SWEEPS + 1))
+            yield from _part_pair(scene, first, second, watch)
     left = []
     for number, mover in enumerate(movers):
-        watch.at(scene.movers[mover].name, (MAX_SWEEPS + number / len(movers)) / (MAX_SWEEPS + 1))
-        if part(scene, mover, watch) is None:
+        yield from watch.at(scene.movers[mover].name, (MAX_SWEEPS + number / len(movers)) / (MAX_SWEEPS + 1))
+        if (yield from part(scene, mover, watch)) is None:
             left.append(mover)
     return left
 
 
-def find_near_pairs(scene: RigidScene, movers: Sequence[int]) -> list[tuple[int, int]]:
-    """Pairs of movers that are too near; (mover, -1) for a mover and anything else."""
-    pairs = [
-        (a, b)
-        for a, b in combinations(movers, 2)
-        if _boxes_near(scene, a, b) and not scene.is_clear(a, _only(scene, b))
-    ]
+def find_near_pairs(scene: RigidScene, movers: Sequence[int], watch: Watch) -> Steps[list[tuple[int, int]]]:
+    """Steps that find the pairs of movers that are too near; (mover, -1) for a mover and anything else."""
     others = _others(scene, movers)
-    return pairs + [(a, -1) for a in movers if not scene.is_clear(a, others)]
+    tested = [(a, b, _only(scene, b)) for a, b in combinations(movers, 2) if _boxes_near(scene, a, b)]
+    pairs = []
+    for a, b, among in [*tested, *((a, -1, others) for a in movers)]:
+        yield from watch.check()
+        if not scene.is_clear(a, among):
+            pairs.append((a, b))
+    return pairs
 
 
-def _part_pair(scene: RigidScene, first: int, second: int, watch: Watch) -> None:
+def _part_pair(scene: RigidScene, first: int, second: int, watch: Watch) -> Steps[None]:
     if second < 0:
-        part(scene, first, watch, _others(scene, range(len(scene.movers))))
+        yield from part(scene, first, watch, _others(scene, range(len(scene.movers))))
         return
     start = scene.pose(first)
-    way = part(scene, first, watch, _only(scene, second))
+    way = yield from part(scene, first, watch, _only(scene, second))
     if way is None or not way.any():
         return
     half = scene.movers[second].along_free(-way / 2)
@@ -104,16 +107,16 @@ def _boxes_near(scene: RigidScene, a: int, b: int) -> bool:
 class _Search:
     """The shortest clear translation among the directions probed so far."""
 
-    def __init__(self, scene: RigidScene, mover: int, among: Flags | None, watch: Watch) -> None:
+    def __init__(self, scene: RigidScene, mover: int, among: Flags | None, watch: Watch, inside: bool) -> None:
         self._scene, self._mover, self._among, self._watch = scene, mover, among, watch
         self._start = scene.pose(mover)
         self._outside = self._distance_outside()
-        self._may_stay_inside = is_mostly_inside(scene, mover, among)
+        self._may_stay_inside = inside
         self.best: Floats | None = None
 
-    def probe(self, direction: Floats) -> None:
-        """Find the shortest clear translation along a direction, if it is shorter than the best one."""
-        self._watch.check()
+    def probe(self, direction: Floats) -> Steps[None]:
+        """Steps that find the shortest clear translation along a direction, if it is shorter than the best one."""
+        yield from self._watch.check()
         direction = self._scene.movers[self._mover].along_free(direction)
         length = float(np.linalg.norm(direction))
         if length < 1e-6:
@@ -122,12 +125,12 @@ class _Search:
         longest = self._outside if self.best is None else float(np.linalg.norm(self.best)) * (1 - 1e-9)
         for distance in self._distances(longest):
             self._place(distance * direction)
-            if self._is_clear():
-                self._shorten(direction, distance)
+            if (yield from self._is_clear()):
+                yield from self._shorten(direction, distance)
                 return
 
-    def refine(self, angle: float) -> None:
-        """Probe directions around the best one."""
+    def refine(self, angle: float) -> Steps[None]:
+        """Steps that probe directions around the best one."""
         if self.best is None:
             return
         direction = self.best / np.linalg.norm(self.best)
@@ -135,7 +138,7 @@ class _Search:
         across /= np.linalg.norm(across)
         for turn in np.arange(6) * np.pi / 3:
             side = np.cos(turn) * across + np.sin(turn) * np.cross(direction, across)
-            self.probe(direction + angle * side)
+            yield from self.probe(direction + angle * side)
 
     def _distances(self, longest: float) -> Floats:
         """Distances to try, rising: only the longest for a body that must stay outside."""
@@ -143,14 +146,14 @@ class _Search:
             return np.array([longest])
         return np.geomspace(min(2 * self._scene.separation, longest), longest, SAMPLES)
 
-    def _is_clear(self) -> bool:
+    def _is_clear(self) -> Steps[bool]:
         if not self._scene.is_clear(self._mover, self._among):
             return False
-        return self._may_stay_inside or is_outside(self._scene, self._mover, self._among)
+        return self._may_stay_inside or (yield from is_outside(self._scene, self._mover, self._among))
 
-    def _shorten(self, direction: Floats, distance: float) -> None:
-        """From a clear place, travel back as far as the minimum distance allows."""
-        fraction = self._scene.travel(self._mover, -distance * direction, self._among)
+    def _shorten(self, direction: Floats, distance: float) -> Steps[None]:
+        """Steps that travel back from a clear place as far as the minimum distance allows."""
+        fraction = yield from self._scene.travel(self._mover, -distance * direction, self._among)
         kept = distance * (1 - (1.0 if fraction is None else fraction)) + SURPLUS * self._scene.separation
         self._place(kept * direction)
         if not self._scene.is_clear(self._mover, self._among):

@@ -20,6 +20,7 @@ from stiv.blender.layout.rigid_scene import RigidScene
 from stiv.blender.scene.arrays import Floats, as_matrix
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import check_scene
+from stiv.task import Steps
 
 TRIES = 24  # places for each copy
 HIGHEST = 0.15  # of its size, above the point where a copy should rest; higher, it lies on something else
@@ -76,32 +77,34 @@ class Place(LayoutTask):
         self._transforms: list[Floats] = []
         self._created: list[bpy.types.Object] = []
 
-    def _solve(self, watch: Watch) -> None:
+    def _solve(self, watch: Watch) -> Steps[None]:
         count, rng = self._settings.count, np.random.default_rng(self._settings.seed)
         factors = 1 + self._settings.scale_variation * rng.uniform(-1, 1, count)
         scene = self._edit.scene.with_copies(0, factors)
         absent = set(range(1, count + 1))
         for number, copy in enumerate(sorted(absent)):
-            watch.at(self._source, number / count)
+            yield from watch.at(self._source, number / count)
             scene.leave_out(list(absent - {copy}))
-            if self._place(scene, copy, rng, watch):
+            if (yield from self._place(scene, copy, rng, watch)):
                 self._transforms.append(_transform(self._edit.scene.pose(0), scene.pose(copy), factors[number]))
                 absent.remove(copy)
 
-    def _place(self, scene: RigidScene, copy: int, rng: np.random.Generator, watch: Watch) -> bool:
+    def _place(self, scene: RigidScene, copy: int, rng: np.random.Generator, watch: Watch) -> Steps[bool]:
         size = scene.size(copy)
         for _ in range(TRIES):
-            watch.check()
+            yield from watch.check()
             point, normal = _random_point(self._corners, rng)
             up = normal if self._settings.align else UP
             spin = rng.uniform(-1, 1) * self._settings.rotation_variation
             if float(normal @ up) < 0.2:  # a wall or a ceiling
                 continue
             self._stand(scene, copy, point, up, spin, size)
-            if not scene.is_clear(copy) or fall(scene, copy, -up, 2 * size) is None:
+            if not scene.is_clear(copy) or (yield from fall(scene, copy, -up, 2 * size)) is None:
                 continue
             height = float(((scene.positions_of(copy) - point) @ up).min())
-            if -HIGHEST * size < height < HIGHEST * size and is_outside(scene, copy) and scene.is_clear(copy):
+            if not -HIGHEST * size < height < HIGHEST * size or not (yield from is_outside(scene, copy)):
+                continue
+            if scene.is_clear(copy):
                 return True
         return False
 

@@ -11,6 +11,7 @@ from stiv.blender.layout.layout_edit import LayoutEdit
 from stiv.blender.layout.layout_task import LayoutReport, LayoutTask, Watch, run
 from stiv.blender.layout.parting import part_all
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps
 
 
 class PushApart(LayoutTask):
@@ -22,8 +23,8 @@ class PushApart(LayoutTask):
         self._edit = LayoutEdit(context, settings, context.selected_objects)
         self._left: list[int] = []
 
-    def _solve(self, watch: Watch) -> None:
-        self._left = part_all(self._edit.scene, range(len(self._edit.control_sets)), watch)
+    def _solve(self, watch: Watch) -> Steps[None]:
+        self._left = yield from part_all(self._edit.scene, range(len(self._edit.control_sets)), watch)
 
     def _write(self) -> LayoutReport:
         names = [mover.name for mover in self._edit.scene.movers]

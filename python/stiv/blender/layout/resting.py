@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import stiv
 from stiv.blender.controls.rotations import rotation_matrix, rotation_vector
 from stiv.blender.layout.layout_task import Stopped, Watch
 from stiv.blender.layout.rigid_scene import SURPLUS, Contact, RigidScene
 from stiv.blender.scene.arrays import Floats
+from stiv.task import Call, Steps
 
 LONGEST_STEP, SHORTEST_STEP = 0.1, 2e-5  # of the body's size
 PROGRESS = 1e-5  # of a step; a body that sinks by less is stopped
@@ -39,15 +41,15 @@ class Rest:
     distance: float = 0.0
 
 
-def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.inf) -> float | None:
-    """Translate a mover along a direction to its exact stop; returns the distance, None if nothing stops it.
+def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.inf) -> Steps[float | None]:
+    """Steps that translate a mover along a direction to its exact stop.
 
-    length: look no further than this.
+    They return the distance, None if nothing stops it. length: look no further than this.
     """
     corners, box = scene.extent(), scene.box(mover)
     far = float(np.abs(corners - box[::-1]).max(axis=0) @ np.abs(direction)) + scene.size(mover)
     far = min(far, length)
-    fraction = scene.travel(mover, far * direction)
+    fraction = yield from scene.travel(mover, far * direction)
     if fraction is None:
         return None
     distance = max(0.0, fraction * far - SURPLUS * scene.separation)
@@ -57,24 +59,26 @@ def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.in
     return 0.0
 
 
-def rest(scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Watch, length: float = np.inf) -> Rest:
-    """Let a mover fall along a direction until it rests. Without support, its pose does not change.
+def rest(
+    scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Watch, length: float = np.inf
+) -> Steps[Rest]:
+    """Steps that let a mover fall along a direction until it rests. Without support, its pose does not change.
 
-    turn: let it turn and slide until it is supported from below, if it can. watch: stops it between steps. length: of
-    the way along the direction.
+    turn: let it turn and slide until it is supported from below, if it can. watch: stops them. length: of the
+    way along the direction.
     """
     start = scene.pose(mover)
-    if fall(scene, mover, direction, length) is None:
+    if (yield from fall(scene, mover, direction, length)) is None:
         scene.set_pose(mover, start)
         return Rest("nothing")
     if turn and scene.movers[mover].can_turn and not is_supported(scene, mover, direction, LEVEL):
-        if not _tumble(scene, mover, direction, watch, length):
+        if not (yield from _tumble(scene, mover, direction, watch, length)):
             scene.set_pose(mover, start)
             return Rest("nothing")
         for number in range(MAX_NUDGES):
-            if is_supported(scene, mover, direction) or not _leave_balance(
-                scene, mover, direction, number, watch, length
-            ):
+            if is_supported(scene, mover, direction):
+                break
+            if not (yield from _leave_balance(scene, mover, direction, number, watch, length)):
                 break
     distance = float((scene.pose(mover) - start)[0] @ direction)
     return Rest("rests", tuple(scene.contacts(mover, direction, SUPPORT)), distance)
@@ -95,23 +99,23 @@ def is_supported(scene: RigidScene, mover: int, direction: Floats, reach: float 
     return bool(gaps.max() < np.pi - 1e-3)  # the center is inside if no half plane is empty
 
 
-def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, length: float) -> bool:
-    """Sink, slide and turn, until the body sinks no further; False if it loses its support."""
+def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, length: float) -> Steps[bool]:
+    """Steps that let it sink, slide and turn, until the body sinks no further; False if it loses its support."""
     size = scene.size(mover)
     step, start = LONGEST_STEP * size, scene.pose(mover)
     session, home = None, start[0]
     for _ in range(MAX_STEPS):
-        watch.check()
+        yield from watch.check()
         before = scene.pose(mover)
         if session is None or np.linalg.norm(before[0] - home) > size:
-            session, home = scene.session(mover, _room(scene, mover, 2 * size)), before[0]
+            session, home = (yield from scene.session(mover, _room(scene, mover, 2 * size))), before[0]
         goal = before.copy()
         goal[0] += step * direction
-        result = session.edit(goal, cancel=watch.cancel)
+        result: stiv.EditResult = yield Call(session.edit, session.start_edit, goal)
         if result.status == "cancelled":
             raise Stopped("cancelled")
         scene.set_pose(mover, result.controls)
-        if result.status == "reached" and fall(scene, mover, direction, length) is None:
+        if result.status == "reached" and (yield from fall(scene, mover, direction, length)) is None:
             return False
         if result.status == "reached":
             session = None
@@ -125,19 +129,19 @@ def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, leng
             session = None
             step /= 4
     lifted = -REACH * scene.separation * direction  # the session may have come nearer than the minimum distance
-    if scene.travel(mover, lifted) is not None:
+    if (yield from scene.travel(mover, lifted)) is not None:
         scene.set_pose(mover, start)
         return True
     scene.shift(mover, lifted)
-    fall(scene, mover, direction, 3 * REACH * scene.separation)
+    yield from fall(scene, mover, direction, 3 * REACH * scene.separation)
     for _ in range(MAX_LEVELLINGS):
-        if not _level(scene, mover, direction):
+        if not (yield from _level(scene, mover, direction)):
             break
     return True
 
 
-def _level(scene: RigidScene, mover: int, direction: Floats) -> bool:
-    """Bring all contacts near the minimum distance to it, by one linear step; False if that sank nothing."""
+def _level(scene: RigidScene, mover: int, direction: Floats) -> Steps[bool]:
+    """Steps that bring all contacts near the minimum distance to it, by one linear step; False if that sank nothing."""
     before, contacts = scene.pose(mover), scene.contacts(mover, direction, REACH)
     rows = {tuple(np.round(each.point / scene.separation).tolist()): each for each in contacts}
     chosen = list(rows.values())[:MAX_ROWS]
@@ -154,7 +158,7 @@ def _level(scene: RigidScene, mover: int, direction: Floats) -> bool:
     lifted = -REACH * scene.separation * direction  # to be lowered to the exact stop
     scene.shift(mover, lifted)
     if scene.is_clear(mover):
-        stop = fall(scene, mover, direction, 3 * REACH * scene.separation)
+        stop = yield from fall(scene, mover, direction, 3 * REACH * scene.separation)
         if stop is not None and float((scene.pose(mover) - before)[0] @ direction) > 1e-3 * scene.separation:
             return True
     scene.set_pose(mover, before)
@@ -176,8 +180,10 @@ def least_step(jacobian: Floats, bounds: Floats, wanted: Floats) -> Floats:
     return step
 
 
-def _leave_balance(scene: RigidScene, mover: int, direction: Floats, number: int, watch: Watch, length: float) -> bool:
-    """Turn a mover a little about an axis across the direction and let it sink again; False if it sank no further."""
+def _leave_balance(
+    scene: RigidScene, mover: int, direction: Floats, number: int, watch: Watch, length: float
+) -> Steps[bool]:
+    """Steps that turn a mover a little across the direction and let it sink again; False if it sank no further."""
     before = scene.pose(mover)
     angle = 0.6 + 0.5 * np.pi * number  # deterministic, along no axis of the world
     axis = np.array([np.cos(angle), np.sin(angle)]) @ _plane_across(direction)
@@ -187,8 +193,8 @@ def _leave_balance(scene: RigidScene, mover: int, direction: Floats, number: int
     scene.set_pose(mover, pose)
     if (
         scene.is_clear(mover)
-        and fall(scene, mover, direction, length) is not None
-        and _tumble(scene, mover, direction, watch, length)
+        and (yield from fall(scene, mover, direction, length)) is not None
+        and (yield from _tumble(scene, mover, direction, watch, length))
         and float((scene.pose(mover) - before)[0] @ direction) > scene.separation
     ):
         return True

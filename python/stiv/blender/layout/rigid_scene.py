@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stiv
+from stiv.blender.edit.sessions import open_session
 from stiv.blender.scene.arrays import Flags, Floats, Indices
+from stiv.task import Call, Steps
 
 AUTOMATIC_FRACTION = 1e-4  # of the diagonal of the movers, as in the core
 SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
@@ -272,10 +274,10 @@ class RigidScene:
         unit: Floats = found[lengths > 0] / lengths[lengths > 0, None]
         return unit
 
-    def travel(self, mover: int, vector: Floats, among: Flags | None = None) -> float | None:
-        """The fraction of a displacement, (3,), at which a mover stops at the minimum distance; None if it is free.
+    def travel(self, mover: int, vector: Floats, among: Flags | None = None) -> Steps[float | None]:
+        """Steps that find the fraction of a displacement, (3,), at which a mover stops; None if it is free.
 
-        A body that starts nearer than that stops where it comes nearer yet. among: see `facing`.
+        It stops at the minimum distance; if it starts nearer than that, where it comes nearer yet. among: see `facing`.
         """
         length = max(float(np.linalg.norm(vector)), 1e-300)
         step = min(1.0, STRIDE * self.size(mover) / length)
@@ -285,6 +287,7 @@ class RigidScene:
             time = self._earliest_time(mover, ends[:, None] * vector, among, 1 - nearer)
             if time <= 1:
                 return float(ends[0] + time * (ends[1] - ends[0]))
+            yield None
         return None
 
     def _earliest_time(self, mover: int, offsets: Floats, among: Flags | None, ratio: float) -> float:
@@ -351,8 +354,8 @@ class RigidScene:
                 found.append(Contact(point, float(start), each.separation, unit))
         return found
 
-    def session(self, mover: int, box: Floats) -> stiv.EditSession:
-        """A session that poses one mover among the obstacles in a box, (2, 3).
+    def session(self, mover: int, box: Floats) -> Steps[stiv.EditSession]:
+        """Steps that make a session that poses one mover among the obstacles in a box, (2, 3).
 
         A response aims for twice the separation of its session, which is therefore half the minimum distance.
         """
@@ -371,7 +374,9 @@ class RigidScene:
             threads=self._threads,
         )
         deformation = stiv.concatenate([(self.movers[mover].deformation, own)], self._positions[rows])
-        return stiv.EditSession(surface, deformation, self._poses[mover], options)
+        given = surface, deformation, self._poses[mover], options
+        session: stiv.EditSession = yield Call(open_session, stiv.EditSession.start, *given)
+        return session
 
     def facing(
         self, mover: int, offsets: Floats | None, among: Flags | None = None, margin: float = 1.0
