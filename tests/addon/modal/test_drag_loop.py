@@ -241,6 +241,18 @@ def test_settling_that_uses_up_its_budget_is_continued_until_it_has_settled(idle
     assert edit.shown == edit.accepted > 0.4
 
 
+def test_a_reached_goal_is_settled_once() -> None:
+    """Of a large object, even finding nothing to do uses up the budget."""
+    edit = FakeEdit(statuses=["reached"], settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    edit.statuses, edit.furthest = ["budget"] * 1000, 0.0
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and drag.result.status == "reached"
+    assert edit.calls.count("settle") == 1
+
+
 def test_settling_that_gains_no_more_ends_as_deflected() -> None:
     edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, settling=True)
     drag = new_drag(edit)
