@@ -29,8 +29,10 @@ def _before_file(*_unused: object) -> None:
 
 @persistent
 def _on_load(*_unused: object) -> None:
-    """At startup, Blender loads its keymaps after the file."""
-    if not bpy.app.timers.is_registered(switched):
+    """At startup, Blender loads its keymaps after the file. A module has none, and hangs if it ends with a timer."""
+    if bpy.app.background:
+        switched()
+    elif not bpy.app.timers.is_registered(switched):
         bpy.app.timers.register(switched, first_interval=0.0)
 
 

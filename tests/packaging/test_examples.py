@@ -68,7 +68,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 def run(command: list[str], folder: Path, environment: dict[str, str]) -> str:
     """Standard output of a process that must succeed."""
-    ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=300
+    )
     assert ended.returncode == 0, f"{shlex.join(command)}: {ended.returncode}\n{ended.stdout}{ended.stderr}"
     return ended.stdout
 
