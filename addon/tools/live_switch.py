@@ -43,7 +43,8 @@ def register() -> None:
     """Add the handlers, and the keys if the scene has the switch on."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
-    _on_load()
+    if not bpy.app.background:  # nobody presses keys there
+        _on_load()
 
 
 def unregister() -> None:
