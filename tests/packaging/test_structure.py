@@ -23,7 +23,9 @@ def source_folders(test: Path) -> Iterable[Path]:
     room = Path(*test.parts[2 if native else 1 : -1][:1])
     yield from (ROOT / "native/src" / room, ROOT / "native/include/stiv" / room)
     if not native:
-        yield from (ROOT / "python/stiv" / room, ROOT / room, ROOT / ALIASES.get(room.name, room))
+        yield ROOT / "python/stiv" / room
+        if room.name:  # not the root, with everything that was built
+            yield from (ROOT / room, ROOT / ALIASES.get(room.name, room))
 
 
 def source_names(test: Path) -> set[str]:
