@@ -59,17 +59,17 @@ def fault_within(window: Window) -> Steps:
     yield from prepared(window, scenes.add_box, "Box")
     yield from start(window)
     yield from window.glide(window.pixel((0.5, 0.0, 0.0)))
-    original = BlenderEdit.drag
+    original = BlenderEdit.drag_steps
 
     def broken(*given: object, **named: object) -> None:
         raise RuntimeError("broken on purpose")
 
-    BlenderEdit.drag = broken
+    BlenderEdit.drag_steps = broken
     try:
         window.move(*window.pixel((0.8, 0.0, 0.0)))
         yield from ended(window)
     finally:
-        BlenderEdit.drag = original
+        BlenderEdit.drag_steps = original
     assert box().location.length == 0.0
     assert not window.leftovers(), window.leftovers()
 
