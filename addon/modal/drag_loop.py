@@ -24,7 +24,7 @@ FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double wh
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
-MAX_IDLE = 100  # repeated solves that settle and gain little, each going on where the last one was; then a drag ends
+MAX_IDLE = 100  # repeated solves that settle and gain little, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
