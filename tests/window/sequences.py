@@ -30,7 +30,8 @@ KEYS = (
     *("ZERO", "ONE", "TWO", "FIVE", "PERIOD", "MINUS", "SLASH", "EQUAL", "BACK_SPACE", "TAB"),
     *("PAGE_UP", "PAGE_DOWN", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFT_CTRL", "LEFT_SHIFT", "F", "HOME"),
 )
-ENDS = ("RET", "LEFTMOUSE", "ESC", "RIGHTMOUSE")
+CONFIRMING = ("RET", "LEFTMOUSE")
+ENDS = (*CONFIRMING, "ESC", "RIGHTMOUSE")
 
 
 class Sequence:
@@ -131,12 +132,12 @@ class Sequence:
                 bpy.ops.object.mode_set(mode="OBJECT")
 
     def end(self) -> Steps:
-        """End the drag if it still runs; with an invalid number, only cancelling ends it."""
+        """End the drag if it still runs. After a confirmation, Esc stops its solve and keeps the state."""
         last = ""
         for key in (self.random.choice(ENDS), "ESC", "ESC"):
             if not self.window.dragging():
                 return last
-            last = key
+            last = last if last in CONFIRMING else key
             self.log.append(key)
             self.window.key(key)
             yield from self.window.settle(2)
