@@ -257,3 +257,12 @@ def test_a_drag_among_distant_obstacles_rotates_about_its_pivot() -> None:
         assert edit.write().passed
     done = as_matrix(bar.matrix_world) @ np.linalg.inv(start)
     assert done == pytest.approx(turn(np.radians(110), "Z"), abs=1e-5)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_axes_of_any_precision_become_orthonormal(dtype: Any) -> None:
+    """An axis of Blender's own floats once made a rotation end with "weight axes must be orthonormal columns"."""
+    random = np.random.default_rng(3)
+    for count in [1, 2, 3] * 20:
+        axes = FreeDirections.of_normals(random.normal(size=(count, 3)).astype(dtype)).axes
+        assert np.abs(axes.T @ axes - np.eye(3)).max() < 1e-14

@@ -28,13 +28,17 @@ class FreeDirections:
 
     @classmethod
     def of_normals(cls, normals: Floats) -> FreeDirections:
-        """The directions perpendicular to all normals, (k, 3) of any length above 0."""
+        """The directions perpendicular to all normals, (k, 3) of any length above 0.
+
+        Blender's own numbers may be float32; the core asks for axes that are orthonormal in double precision.
+        """
+        normals = np.asarray(normals, np.float64)
         units = normals / np.linalg.norm(normals, axis=1)[:, None]
         along_world = np.abs(units) == 1
         if along_world.any(axis=1).all():
             return cls(np.eye(3), ~along_world.any(axis=0))
         _, sizes, directions = np.linalg.svd(units)
-        return cls(directions.T.astype(np.float64), np.arange(3) >= int((sizes > PARALLEL).sum()))
+        return cls(directions.T, np.arange(3) >= int((sizes > PARALLEL).sum()))
 
     @classmethod
     def line(cls, direction: Floats) -> FreeDirections:
