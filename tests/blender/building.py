@@ -66,6 +66,23 @@ def add_modifier(ob: Any, kind: str, name: str = "", **properties: Any) -> Any:
     return modifier
 
 
+def smooth_by_angle() -> Any:
+    """A node group that shades edges of less than half a radian smooth, as Blender's own asset does."""
+    tree = bpy.data.node_groups.new("Smooth by Angle", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    source, result = (tree.nodes.new(f"NodeGroup{way}") for way in ("Input", "Output"))
+    angle, is_less = tree.nodes.new("GeometryNodeInputMeshEdgeAngle"), tree.nodes.new("FunctionNodeCompare")
+    smooth = tree.nodes.new("GeometryNodeSetShadeSmooth")
+    smooth.domain, is_less.operation = "EDGE", "LESS_EQUAL"
+    is_less.inputs[1].default_value = 0.5
+    tree.links.new(source.outputs[0], smooth.inputs[0])
+    tree.links.new(angle.outputs[0], is_less.inputs[0])
+    tree.links.new(is_less.outputs[0], smooth.inputs[2])
+    tree.links.new(smooth.outputs[0], result.inputs[0])
+    return tree
+
+
 def select(*objects: Any) -> None:
     """Select these objects alone; the first becomes active."""
     bpy.context.view_layer.update()

@@ -6,13 +6,13 @@ They exist only inside a `with` statement, so no undo step, file or handler outs
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import bpy
 
-from stiv.blender.scene.evaluations import RENDER
+from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active
 from stiv.blender.scene.references import ObjectReference
 
 NAME = "STIV Evaluation"
@@ -24,15 +24,17 @@ TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_sub
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
-    def __init__(self, context: bpy.types.Context, evaluation: str) -> None:
+    def __init__(self, home: bpy.types.Scene, evaluation: str, own_data: Collection[bpy.types.Object] = ()) -> None:
+        """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too."""
         self._evaluation = evaluation
+        self._own_data = frozenset(ob.session_uid for ob in own_data)
         self._made: list[bpy.types.ID] = []
         self._copies: dict[int, bpy.types.Object] = {}
         self._users: dict[int, bpy.types.Object] = {}
         self._collections: dict[str, bpy.types.Collection] = {}
         self.scene = bpy.data.scenes.new(NAME)
         self._made.append(self.scene)
-        self._copy_settings(context.scene)
+        self._copy_settings(home)
 
     def fill(self, objects: Sequence[bpy.types.Object], shown: Callable[[bpy.types.Object], bool]) -> None:
         """Copy objects and evaluate them."""
@@ -55,7 +57,11 @@ class EvaluationCopies:
 
     def evaluated(self, reference: ObjectReference) -> bpy.types.Object:
         """The evaluated copy of an object."""
-        return self._copies[reference.session_uid].evaluated_get(self.depsgraph)
+        return self.copy_of(reference).evaluated_get(self.depsgraph)
+
+    def copy_of(self, reference: ObjectReference) -> bpy.types.Object:
+        """The copy of an object."""
+        return self._copies[reference.session_uid]
 
     def remove(self) -> None:
         """Remove all copies."""
@@ -76,7 +82,7 @@ class EvaluationCopies:
         self._made.append(twin)
         if ob.type == "META":  # metaballs merge by name, and a numbered name would show no surface
             twin.name = f"{NAME[0]}{ob.name}"
-        if getattr(ob.data, "is_editmode", False) or ob.type in COPIED_TYPES:
+        if ob.session_uid in self._own_data or getattr(ob.data, "is_editmode", False) or ob.type in COPIED_TYPES:
             twin.data = ob.data.copy()
             self._made.append(twin.data)
         self._users[twin.session_uid] = ob
@@ -84,6 +90,9 @@ class EvaluationCopies:
             _as_rendered(twin)
         else:
             twin.hide_viewport = False
+        if self._evaluation == SHOWN:
+            for copied, modifier in zip(twin.modifiers, ob.modifiers, strict=True):
+                copied.show_viewport = is_active(modifier, ob)
         return twin
 
     def _replace_references(self, twin: bpy.types.Object) -> None:
@@ -131,7 +140,7 @@ def open_copies(
     shown: Callable[[bpy.types.Object], bool],
 ) -> Iterator[EvaluationCopies]:
     """Copy objects and evaluate them as in Object Mode or as rendered. `shown` selects the visible ones."""
-    copies = EvaluationCopies(context, evaluation)
+    copies = EvaluationCopies(context.scene, evaluation)
     try:
         copies.fill(objects, shown)
         yield copies

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads supported modifier stacks as a list of linear stages."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import bpy
 
 from stiv import InputError
 from stiv.blender.scene.evaluations import SHOWN, VIEWPORT, is_active, subdivision_levels
+from stiv.blender.scene.position_test import keep_positions
 from stiv.blender.scene.references import ObjectReference
 
-# Modifiers that change neither the positions nor the number and order of vertices.
+# Modifiers that change neither the positions nor the number and order of vertices. Others are found by trial.
 POSITION_PRESERVING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
+KNOWN = POSITION_PRESERVING | {"SUBSURF", "LATTICE"}
 
 # Why a modifier is refused, and a way out; the message begins with the object, and the modifier's type and name.
 MODIFIER_REASONS = {
@@ -52,12 +56,15 @@ Stage = SubdivisionStage | LatticeStage
 
 
 def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
-    """Read the stages of an evaluation in order; modifiers without effect are skipped.
+    """Read the stages of an evaluation in order; modifiers that leave positions and topology alone are skipped.
 
     Raises InputError for any other modifier, naming the object, the modifier and a way out.
     """
     stages: list[Stage] = []
     triangulated = ""
+    others = [each for each in ob.modifiers if is_active(each, ob, evaluation) and each.type not in KNOWN]
+    if others and not keep_positions(ob, scene, evaluation, [each.name for each in others]):
+        raise _refusal(ob, others[0], evaluation)
     for modifier in ob.modifiers:
         if not is_active(modifier, ob, evaluation):
             continue
@@ -83,11 +90,13 @@ def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.
         return _subdivision(modifier, scene, evaluation)
     if isinstance(modifier, bpy.types.LatticeModifier):
         return _lattice_stage(ob, modifier)
-    if modifier.type in POSITION_PRESERVING:
-        return None
-    if not is_active(modifier, ob):
-        raise _refuse_unseen(ob, modifier, evaluation)
-    raise modifier_error(ob, modifier.name, "unsupported")
+    return None
+
+
+def _refusal(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
+    if is_active(modifier, ob):
+        return modifier_error(ob, modifier.name, "unsupported")
+    return _refuse_unseen(ob, modifier, evaluation)
 
 
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A hidden copy of a mesh object, evaluated with any vertex positions by Blender itself."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from stiv.blender.scene.arrays import Indices, Singles
+from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
+from stiv.blender.scene.evaluation_copies import EvaluationCopies
+from stiv.blender.scene.evaluations import SHOWN, signature
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
+from stiv.blender.scene.references import ObjectReference
+
+
+@dataclass(frozen=True, eq=False)
+class EvaluatedStack:
+    """Blender's evaluation of a twin: local positions, (n, 3), corners of the faces and the first corner of each."""
+
+    positions: Singles
+    corners: Indices
+    starts: Indices
+
+    def has_topology_of(self, other: EvaluatedStack) -> bool:
+        """Do both have the same vertices and faces?"""
+        return (
+            len(self.positions) == len(other.positions)
+            and np.array_equal(self.corners, other.corners)
+            and np.array_equal(self.starts, other.starts)
+        )
+
+    def equals(self, other: EvaluatedStack) -> bool:
+        """Do both agree to the last bit?"""
+        return self.has_topology_of(other) and np.array_equal(self.positions, other.positions)
+
+
+class StackTwin:
+    """A copy of a mesh object with a mesh of its own, alone in a scene of its own."""
+
+    def __init__(self, ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> None:
+        """Copy the object as an evaluation of the scene shows it. Use `open_twin`, or call `remove` at the end."""
+        reference = ObjectReference.of(ob)
+        self._copies = EvaluationCopies(scene, evaluation, own_data=[ob])
+        try:
+            self._copies.fill([ob, *_different_objects(ob, scene, evaluation)], lambda other: other == ob)
+        except BaseException:
+            self._copies.remove()
+            raise
+        self.ob = self._copies.copy_of(reference)
+
+    def remove(self) -> None:
+        """Remove the copy and its scene."""
+        self._copies.remove()
+
+    def show_modifiers(self, names: Collection[str], show: bool) -> None:
+        """Switch modifiers on or off."""
+        for name in names:
+            self.ob.modifiers[name].show_viewport = show
+
+    def evaluate(self, local: Singles) -> EvaluatedStack:
+        """Blender's evaluation at local positions of the vertices, (m, 3)."""
+        self.write(local)
+        with self.evaluated() as mesh:
+            return EvaluatedStack(read_positions(mesh), *read_corners(mesh))
+
+    def write(self, local: Singles) -> None:
+        """Write local positions, (m, 3). Writing an attribute instead would leave normals and bounds as they were."""
+        mesh, flat = self.ob.data, np.ascontiguousarray(local, np.float32).ravel()
+        mesh.vertices.foreach_set("co", flat)
+        if mesh.shape_keys is not None:
+            mesh.shape_keys.key_blocks[0].data.foreach_set("co", flat)
+        mesh.update()
+
+    @contextmanager
+    def evaluated(self) -> Iterator[bpy.types.Mesh]:
+        """The evaluated mesh, valid inside the `with` statement."""
+        graph = self._copies.depsgraph
+        graph.update()
+        with evaluated_mesh(self.ob.evaluated_get(graph)) as mesh:
+            yield mesh
+
+
+@contextmanager
+def open_twin(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> Iterator[StackTwin]:
+    """A twin that is removed at the end of the `with` statement."""
+    twin = StackTwin(ob, scene, evaluation)
+    try:
+        yield twin
+    finally:
+        twin.remove()
+
+
+def _different_objects(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> list[bpy.types.Object]:
+    """Objects to which the object refers, directly or indirectly, and which this evaluation shows differently."""
+    if evaluation == SHOWN:
+        return []
+    used_by: dict[bpy.types.Object, set[bpy.types.Object]] = {}
+    waiting = [ob]
+    while waiting:
+        user = waiting.pop()
+        if user not in used_by:
+            used_by[user] = set(shape_dependencies(user))
+            waiting += used_by[user]
+    different = {
+        each for each in used_by
+        if each.mode == "EDIT" or signature(each, scene, SHOWN) != signature(each, scene, evaluation)
+    }  # fmt: skip
+    numbers = {user.session_uid: {used.session_uid for used in found} for user, found in used_by.items()}
+    chosen = add_dependents({each.session_uid for each in different}, numbers)
+    return [each for each in used_by if each.session_uid in chosen and each != ob]
