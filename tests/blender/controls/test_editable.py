@@ -125,15 +125,6 @@ def test_shared_mesh() -> None:
     accepted()
 
 
-def test_shape_keys() -> None:
-    cube = add_cube("Cube")
-    cube.shape_key_add(name="Basis")
-    cube.shape_key_add(name="Big")
-    select(cube)
-    refused('Cube: shape key "Big" hides edits; apply all shape keys', DEFORM)
-    accepted()
-
-
 def test_linked_and_overridden_data(tmp_path: Path) -> None:
     cube = add_cube("Linked")
     path = str(tmp_path / "library ü.blend")

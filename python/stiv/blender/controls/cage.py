@@ -12,6 +12,7 @@ import stiv
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
+from stiv.blender.controls.key_editing import KeyEditing, check_keys
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.controls.points import PointGoal, to_stored
 from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
@@ -57,6 +58,7 @@ def open_cage(ob: bpy.types.Object) -> tuple[Floats, Singles]:
     check_data(ob)
     if ob.mode == "EDIT":
         ob.update_from_editmode()
+    check_keys(ob)
     return as_matrix(ob.matrix_world), read_cage(ob)
 
 
@@ -81,15 +83,21 @@ def _subdivision_of(
 
     Raises InputError for unsupported modifiers.
     """
+    cage = None if writer.keys is None else writer.keys.deformation(ob, writer.frame, evaluation)
     if writer.refined is not None:
-        return writer.refined.refinement.deformation
+        return _of_cage(writer.refined.refinement.deformation, cage)
     result = None
     for stage in read_stack(ob, scene, evaluation):
         if isinstance(stage, LatticeStage) and not is_undeformed(stage.lattice.find().data):
             raise modifier_error(ob, stage.modifier, "deformed lattice", stage.lattice.name)
         if isinstance(stage, SubdivisionStage):
             result = subdivide(ob.data, stage)
-    return result
+    return _of_cage(result, cage)
+
+
+def _of_cage(subdivision: stiv.Deformation | None, cage: stiv.Deformation | None) -> stiv.Deformation | None:
+    """The subdivision of a cage that follows the controls; None for the identity, each."""
+    return subdivision if cage is None else cage if subdivision is None else stiv.compose(subdivision, cage)
 
 
 def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:
@@ -101,24 +109,34 @@ def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:
 
 @dataclass(frozen=True)
 class CageWriter:
-    """Writes cage vertices. `original` are the local positions at the start, (m, 3)."""
+    """Writes cage vertices, or shape keys. `original` are the local positions shown at the start, (m, 3)."""
 
     reference: ObjectReference
     mode: str
     frame: Floats
     original: Singles
     refined: RefinedWriter | None = None
+    keys: KeyEditing | None = None
 
     def write(self, controls: Floats) -> None:
         """Write world positions, (m, 3), to the cage and to the object that shows it."""
         local = to_stored(self.frame, controls, self.original)
-        _write_local(self.reference.find_in_mode(self.mode), local)
+        ob = self.reference.find_in_mode(self.mode)
+        shown = local
+        if self.keys is not None:
+            self.keys.check(ob)
+            shown = self.keys.shown_positions(local)
+        _write_local(ob, local, self.keys)
         if self.refined is not None:
-            self.refined.write(transform_points(self.frame, local))
+            self.refined.write(transform_points(self.frame, shown))
 
     def restore(self) -> None:
         """Write the original positions, in whatever mode the object is now."""
-        _write_local(self.reference.find(), self.original)
+        ob = self.reference.find()
+        if self.keys is not None:
+            self.keys.restore(ob)
+        if self.keys is None or ob.mode == "EDIT":
+            _write_local(ob, self.original, self.keys)
         if self.refined is not None:
             self.refined.restore()
 
@@ -131,14 +149,16 @@ def cage_writer(
     settings: EditSettings,
 ) -> CageWriter:
     """Writer of a cage at local positions, (m, 3), in its present mode. Raises InputError."""
-    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings))
+    return CageWriter(reference, ob.mode, frame, local, refined_writer(ob, local, settings), KeyEditing.of(ob))
 
 
-def _write_local(ob: bpy.types.Object, local: Singles) -> None:
+def _write_local(ob: bpy.types.Object, local: Singles, keys: KeyEditing | None) -> None:
     if len(local) != _vertex_count(ob):
         raise SceneChangedError(f"{ob.name} changed its number of vertices")
     if ob.mode == "EDIT":
-        _write_edit_mesh(ob.data, local)
+        _write_edit_mesh(ob.data, local if keys is None else keys.active_positions(local))
+    elif keys is not None:
+        keys.write(ob, local)
     else:
         _write_mesh(ob.data, local)
 
@@ -148,10 +168,7 @@ def _vertex_count(ob: bpy.types.Object) -> int:
 
 
 def _write_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:
-    """Blender evaluates the Basis key if there is one, so mesh and key are kept equal."""
     mesh.vertices.foreach_set("co", local.ravel())
-    if mesh.shape_keys is not None:
-        mesh.shape_keys.key_blocks[0].data.foreach_set("co", local.ravel())
     mesh.update()
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Response weights of an object's controls, from its settings."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -10,6 +10,7 @@ from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.points import PinnedDirections, point_weights
 from stiv.blender.scene.arrays import Flags, Floats, as_matrix
+from stiv.blender.scene.shape_keys import read_mix
 from stiv.blender.scene.vertex_groups import group_weights
 from stiv.blender.settings import EditSettings
 
@@ -39,10 +40,20 @@ class ControlWeights:
 
 
 def control_weights(ob: bpy.types.Object, settings: EditSettings) -> ControlWeights:
-    """Read the weights of an object's controls; 1 without a vertex group.
+    """Read the weights of an object's controls; 1 without a vertex group, 0 where a shape key has no effect.
 
     In Edit Mode as of the last `update_from_editmode`. Raises InputError if there is no such group.
     """
+    found = _weights_of_group(ob, settings)
+    if ob.type != "MESH" or ob.data.shape_keys is None:
+        return found
+    hidden = read_mix(ob).shares == 0
+    return replace(
+        found, max_weights=np.where(hidden.reshape(-1, *(1,) * (found.max_weights.ndim - 1)), 0.0, found.max_weights)
+    )
+
+
+def _weights_of_group(ob: bpy.types.Object, settings: EditSettings) -> ControlWeights:
     chosen = settings.weights.get(ob.name)
     if chosen is None:
         count = len(ob.data.vertices if ob.type == "MESH" else ob.data.points)

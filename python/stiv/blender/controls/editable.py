@@ -19,7 +19,6 @@ REASONS = {
     "linked data": "its {kind} is linked from another file; make it local",
     "metaball": "metaballs cannot move; convert it to a mesh",
     "overridden data": "its {kind} is a library override; make it local",
-    "shape key": 'shape key "{other}" hides edits; apply all shape keys',
     "shared data": 'its {kind} is shared with "{other}"; make it single user',
     "system override": "its override is not editable; make it editable in the Outliner",
     "zero scale": "its scale is zero; change it",
@@ -58,9 +57,6 @@ def check_data(ob: bpy.types.Object) -> None:
     others = [other.name for other in bpy.data.objects if other.data == ob.data and other != ob]
     if others:
         raise _refusal(ob, "shared data", kind=kind, other=others[0])
-    keys = ob.data.shape_keys
-    if keys is not None and len(keys.key_blocks) > 1:
-        raise _refusal(ob, "shape key", other=keys.key_blocks[1].name)
 
 
 def _refusal(ob: bpy.types.Object, reason: str, **names: Any) -> InputError:

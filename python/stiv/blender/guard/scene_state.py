@@ -10,6 +10,7 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.cage import CageWriter
+from stiv.blender.controls.key_editing import KeyEditing
 from stiv.blender.controls.lattice_points import LatticeWriter
 from stiv.blender.controls.object_transform import ROTATION_PROPERTIES
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix
@@ -55,7 +56,8 @@ class ObjectState:
         rotation_property: name of the property with its rotation.
         location, rotation, scale: its own properties.
         world: world matrix, (4, 4).
-        points: local positions of cage vertices or lattice points, (m, 3); None for other types.
+        points: local positions of cage vertices as shown, or of lattice points, (m, 3); None for other types.
+        keys: the active shape key and those that follow it; None without.
         connectivity: checksum of its faces and edges; 0 for other types than meshes.
         pose: pose and shape key values.
     """
@@ -70,11 +72,14 @@ class ObjectState:
     points: Singles | None
     connectivity: int
     pose: PoseState
+    keys: KeyEditing | None = None
 
     @property
-    def kind(self) -> tuple[int, str, int, int]:
+    def kind(self) -> tuple[object, ...]:
         """Properties that must agree before an edit can lead from one state to another."""
-        return self.parent, self.rotation_property, -1 if self.points is None else len(self.points), self.connectivity
+        count = -1 if self.points is None else len(self.points)
+        keys = () if self.keys is None else tuple(number for number, _ in self.keys.stored)
+        return self.parent, self.rotation_property, count, self.connectivity, keys
 
     @property
     def placement(self) -> tuple[tuple[float, ...], ...]:
@@ -99,8 +104,10 @@ class ObjectState:
         if self.points is None:
             return
         ob = self.reference.find()
-        writer = CageWriter if ob.type == "MESH" else LatticeWriter
-        writer(self.reference, ob.mode, self.world, self.points).restore()
+        if ob.type == "MESH":
+            CageWriter(self.reference, ob.mode, self.world, self.points, keys=self.keys).restore()
+        else:
+            LatticeWriter(self.reference, ob.mode, self.world, self.points).restore()
 
 
 SceneState = Mapping[int, ObjectState]
@@ -122,7 +129,7 @@ def read_object(ob: bpy.types.Object) -> ObjectState:
     return ObjectState(
         ObjectReference.of(ob), 0 if ob.parent is None else ob.parent.session_uid, rotation, tuple(ob.location),
         tuple(getattr(ob, rotation)), tuple(ob.scale), as_matrix(ob.matrix_world), _points(ob), _connectivity(ob),
-        read_pose(ob),
+        read_pose(ob), KeyEditing.of(ob) if ob.type == "MESH" else None,
     )  # fmt: skip
 
 

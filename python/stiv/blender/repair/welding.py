@@ -52,6 +52,8 @@ def weld_copies(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
     for ob in objects:
         if ob.mode == "EDIT":
             raise InputError(f"{ob.name}: cannot be welded in Edit Mode; use Merge by Distance")
+        if ob.data.shape_keys is not None and len(ob.data.shape_keys.key_blocks) > 1:
+            raise InputError(f"{ob.name}: has shape keys and cannot be welded; use Merge by Distance")
     owners, meshes, copies = [], [], []
     for ob in objects:
         owners.append(ObjectReference.of(ob))

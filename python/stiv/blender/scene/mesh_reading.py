@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from stiv.blender.scene.arrays import Indices, Singles, read_collection
+from stiv.blender.scene.shape_keys import read_mix
 
 
 @contextmanager
@@ -98,7 +99,7 @@ def _edited_creases(elements: Any, name: str) -> Singles | None:
 
 
 def read_cage(ob: bpy.types.Object) -> Singles:
-    """Local positions of the cage, (m, 3); in Edit Mode as of the last `update_from_editmode`."""
-    keys = ob.data.shape_keys
-    points = ob.data.vertices if keys is None or ob.mode == "EDIT" else keys.key_blocks[0].data
-    return read_collection(points, "co", 3, np.float32)
+    """Local positions of the cage as shown now, (m, 3); in Edit Mode as of the last `update_from_editmode`."""
+    if ob.data.shape_keys is not None:
+        return read_mix(ob).positions
+    return read_collection(ob.data.vertices, "co", 3, np.float32)
