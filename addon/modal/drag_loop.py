@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
+DOUBLINGS = 4  # of a budget, at most; those of a goal for which nothing was accepted end a motion sooner
+DOUBLINGS_UNFINISHED = 2
+REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
-MAX_SLOW = 3  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
-MAX_IDLE = 100  # repeated solves that settle and gain little, each from where the last one was; then a drag ends
+MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
+MAX_IDLE = 10  # repeated solves that settle and gain little, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
@@ -90,7 +93,8 @@ class DragLoop:
 
     Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. The
     start and each solve are tasks, whose jobs run beside Blender: a tick waits for a job no longer than a frame, and
-    the next tick continues. If the budget of a solve ends before a state is accepted, the next solve continues with the
+    the next tick continues. While the mouse rests, budgets grow and the drag settles; the next motion cancels that. If
+    the budget of a solve ends before a state is accepted, the next solve continues with the
     same goal: with a new goal each time, none would be reached.
 
     No exception leaves this class after the start. A rejected value (ValueError) becomes `note`, and the last accepted
@@ -127,6 +131,8 @@ class DragLoop:
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
         self._fruitless = self._idle = 0
+        self._can_cancel = False  # the task refines a state that is accepted, until the next motion
+        self._moved_at = 0.0
         self._run(calls.begin(state.request), self._take_first_edit)
         self._advance_task(START_WAIT)
 
@@ -155,7 +161,7 @@ class DragLoop:
         """Solve for the goal of the pointer in a changed view."""
         if not self._confirmed:
             self.state = replace(self.state, pointer=pointer)
-            self._pending = True
+            self._note_motion()
 
     def tick(self) -> Progress:
         """Solve for the latest goal if it is not reached, and write the result."""
@@ -176,7 +182,7 @@ class DragLoop:
     def _carry_out(self, event: Event) -> Effect:
         self.state, effect = step(self.state, event)
         if effect is Effect.UPDATE:
-            self._pending = True
+            self._note_motion()
         elif effect is Effect.CONFIRM:
             self._confirm()
         elif effect is Effect.STOP:
@@ -188,6 +194,14 @@ class DragLoop:
             self.progress = Progress.CANCELLED
         return effect
 
+    def _note_motion(self) -> None:
+        """Solve for a new goal, without what rest was used for."""
+        self._pending, self._settled = True, False
+        self._fruitless = self._idle = 0
+        self._moved_at = time.perf_counter()
+        if self._task is not None and self._can_cancel:
+            self._task.cancel()
+
     def _advance(self) -> None:
         end, solves = time.perf_counter() + BUDGET, self._solves
         while solves == self._solves and (self._task is not None or self._begin_work()):
@@ -198,9 +212,9 @@ class DragLoop:
         if self._confirmed and self.at_rest and (self._settled or self.result is None):
             self.progress = Progress.FINISHED
 
-    def _run(self, steps: Steps[Any], take: Callable[[Any], None]) -> None:
+    def _run(self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False) -> None:
         self._task: Task[Any] | None = self._calls.task(steps)
-        self._take = take
+        self._take, self._can_cancel = take, can_cancel
 
     def _advance_task(self, seconds: float) -> bool:
         """Continue the task for some seconds; returns whether it is done, and its result taken."""
@@ -226,11 +240,16 @@ class DragLoop:
         if self._pending:
             if not self._begin_again():
                 self._begin_solve()
-        elif self._confirmed and not self._settled and self.result is not None:
+        elif not self._settled and self.result is not None and (self._confirmed or self._rests()):
             assert self.edit is not None
             self._settled = True
-            self._run(self.edit.settle_steps(), self._take_settled)
+            self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
         return self._task is not None
+
+    def _rests(self) -> bool:
+        """Whether the mouse has not moved for a while, and surfaces collide."""
+        rests = time.perf_counter() - self._moved_at >= REST_TIME
+        return rests and self.progress is Progress.RUNNING and self._begun.interference
 
     def _begin_solve(self) -> None:
         assert self.edit is not None
@@ -240,16 +259,21 @@ class DragLoop:
         except ValueError as error:
             self.note = str(error)
             return
+        is_new = self._unfinished is None
         self._unfinished = None
-        budget = FINAL_BUDGET * 2 ** min(self._fruitless, 4) if self._confirmed else BUDGET
+        doublings = min(self._fruitless, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
+        budget = (FINAL_BUDGET if self._confirmed else BUDGET) * 2**doublings
         steps = self.edit.drag_steps(goal.motion, time_budget=budget)
-        self._run(_noting(steps), lambda found: self._take_solved(goal, found))
+        can_cancel = is_new and self._fruitless > 0 and not self._confirmed
+        self._run(_noting(steps), lambda found: self._take_solved(goal, found), can_cancel)
 
     def _take_first_edit(self, edit: Edit) -> None:
         self.edit = edit
         self.progress = Progress.FINISHING if self._confirmed else Progress.RUNNING
 
     def _take_solved(self, goal: Goal, found: EditResult | ValueError) -> None:
+        if self._is_cancelled(found):
+            return
         self._solves += 1
         if isinstance(found, ValueError):
             self.note = str(found)
@@ -265,6 +289,8 @@ class DragLoop:
 
     def _take_settled(self, settled: EditResult) -> None:
         """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
+        if self._is_cancelled(settled):
+            return
         self._solves += 1
         if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
             self.result, self._unwritten = settled, True
@@ -275,9 +301,13 @@ class DragLoop:
         gained = settled.energy < GAIN * least
         self._solved = (state, settled.energy if gained else least)
         self._idle = 0 if gained else self._idle + 1
-        self._settled = self._idle == MAX_IDLE
+        self._settled = self._idle >= MAX_IDLE
         if self._settled and self.result is not None and self.result.status == "budget" and self.result.path:
             self.result = replace(self.result, status="corrected")
+
+    def _is_cancelled(self, found: EditResult | ValueError) -> bool:
+        """Whether a motion cancelled the solve, whose goal is no longer wanted."""
+        return self._can_cancel and self._pending and getattr(found, "status", "") == "cancelled"
 
     def _new_goal(self) -> Goal:
         transform = self._calls.transform_of(self.state)

@@ -11,7 +11,7 @@ from .. import stiv_blender
 from ..modal.request import Request
 from ..preferences import threads
 
-DRAG_BUDGET = 0.04  # seconds of a solve of a drag that has no budget from its tick: when it settles
+DRAG_BUDGET = 0.5  # seconds of a solve that has no budget from the loop of a drag: when it settles, in a job
 
 
 def edit_settings(

@@ -74,6 +74,8 @@ class FakeEdit:
 
     def settle_steps(self) -> "Steps[Any]":
         yield from self._delayed("settle")
+        if self.cancelled:
+            return FakeResult("cancelled")
         self._called("settle")
         return self._solve(self.goals[-1]) if self.settling else FakeResult("unchanged")
 

@@ -70,6 +70,7 @@ def measure_latency(window: Window) -> Steps:
             with window.override():
                 bpy.ops.object.mode_set(mode="EDIT")
                 bpy.ops.mesh.select_all(action="SELECT")
+                bpy.ops.ed.undo_push(message="edit mode")
         yield from window.next_draw()
         print(f"{mode}, {12 * cells**2} triangles", flush=True)
         value = placed_x if mode == "OBJECT" else edited_x

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
+from stiv_addon.modal import drag_loop
 from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
@@ -28,6 +29,12 @@ def measure(state: State) -> float:
 
 def move_to(x: float) -> Event:
     return Event("MOUSEMOVE", "NOTHING", (x, 0.0))
+
+
+@pytest.fixture
+def rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mouse that does not move rests at once."""
+    monkeypatch.setattr(drag_loop, "REST_TIME", 0.0)
 
 
 def test_motions_are_solved_for_the_latest_only() -> None:
@@ -274,6 +281,39 @@ def test_esc_stops_settling_and_keeps_the_accepted_state() -> None:
     drag.handle(Event("ESC"))
     drag.tick()
     assert drag.progress is Progress.FINISHED and drag.stopped and 0.1 <= edit.shown == edit.accepted < 0.2
+
+
+def test_a_drag_settles_while_the_mouse_rests_so_that_confirming_solves_nothing(rest: None) -> None:
+    edit = FakeEdit(statuses=["corrected", "corrected", "budget", "corrected"], furthest=0.3, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    for _ in range(10):
+        drag.tick()
+    assert drag.at_rest and edit.shown == edit.accepted == 0.9
+    before = list(edit.calls)
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls == before and "settle" in before
+
+
+def test_a_motion_cancels_what_a_resting_drag_solves(rest: None) -> None:
+    edit = FakeEdit(statuses=["blocked"], delays={"settle": 1000}, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    assert drag.tick() is Progress.RUNNING and edit.busy
+    drag.handle(move_to(70))
+    drag.tick()
+    drag.tick()
+    assert edit.goals == [0.5, 0.7] and edit.shown == 0.7
+
+
+def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
+    edit = FakeEdit(settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    for _ in range(5):
+        drag.tick()
+    assert "settle" not in edit.calls
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:

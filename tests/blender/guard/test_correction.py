@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results of other tools are goals: the correction is free of intersections, and close to the result."""
 
+import math
 from typing import Any
 
 import bmesh
@@ -67,6 +68,69 @@ def test_an_object_turned_and_scaled_at_once_is_corrected() -> None:
     assert box.rotation_euler.z == pytest.approx(0.6, abs=1e-3)
     assert box.scale.x > 1.1
     assert evaluated(box)[:, 0].max() < WALL
+
+
+def rotate_z(ob: Any, angle: float, pivot: tuple[float, float] = (0.0, 0.0)) -> None:
+    """As Blender's R about the z axis and a pivot."""
+    x, y = ob.location.x - pivot[0], ob.location.y - pivot[1]
+    ob.rotation_euler.z += angle
+    ob.location.x = pivot[0] + x * math.cos(angle) - y * math.sin(angle)
+    ob.location.y = pivot[1] + x * math.sin(angle) + y * math.cos(angle)
+
+
+@pytest.mark.parametrize("pivot", [(0.0, 0.0), (0.5, -1.0)])
+def test_a_corrected_rotation_turns_about_its_pivot_only(pivot: tuple[float, float]) -> None:
+    add_wall()
+    bar = add_cube("Bar", scale=(0.3, 3.2, 0.3))
+    start = (bar.location.x - pivot[0], bar.location.y - pivot[1])
+    assert corrected(lambda: rotate_z(bar, -1.4, pivot)).corrected
+    angle = bar.rotation_euler.z
+    assert -1.39 < angle < -0.2 and tuple(bar.rotation_euler[:2]) == (0, 0)
+    assert evaluated(bar)[:, 0].max() == pytest.approx(WALL, abs=0.05)
+    turned = (
+        pivot[0] + start[0] * math.cos(angle) - start[1] * math.sin(angle),
+        pivot[1] + start[0] * math.sin(angle) + start[1] * math.cos(angle),
+    )
+    assert tuple(bar.location) == pytest.approx((*turned, 0.0), abs=2e-6)
+    assert pivot != (0.0, 0.0) or tuple(bar.location) == (0, 0, 0)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.25, -0.5, 0.0)])
+def test_a_corrected_uniform_scale_stays_uniform(place: tuple[float, float, float]) -> None:
+    """Between two walls, whatever the pivot: it stops, or slides, and never squeezes."""
+    add_wall()
+    add_cube("Left", (-WALL - 0.5, 0, 0), scale=(0.5, 4, 4))
+    box = add_cube("Box", rotation_euler=(0, 0, 0.4))
+
+    def change() -> None:
+        box.scale = (6, 6, 6)
+        box.location = place
+
+    assert corrected(change).corrected
+    assert box.scale.x == box.scale.y == box.scale.z > 1.5
+    assert box.rotation_euler.z == pytest.approx(0.4, abs=1e-7)
+
+
+def test_a_corrected_scale_along_one_axis_keeps_the_other_factors() -> None:
+    add_wall()
+    box = add_cube("Box")
+    assert corrected(lambda: setattr(box, "scale", (9, 1, 1))).corrected
+    assert 2.9 < box.scale.x < 9 and tuple(box.scale[1:]) == (1, 1)
+    assert tuple(box.location[1:]) == (0, 0) and evaluated(box)[:, 0].max() < WALL
+
+
+def test_a_corrected_move_does_not_turn_not_even_beside_a_rotation() -> None:
+    add_cube("Wall", (WALL + 0.5, 2.6, 0), 1.0, scale=(0.5, 2, 4))  # hit off the centre
+    bar, other = add_cube("Bar", scale=(0.3, 1.5, 0.3)), add_cube("Other", (-6, 0, 0))
+
+    def change() -> None:
+        bar.location.x = 9
+        other.rotation_euler.z = 0.5
+
+    outcome = corrected(change)
+    assert outcome.corrected and tuple(bar.rotation_euler) == (0, 0, 0)
+    assert bar.location.x < WALL + 4.5
+    assert other.rotation_euler.z == pytest.approx(0.5, abs=1e-6) and tuple(other.location) == (-6, 0, 0)
 
 
 def test_vertices_moved_in_edit_mode_stop_at_the_wall_and_others_stay() -> None:

@@ -59,7 +59,8 @@ class EditSolver:
             result: stiv.EditResult = yield Call(session.settle, session.start_settle)
         else:
             result = yield Call(session.drag, session.start_drag, goal, **limits)
-        self.trail.add(goal, result)
+        if result.status != "cancelled":  # its goal is no longer wanted
+            self.trail.add(goal, result)
         return result
 
     def discard_session(self) -> None:

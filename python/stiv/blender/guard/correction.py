@@ -9,23 +9,27 @@ import bpy
 import numpy as np
 
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.directions import ALL_FREE, NONE_FREE
 from stiv.blender.controls.joined_seams import seam_message
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import make_participant, may_have_surface, merge_participants
+from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.guard.changes import Change, Changes, compare
-from stiv.blender.guard.scene_state import SceneState, read_state
+from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
+from stiv.blender.guard.tool_motion import tool_motion
 from stiv.blender.scene.arrays import Floats, Indices, transform_points
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, run
 
 STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
 WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
-TIME_LIMIT = 5.0  # seconds for one correction; then the last accepted state is written
+TIME_LIMIT = 5.0  # seconds for one correction; then what is accepted so far is written
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,20 @@ def correct_after_tool(
     changes: of `compare`, without an unsupported one. A result that needs no correction stays as it is exactly. Raises
     InputError, StartIntersectsError and SceneChangedError; the tool's result then remains.
     """
+    return run(correct_after_tool_steps(context, settings, accepted, changes))
+
+
+def correct_after_tool_steps(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    accepted: SceneState,
+    changes: Changes,
+    time_limit: float = TIME_LIMIT,
+) -> Steps[ToolCorrection]:
+    """Steps of `correct_after_tool`, which take at most about `time_limit` seconds.
+
+    Between steps, the scene shows the accepted state of what changed. Steps that are closed leave the tool's result.
+    """
     chosen = [change for change in changes.changes if _participates(change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
     deformers = tuple(change.reference.name for change in changes.changes if _may_deform_others(change))
@@ -64,10 +82,10 @@ def correct_after_tool(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = list(_passes(context, settings, wanted, names, time.monotonic() + TIME_LIMIT))
+        outcomes = yield from _passes(context, replace(settings, time_budget=time_limit), wanted, names)
         if all(outcome.reached for outcome in outcomes) and _is_tool_result_free(context, wanted, chosen, outcomes):
             return ToolCorrection(False, names, deformers=deformers)
-    except Exception:
+    except BaseException:
         _restore(context, wanted, chosen)
         raise
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
@@ -119,10 +137,12 @@ def _is_tool_result_free(
 
 
 def _passes(
-    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], deadline: float
-) -> Iterator[_Outcome]:
+    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str]
+) -> Steps[list[_Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children."""
+    deadline = time.monotonic() + settings.time_budget
     done: set[tuple[int, str]] = set()
+    outcomes: list[_Outcome] = []
     while True:
         present = read_state(context)
         remaining = [
@@ -131,11 +151,12 @@ def _passes(
         ]  # fmt: skip
         now = _outermost(remaining, wanted)
         if not now:
-            return
+            return outcomes
         kind = "scale" if all(_kind(change, done) == "scale" for change in now if change.placed) else "rotate"
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {(change.reference.session_uid, _kind(change, done)) for change in now}
-        yield _edit(context, settings, present, wanted, now, kind, deadline)
+        goals = _ToolGoals.between(present, wanted, now)
+        outcomes.append((yield from _edit(context, settings, goals, kind, deadline)))
 
 
 def _kind(change: Change, done: set[tuple[int, str]]) -> str:
@@ -159,31 +180,50 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
     return [change for change in changes if not has_changing_parent(change.reference.session_uid)]
 
 
+@dataclass(frozen=True)
+class _ToolGoals:
+    """What a tool did to objects, by name: the change, the state after it, and for those that it placed the motion."""
+
+    changes: dict[str, Change]
+    after: dict[str, ObjectState]
+    motions: dict[str, Motion]
+
+    @staticmethod
+    def between(present: SceneState, wanted: SceneState, changes: Sequence[Change]) -> "_ToolGoals":
+        states = {each.reference.name: (present[number], wanted[number]) for each, number in _numbered(changes)}
+        by_name = {each.reference.name: each for each in changes}
+        motions = {name: tool_motion(each, *states[name]) for name, each in by_name.items() if each.placed}
+        return _ToolGoals(by_name, {name: after for name, (_, after) in states.items()}, motions)
+
+    def change_of(self, control_set: ControlSet) -> Change | None:
+        """The change of the first object of a control set that the tool changed."""
+        return next((self.changes[name] for name in control_set.names if name in self.changes), None)
+
+
+def _numbered(changes: Sequence[Change]) -> Iterator[tuple[Change, int]]:
+    return ((change, change.reference.session_uid) for change in changes)
+
+
 def _edit(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    present: SceneState,
-    wanted: SceneState,
-    changes: Sequence[Change],
-    kind: str,
-    deadline: float,
-) -> _Outcome:
-    by_name = {change.reference.name: change for change in changes}
-    if kind == "rotate" and not any(change.turned for change in changes):
+    context: bpy.types.Context, settings: EditSettings, goals: _ToolGoals, kind: str, deadline: float
+) -> Steps[_Outcome]:
+    if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
-    edit = BlenderEdit.begin_with(
-        context, replace(settings, time_budget=TIME_LIMIT), kind,
-        _participants(context, settings, by_name), lambda control_set: _with_response(control_set, by_name, settings),
+    edit = yield from BlenderEdit.begin_with_steps(
+        context, settings, kind, _participants(context, settings, goals.changes),
+        lambda control_set: _with_response(control_set, goals, settings),
     )  # fmt: skip
-    goal = stack_controls([_goal_of(each, by_name, present, wanted) for each in edit.control_sets])
+    steps = _steps_to(edit, stack_controls([_goal_of(each, goals) for each in edit.control_sets]))
     results = []
-    for step in _steps_to(edit, goal):
-        results.append(edit.drag_to(step))
+    for number, step in enumerate(steps):
+        yield number / len(steps)
+        results.append((yield from edit.drag_to_steps(step)))
         if results[-1].status == "budget" or time.monotonic() > deadline:
             break
     reached = all(result.status in ("reached", "unchanged") for result in results)
     if not reached and time.monotonic() < deadline:
-        results.append(edit.settle())
+        results.append((yield from edit.settle_steps()))
+    yield None
     report = edit.write()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
@@ -206,17 +246,18 @@ def _participants(context: bpy.types.Context, settings: EditSettings, changes: d
     return merge_participants(participants)
 
 
-def _with_response(control_set: ControlSet, changes: dict[str, Change], settings: EditSettings) -> ControlSet:
-    """Give the points that the tool moved the response of selected points."""
-    change = changes.get(control_set.names[0])
-    if change is None or change.points is None:
+def _with_response(control_set: ControlSet, goals: _ToolGoals, settings: EditSettings) -> ControlSet:
+    """Give what the tool changed the response that an edit of the same kind gives."""
+    change = goals.change_of(control_set)
+    if change is None:
         return control_set
+    weight = settings.response_weight(True)
+    if change.points is None:
+        return _with_placement_response(control_set, change, goals.motions[change.reference.name], weight)
     moved = change.points[_followed_vertices(control_set, change)]
     return replace(
         control_set,
-        weights=point_weights(
-            moved, settings.response_weight(True), settings.response_weight(False), control_set.max_weights
-        ),
+        weights=point_weights(moved, weight, settings.response_weight(False), control_set.max_weights),
         rule=PointGoal(moved, control_set.controls),
         note=""
         if control_set.control_seams is None
@@ -224,16 +265,24 @@ def _with_response(control_set: ControlSet, changes: dict[str, Change], settings
     )
 
 
-def _goal_of(control_set: ControlSet, changes: dict[str, Change], present: SceneState, wanted: SceneState) -> Floats:
+def _with_placement_response(control_set: ControlSet, change: Change, motion: Motion, weight: float) -> ControlSet:
+    """A rotation responds by its angle, a uniform scale by one factor; what only moved turns if settings allow it."""
+    rule = control_set.rule
+    if isinstance(rule, RotationGoal) and not change.turned and not rule.free_axis:
+        return respond(control_set, ALL_FREE.within(rule.free), NONE_FREE, weight)
+    return rule.limited(control_set, motion, weight)
+
+
+def _goal_of(control_set: ControlSet, goals: _ToolGoals) -> Floats:
     """Controls after the tool, (m, 3)."""
-    change = next((changes[name] for name in control_set.names if name in changes), None)
+    change = goals.change_of(control_set)
     if change is None:
         return control_set.controls
-    before, after = (states[change.reference.session_uid] for states in (present, wanted))
-    if control_set.frame is not None and after.points is not None and change.points is not None:
-        return transform_points(control_set.frame, after.points[_followed_vertices(control_set, change)])
-    matrix = after.world @ np.linalg.inv(before.world)
-    return control_set.rule.goal(control_set.controls, control_set.controls, Motion.of(matrix))
+    name = change.reference.name
+    points = goals.after[name].points
+    if control_set.frame is not None and points is not None and change.points is not None:
+        return transform_points(control_set.frame, points[_followed_vertices(control_set, change)])
+    return control_set.rule.goal(control_set.controls, control_set.controls, goals.motions[name])
 
 
 def _followed_vertices(control_set: ControlSet, change: Change) -> Indices:
@@ -247,13 +296,11 @@ def _followed_vertices(control_set: ControlSet, change: Change) -> Indices:
     return chosen
 
 
-def _steps_to(edit: BlenderEdit, goal: Floats) -> Iterator[Floats]:
+def _steps_to(edit: BlenderEdit, goal: Floats) -> list[Floats]:
     """The straight path to a goal, in steps no longer than those of a drag."""
     start = edit.controls
     before = edit.surface
     moves = np.linalg.norm(edit.surface_of(goal) - before, axis=1)
     size = float(np.linalg.norm(np.ptp(before[moves > 0], axis=0))) if moves.any() else 0.0
     count = int(np.clip(np.ceil(moves.max() / (STEP * size)), 1, MAX_STEPS)) if size > 0 else 1
-    for k in range(count - 1):
-        yield start + (goal - start) * ((k + 1) / count)
-    yield goal
+    return [*(start + (goal - start) * ((k + 1) / count) for k in range(count - 1)), goal]
