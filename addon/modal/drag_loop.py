@@ -207,10 +207,15 @@ class DragLoop:
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
                 return
-        if self._unwritten:
+        if self._unwritten and not self._solves_on():
             self._write()
         if self._confirmed and self.at_rest and (self._settled or self.result is None):
             self.progress = Progress.FINISHED
+
+    def _solves_on(self) -> bool:
+        """Whether a confirmed drag is not at its end: drawing each state on the way would take longer than solving."""
+        unsettled = self.result is not None and not self._settled
+        return self._confirmed and (self._pending or self._task is not None or unsettled)
 
     def _run(self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False) -> None:
         self._task: Task[Any] | None = self._calls.task(steps)

@@ -51,7 +51,7 @@ def times(window: Window, key: str, value: Callable[[], float], **modifiers: boo
     yield 0.5
     sent = time.perf_counter()
     window.key("RET")
-    yield from window.until(lambda: len(window.handle.modal_operators) == 0, "the end")
+    yield from window.until(lambda: len(window.handle.modal_operators) == 0, "the end", 120.0)
     ended = time.perf_counter() - sent
     shown = 1000.0 * statistics.median(laps), 1000.0 * max(laps), statistics.mean(draws)
     print(

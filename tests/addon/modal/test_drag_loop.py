@@ -53,7 +53,7 @@ def test_confirming_solves_for_the_last_goal_settles_and_writes() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(30))
     assert drag.handle(Event("LEFTMOUSE")) is Effect.CONFIRM and drag.progress is Progress.FINISHED
-    assert edit.calls == ["drag", "write", "settle"]
+    assert edit.calls == ["drag", "settle", "write"]
     assert edit.shown == drag.transform == 0.3
 
 
@@ -120,7 +120,7 @@ def test_esc_stops_the_solve_after_the_confirmation_and_keeps_the_accepted_state
     drag = new_drag(edit)
     drag.handle(move_to(90))
     drag.handle(Event("LEFTMOUSE"))
-    while drag.progress is Progress.FINISHING and edit.shown < 0.3:
+    while drag.progress is Progress.FINISHING and edit.accepted < 0.3:
         assert drag.tick() is Progress.FINISHING
     drag.handle(Event("ESC"))
     drag.tick()
@@ -218,7 +218,7 @@ def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> No
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls == ["drag", "write"] * 4 + ["settle"]
+    assert drag.progress is Progress.FINISHED and edit.calls == [*["drag"] * 4, "settle", "write"]
 
 
 def test_a_goal_that_solves_come_no_closer_to_is_left_until_the_confirmation() -> None:
@@ -276,7 +276,7 @@ def test_esc_stops_settling_and_keeps_the_accepted_state() -> None:
     drag = new_drag(edit)
     drag.handle(move_to(90))
     drag.handle(Event("LEFTMOUSE"))
-    while edit.shown < 0.1:
+    while edit.accepted < 0.1:
         assert drag.tick() is Progress.FINISHING
     drag.handle(Event("ESC"))
     drag.tick()
