@@ -48,8 +48,14 @@ def versions() -> list[str]:
     return [
         f"STIV {manifest['version']}; {native_module.problem() or 'the native module is loaded'}",
         f"Blender {bpy.app.version_string}, {bpy.app.build_hash.decode()}, {bpy.app.build_platform.decode()}",
-        f"Python {sys.version.split()[0]}, {platform.platform()}, {platform.machine()}",
+        f"Python {sys.version.split()[0]}, {system()}",
     ]
+
+
+def system() -> str:
+    """The system with its C library and processor. `platform.platform` would start a process."""
+    library = " ".join(platform.libc_ver())  # empty except on Linux
+    return ", ".join(filter(None, [f"{platform.system()} {platform.release()}", library, platform.machine()]))
 
 
 def changed_settings(settings: bpy.types.PropertyGroup) -> list[str]:
