@@ -39,7 +39,7 @@ class Record:
 
     def allows(self, pairs: Iterable[stiv_blender.FacePair], restored: bool) -> bool:
         """Whether pairs may intersect: they do in the accepted scene, or undo and redo restored them."""
-        known = frozenset() if self.accepted is None else self.accepted.known.objects
+        known = frozenset() if self.accepted is None else _with_joined(self.accepted.known.objects)
         return objects_of(pairs) <= (self.seen if restored else known)
 
     def accept(self, context: bpy.types.Context, outcome: Outcome, restored: bool) -> bool:
@@ -51,7 +51,7 @@ class Record:
             self.problem = Problem(reason=outcome.reason)
             return True
         now = objects_of(outcome.pairs)
-        before = now if self.accepted is None else self.accepted.known.objects
+        before = now if self.accepted is None else _with_joined(self.accepted.known.objects)
         added = now - before - (self.seen if restored else frozenset())
         self.seen |= now
         self.uncorrected |= added
@@ -79,3 +79,9 @@ class Record:
 def objects_of(pairs: Iterable[stiv_blender.FacePair]) -> Pairs:
     """The pairs of objects of pairs of elements."""
     return frozenset(map(stiv_blender.object_pair, pairs))
+
+
+def _with_joined(known: Pairs) -> Pairs:
+    """Known pairs; of a pair whose one object is gone, because it was joined, also the other one with itself."""
+    gone = {name for pair in known for name in pair if name not in bpy.data.objects}
+    return known | {(name, name) for pair in known if gone & {*pair} for name in pair if name not in gone}

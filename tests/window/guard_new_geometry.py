@@ -38,6 +38,33 @@ def guard_duplicate(window: Window) -> Steps:
     expect_near(bpy.data.objects["Box.001"].location.x, FURTHEST, NEAR, "the copy after redo")
 
 
+def guard_duplicate_in_edit_mode(window: Window) -> Steps:
+    """Shift+D of all vertices into the wall, in Edit Mode: the copy stops at it whole, in one undo step."""
+    yield from guarded(window, scenes.add_box, "Box", "EDIT")
+    with window.override():
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.ed.undo_push(message="selected")
+    yield from at_rest(window)
+    before, width = steps(), 2 * scenes.HALF
+    yield from window.rest_at((0.0, 0.0, 0.0))
+    window.key("D", shift=True)
+    yield from window.until(lambda: len(window.handle.modal_operators) > 0, "Blender's tool")
+    yield from window.glide(window.pixel((1.9, 0.0, 0.0)))
+    window.key("LEFTMOUSE")
+    yield from at_rest(window)
+    expect_near(scenes.evaluated_extent("Box"), WALL_FACE, NEAR, "the copy at the wall")
+    places = [vertex.co.x for vertex in bmesh.from_edit_mesh(bpy.context.object.data).verts]
+    assert len(places) == 16, len(places)
+    expect_near(max(places[8:]) - min(places[8:]), width, 1e-4, "the width of the copy")
+    assert len(steps()) == len(before) + 1, steps()
+    assert state() == "guarded", state()
+    expect_free(window)
+    window.picture("guard_duplicate_in_edit_mode")
+    yield from window.undo()
+    yield from at_rest(window)
+    assert len(bmesh.from_edit_mesh(bpy.context.object.data).verts) == 8
+
+
 def guard_extrude(window: Window) -> Steps:
     """E through the wall in Edit Mode: the extrusion stops at it, in one undo step."""
     yield from guarded(window, scenes.add_box, "Box", "EDIT")
@@ -168,6 +195,7 @@ def close_popover(window: Window) -> Steps:
 
 _ALL = (
     guard_duplicate,
+    guard_duplicate_in_edit_mode,
     guard_extrude,
     guard_one_bad_pair,
     guard_red_icon,

@@ -160,6 +160,39 @@ def test_an_intersecting_scene_is_guarded_but_for_its_intersections() -> None:
     assert watcher.state(bpy.context) == "partial"
 
 
+def test_a_duplicate_in_edit_mode_is_corrected_in_its_own_step() -> None:
+    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    look()
+    before = names_of_steps()
+    bpy.ops.mesh.duplicate_move("EXEC_DEFAULT", True, TRANSFORM_OT_translate={"value": (1.8, 0, 0)})
+    look()
+    box().update_from_editmode()
+    x = [vertex.co.x for vertex in box().data.vertices][8:]
+    assert (min(x), max(x)) == pytest.approx((1.0, 2.0), abs=0.02) and max(x) - min(x) == pytest.approx(1.0)
+    assert len(names_of_steps()) == len(before) + 1 and watcher.state(bpy.context) == "guarded"
+    expect_free()
+    bpy.ops.ed.undo()
+    look()
+    box().update_from_editmode()
+    assert len(box().data.vertices) == 8
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_objects_that_intersected_before_may_be_joined() -> None:
+    bpy.context.scene.stiv.live_guard = False
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(-3, 0, 0))
+    bpy.ops.mesh.primitive_cube_add("EXEC_DEFAULT", True, size=1, location=(-3.5, 0.2, 0.1))
+    bpy.context.scene.stiv.live_guard = True
+    look()
+    assert watcher.state(bpy.context) == "partial"
+    for ob in bpy.data.objects:
+        ob.select_set(ob.name.startswith("Cube"))
+    bpy.ops.object.join("EXEC_DEFAULT", True)
+    look()
+    assert len(bpy.data.objects) == 3 and watcher.state(bpy.context) == "partial"
+
+
 def test_results_of_the_own_operators_are_not_corrected() -> None:
     bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(7.0, 0, 0))
     shown = tuple(box().location)

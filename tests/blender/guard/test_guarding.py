@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, edit_mode, evaluated, select
+from building import CUBE, add_cube, edit_mode, evaluated, select
 
 from stiv.blender import AcceptedScene, EditSettings, check_scene, find_intersections, guard_result
 
@@ -170,7 +170,7 @@ def test_a_free_extrusion_stays_exactly() -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-@pytest.mark.parametrize("what", ["join", "boolean", "primitive in Edit Mode"])
+@pytest.mark.parametrize("what", ["join", "boolean"])
 def test_new_geometry_of_other_tools_that_intersects_is_named(what: str) -> None:
     add_wall()
     box, other = add_cube("Box"), add_cube("Other", (0, 0, 5))
@@ -181,22 +181,31 @@ def test_new_geometry_of_other_tools_that_intersects_is_named(what: str) -> None
             other.location.x = 3.5
             bpy.context.view_layer.update()
             bpy.ops.object.join()
-        elif what == "boolean":
+        else:
             other.location = (3.5, 0, 0)
             modifier = box.modifiers.new("Boolean", "BOOLEAN")
             modifier.object, modifier.operation = other, "UNION"
             bpy.context.view_layer.update()
             bpy.ops.object.modifier_apply(modifier="Boolean")
             bpy.data.objects.remove(other)
-        else:
-            edit_mode(box)
-            bpy.ops.mesh.primitive_cube_add(location=(3.5, 0, 0))
 
     outcome = guarded(change)
     assert outcome.reason and ("Box", "Wall") in {tuple(sorted(pair)) for pair in pairs()}
     assert {each.object for pair in outcome.pairs for each in (pair.first, pair.second)} == {"Box", "Wall"}
-    if bpy.context.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize("levels", [0, 1])
+def test_a_primitive_added_in_edit_mode_goes_to_the_nearest_free_place(levels: int) -> None:
+    add_wall()
+    box = add_cube("Box", (0, 0, 0), scale=(0.5, 0.5, 0.5))
+    if levels:
+        box.modifiers.new("Subdivision", "SUBSURF").levels = levels
+    edit_mode(box)
+    outcome = guarded(lambda: bpy.ops.mesh.primitive_ico_sphere_add(location=(2.8, 0.1, 0)))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert outcome.placed == ["Box"] and outcome.pairs == () and pairs() == set()
+    assert evaluated(box)[:, 0].max() == pytest.approx(WALL, abs=0.02)
+    assert np.array_equal([vertex.co for vertex in box.data.vertices][:8], np.array(CUBE))
 
 
 def test_the_nearest_free_place_is_outside_closed_surfaces() -> None:
@@ -255,3 +264,46 @@ def test_a_copy_of_a_large_mesh_in_its_place_names_only_some_faces() -> None:
     assert outcome.reason == "Icosphere.001: is in the place of Icosphere; move it"
     assert {(pair.first.object, pair.second.object) for pair in outcome.pairs} == {("Icosphere", "Icosphere.001")}
     assert 0 < len(outcome.pairs) <= 1000
+
+
+def duplicate_in_edit_mode(box: Any, offset: Any, **settings: Any) -> Any:
+    """Shift+D of everything in Edit Mode; the outcome and the vertices of the copy in the world."""
+    edit_mode(box)
+    bpy.ops.mesh.select_all(action="SELECT")
+    outcome = guarded(lambda: bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": offset}), **settings)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    points = np.array([box.matrix_world @ vertex.co for vertex in box.data.vertices])
+    return outcome, points[len(points) // 2 :]
+
+
+@pytest.mark.parametrize("levels", [0, 1])
+def test_a_duplicate_in_edit_mode_stops_on_the_side_of_its_source(levels: int) -> None:
+    add_wall()
+    box = add_cube("Box", (-3, 0, 0))
+    if levels:
+        box.modifiers.new("Subdivision", "SUBSURF").levels = levels
+    source = np.array([box.matrix_world @ vertex.co for vertex in box.data.vertices])
+    outcome, copy = duplicate_in_edit_mode(box, (6.5, 0.5, 0))
+    assert outcome.corrected == ["Box"] and outcome.pairs == () and pairs() == set()
+    assert evaluated(box)[:, 0].max() == pytest.approx(WALL, abs=0.02)
+    assert np.ptp(copy, axis=0) == pytest.approx([2, 2, 2], abs=1e-5) and copy[:, 1].mean() == pytest.approx(0.5)
+    assert np.array_equal([box.matrix_world @ vertex.co for vertex in box.data.vertices][:8], source)
+
+
+def test_a_duplicate_in_edit_mode_that_overlaps_its_source_goes_to_the_nearest_free_place() -> None:
+    box = add_cube("Box", (1, 0, 0), scale=(2, 1, 1))
+    outcome, copy = duplicate_in_edit_mode(box, (0, 1.5, 0.2))
+    assert outcome.placed == ["Box"] and pairs() == set()
+    assert copy.mean(axis=0) == pytest.approx([1, 2, 0.2], abs=0.02)
+    assert np.ptp(copy, axis=0) == pytest.approx([4, 2, 2], abs=1e-5)
+
+
+def test_a_duplicate_in_edit_mode_in_the_place_of_its_source_is_named_and_can_be_moved() -> None:
+    add_wall()
+    box = add_cube("Box", (-3, 0, 0))
+    outcome, _ = duplicate_in_edit_mode(box, (0, 0, 0))
+    assert not outcome.wrote and outcome.reason == "Box: the copy is in the place of its source; move it"
+    edit_mode(box)
+    outcome = guarded(lambda: bpy.ops.transform.translate(value=(6.5, 0.5, 0)))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert outcome.corrected == ["Box"] and outcome.pairs == () and pairs() == set()

@@ -7,7 +7,7 @@ import numpy as np
 from mathutils.kdtree import KDTree
 from numpy.typing import NDArray
 
-from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.scene.arrays import Floats, Indices, islands
 
 Mask = NDArray[np.bool_]
 
@@ -53,7 +53,8 @@ def island_centres(points: Floats, selected: Mask, edges: Indices | None) -> Flo
     Without edges all selected points are one island.
     """
     chosen = np.flatnonzero(selected)
-    labels = np.zeros(len(points), np.int64) if edges is None else _islands(len(points), edges, selected)
+    inside = None if edges is None else edges[selected[edges].all(axis=1)]
+    labels = np.zeros(len(points), np.int64) if inside is None else islands(len(points), inside)
     _, numbers = np.unique(labels[chosen], return_inverse=True)
     sums = np.zeros((numbers.max(initial=0) + 1, 3))
     np.add.at(sums, numbers, points[chosen])
@@ -68,16 +69,3 @@ def _neighbors(edges: Indices, points: Floats) -> list[list[tuple[int, float]]]:
         neighbors[a].append((b, length))
         neighbors[b].append((a, length))
     return neighbors
-
-
-def _islands(count: int, edges: Indices, selected: Mask) -> NDArray[np.int64]:
-    """Number of each point's island: the smallest number spreads along edges."""
-    labels = np.arange(count)
-    inside = edges[selected[edges].all(axis=1)]
-    while True:
-        before = labels.copy()
-        np.minimum.at(labels, inside[:, 0], before[inside[:, 1]])
-        np.minimum.at(labels, inside[:, 1], before[inside[:, 0]])
-        labels = labels[labels]  # pointer jumping
-        if np.array_equal(labels, before):
-            return labels

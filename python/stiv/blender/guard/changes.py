@@ -37,6 +37,7 @@ class Changes:
     Attributes:
         changes: those that an edit can reproduce.
         added: objects that were added or shown.
+        removed: names of objects that were removed or hidden.
         rebuilt: objects with other vertices, another parent or rotation mode, or transformed and deformed at once.
         unsupported: describes the first change that no edit can reproduce; "" if there is none.
     """
@@ -45,6 +46,7 @@ class Changes:
     unsupported: str = ""
     added: tuple[ObjectReference, ...] = ()
     rebuilt: tuple[ObjectReference, ...] = ()
+    removed: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         """Did anything change?"""
@@ -56,9 +58,8 @@ def compare(before: SceneState, after: SceneState) -> Changes:
     found, rebuilt, reasons = [], [], []
     added = [state.reference for number, state in after.items() if number not in before]
     reasons += [f"{each.name} was added or shown" for each in added]
-    reasons += [
-        f"{state.reference.name} was removed or hidden" for number, state in before.items() if number not in after
-    ]
+    removed = tuple(state.reference.name for number, state in before.items() if number not in after)
+    reasons += [f"{name} was removed or hidden" for name in removed]
     for number, state in after.items():
         if number not in before:
             continue
@@ -75,7 +76,7 @@ def compare(before: SceneState, after: SceneState) -> Changes:
             found.append(change)
     if not found and not reasons:
         reasons = [reason] if (reason := _posed(before, after)) else []
-    return Changes(tuple(found), "".join(reasons[:1]), tuple(added), tuple(rebuilt))
+    return Changes(tuple(found), "".join(reasons[:1]), tuple(added), tuple(rebuilt), removed)
 
 
 def _posed(before: SceneState, after: SceneState) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Corrects what is new in a scene: copies from the place of their original, extrusions, and any other new object."""
+"""Corrects what is new in a scene: copies from the place of their original, extrusions, other new objects and parts."""
 
 from __future__ import annotations
 
@@ -16,13 +16,17 @@ from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
 from stiv.blender.guard.extrusion import extruded_from, is_among
 from stiv.blender.guard.free_place import find_free_place
 from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, fresh_objects
+from stiv.blender.guard.new_parts import copied_from
+from stiv.blender.guard.part_path import slide_part
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_object, read_state
+from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
 FIRST_FRACTIONS = (1 / 16, 1 / 64, 1 / 256)  # of an extrusion, from which its correction starts
+ROUNDING = 1e-5  # of the coordinates of a mesh; a translation of its vertices differs by less
 
 
 def find_originals(accepted: AcceptedScene, present: SceneState, new: Collection[int]) -> dict[int, int]:
@@ -132,6 +136,42 @@ def correct_extrusion(
     return None
 
 
+def find_copied(accepted: AcceptedScene, reference: ObjectReference, added: Flags) -> Indices | None:
+    """The vertex, (k,), of which each added one is a copy; None if they are no copies of the selected ones."""
+    selected = accepted.selected_vertices.get(reference.session_uid, np.empty(0, np.int32))
+    return copied_from(selected, added, read_edges(reference.find().data))
+
+
+def correct_part(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    known: KnownIntersections,
+    reference: ObjectReference,
+    part: Flags,
+    origins: Singles,
+) -> bool | None:
+    """Move components of a mesh from their vertices' origins, (k, 3), toward their place; None if that is no
+    translation from a free place, otherwise whether the place changed.
+
+    They move as a rigid body and pass through the rest of their object. Raises InputError and SceneChangedError.
+    """
+    after = read_object(reference.find())
+    assert after.points is not None
+    ways = after.points[part].astype(np.float64) - origins
+    if np.ptp(ways, axis=0).max() > ROUNDING * np.abs(after.points).max():  # turned or scaled
+        return None
+    way = after.world[:3, :3] @ ways.mean(axis=0)
+    left_out = known.left_out(settings)
+    left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, (reference.name, reference.name)))
+    made = slide_part(context, left_out, {reference.name: part}, way)
+    if made is None:
+        return None
+    if np.linalg.norm(made - way) <= ROUNDING * np.linalg.norm(way):
+        return False
+    _translate_part(context, after, part, made - way)
+    return True
+
+
 def touches_others(pairs: Iterable[FacePair], names: Collection[str]) -> bool:
     """Does any pair join one of the named objects and another object?"""
     return any((pair.first.object in names) != (pair.second.object in names) for pair in pairs)
@@ -142,7 +182,7 @@ def place_freely(
 ) -> bool:
     """Put new objects, which stay together, at the nearest free place; False, with nothing changed, without success."""
     translation = find_free_place(context, known.left_out(settings), names)
-    if translation is None:
+    if translation is None or not translation.any():
         return False
     roots = [ob for ob in map(bpy.data.objects.get, names) if ob and (not ob.parent or ob.parent.name not in names)]
     before = [read_object(ob) for ob in roots]
@@ -157,3 +197,32 @@ def place_freely(
         context.view_layer.update()
         return False
     return True
+
+
+def place_part_freely(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    known: KnownIntersections,
+    reference: ObjectReference,
+    added: Flags,
+) -> bool:
+    """Put a new part of a mesh at the nearest free place; False, with nothing changed, without success."""
+    translation = find_free_place(context, known.left_out(settings), (), {reference.name: added})
+    if translation is None or not translation.any():
+        return False
+    before = read_object(reference.find())
+    _translate_part(context, before, added, translation)
+    if reference.name not in fresh_objects(context, settings, known):
+        return True
+    before.restore_points()
+    context.view_layer.update()
+    return False
+
+
+def _translate_part(context: bpy.types.Context, state: ObjectState, added: Flags, translation: Floats) -> None:
+    """Write the vertices of a state, some of them translated in the world."""
+    assert state.points is not None
+    points = state.points.copy()
+    points[added] += np.linalg.solve(state.world[:3, :3], translation)
+    replace(state, points=points).restore_points()
+    context.view_layer.update()

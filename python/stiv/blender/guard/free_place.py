@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.guard.new_parts import split_parts
+from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
@@ -30,17 +31,27 @@ MARGIN = 1e-3  # added to the shortest free distance
 TIME_LIMIT = 2.0  # seconds; then the best place so far is returned
 
 
-def find_free_place(context: bpy.types.Context, settings: EditSettings, names: Collection[str]) -> Floats | None:
+def find_free_place(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    names: Collection[str],
+    parts: Mapping[str, Flags] | None = None,
+) -> Floats | None:
     """The shortest translation found, (3,), that frees the named objects from all others; None if none was found.
 
-    They stay together, and intersections among them are not counted. Places inside a closed surface do not count.
+    parts: flags of the vertices that move, by object, instead of whole objects. What moves stays together, and
+    intersections within it are not counted. Places inside a closed surface do not count. A free place gives 0.
     """
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
-    mobility = ["rigid" if mesh.owner.name in names else "fixed" for mesh in scene.meshes]
-    assembly = assemble(scene.meshes, mobility, [frozenset(names)], settings.ignored_pairs)
+    split = split_parts(scene.meshes, parts or {})
+    mobility = ["rigid" if is_part or mesh.owner.name in names else "fixed" for mesh, is_part in split]
+    moving = frozenset({*names, *(parts or {})})
+    assembly = assemble([mesh for mesh, _ in split], mobility, [moving], settings.ignored_pairs)
     search = _Search.of(assembly, [index for index, kind in enumerate(mobility) if kind == "rigid"], settings.threads)
     if search is None:
         return None
+    if search.is_free(np.zeros(3)):
+        return np.zeros(3)
     best, deadline = np.inf, time.monotonic() + TIME_LIMIT
     found = None
     for direction in DIRECTIONS:
@@ -82,18 +93,18 @@ class _Search:
         """The shortest free distance found along a direction below a limit, with a margin; infinity for none."""
         low, step = 0.0, self.size * FIRST_STEP
         high = step
-        while not self._is_free(direction * high):
+        while not self.is_free(direction * high):
             low, step = high, step * GROWTH
             high += step
             if low > min(limit, self.extent) or time.monotonic() > deadline:
                 return float("inf")
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
-            low, high = (low, middle) if self._is_free(direction * middle) else (middle, high)
+            low, high = (low, middle) if self.is_free(direction * middle) else (middle, high)
         padded = high + MARGIN * self.size
-        return padded if self._is_free(direction * padded) else high
+        return padded if self.is_free(direction * padded) else high
 
-    def _is_free(self, translation: Floats) -> bool:
+    def is_free(self, translation: Floats) -> bool:
         q = self.assembly.positions + self.moving[:, None] * translation
         return len(self.test.find(q)) == 0 and not self._is_inside(q)
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import bpy
+import numpy as np
 
 from stiv import InputError
 from stiv.blender.guard.accepted_scene import AcceptedScene
@@ -15,15 +16,20 @@ from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
 from stiv.blender.guard.entering import (
     correct_copies,
     correct_extrusion,
+    correct_part,
+    find_copied,
     find_in_place,
     find_originals,
     place_freely,
+    place_part_freely,
     touches_others,
 )
-from stiv.blender.guard.known_intersections import find_intersections, object_pair
-from stiv.blender.guard.scene_state import SceneState, read_state
+from stiv.blender.guard.known_intersections import find_intersections, fresh_objects, object_pair
+from stiv.blender.guard.new_parts import find_new_part, joins_others
+from stiv.blender.guard.scene_state import SceneState, read_object, read_state
 from stiv.blender.scene.elements import FacePair
-from stiv.blender.scene.references import SceneChangedError
+from stiv.blender.scene.mesh_reading import read_edges
+from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
 
 
@@ -69,7 +75,7 @@ def guard_result(context: bpy.types.Context, settings: EditSettings, accepted: A
         result.pairs = find_intersections(context, settings)
         _guard_new_geometry(context, settings, accepted, changes, result)
         start = _start_of(changes, accepted.state, read_state(context))
-    if changes.changes:
+    if changes.changes and not _guard_overlapping_part(context, settings, accepted, changes, result):
         _guard_moved(context, settings, accepted, start, changes, result)
     tested = changes.unsupported and not changes.changes and not result.wrote
     if not tested and (not changes.changes or result.reason or result.deformers or accepted.known.pairs):
@@ -81,6 +87,31 @@ def _start_of(changes: Changes, accepted: SceneState, present: SceneState) -> Sc
     """The present state, with moved objects at their accepted places."""
     moved = {each.reference.session_uid for each in changes.changes}
     return {number: accepted[number] if number in moved else state for number, state in present.items()}
+
+
+def _guard_overlapping_part(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    accepted: AcceptedScene,
+    changes: Changes,
+    result: GuardedResult,
+) -> bool:
+    """Correct a translation of whole components of a mesh that intersects itself; False if it is something else."""
+    if changes.unsupported or len(changes.changes) != 1:
+        return False
+    change = changes.changes[0]
+    reference, part = change.reference, change.points
+    before = accepted.state[reference.session_uid].points
+    if part is None or before is None or (reference.name, reference.name) not in accepted.known.objects:
+        return False
+    ob = reference.find()
+    if ob.type != "MESH" or joins_others(read_edges(ob.data), part):
+        return False
+    corrected = correct_part(context, settings, accepted.known, reference, part, before[part])
+    if corrected:
+        result.wrote = True
+        result.corrected.append(reference.name)
+    return corrected is not None
 
 
 def _guard_moved(
@@ -115,12 +146,40 @@ def _guard_new_geometry(
     try:
         for reference in changes.rebuilt:
             if reference.name in names:
-                result.add(correct_extrusion(context, settings, accepted, reference))
+                _guard_rebuilt(context, settings, accepted, changes, reference, result)
         if touches_others(fresh, created):
             entering = [created[name].session_uid for name in sorted(names & created.keys())]
             _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
+
+
+def _guard_rebuilt(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    accepted: AcceptedScene,
+    changes: Changes,
+    reference: ObjectReference,
+    result: GuardedResult,
+) -> None:
+    """Correct an extrusion, or a part that was added and did not come from an object that is gone, as in Join."""
+    before, after = accepted.state[reference.session_uid], read_object(reference.find())
+    added = None if changes.removed else find_new_part(before, after, read_edges(reference.find().data))
+    if added is None:
+        result.add(correct_extrusion(context, settings, accepted, reference))
+        return
+    source, known, corrected = find_copied(accepted, reference, added), accepted.known, False
+    if source is not None and after.points is not None:
+        origins = after.points[source]
+        if np.array_equal(after.points[added], origins):
+            result.reason = f"{reference.name}: the copy is in the place of its source; move it"
+            return
+        corrected = bool(correct_part(context, settings, known, reference, added, origins))
+    is_left = reference.name in fresh_objects(context, settings, known)
+    placed = is_left and place_part_freely(context, settings, known, reference, added)
+    result.wrote |= corrected or placed
+    if placed or corrected:
+        (result.placed if placed else result.corrected).append(reference.name)
 
 
 def _guard_new_objects(

@@ -40,3 +40,15 @@ def digest(*values: Any) -> bytes:
         if array:
             hasher.update(np.ascontiguousarray(value).tobytes())
     return hasher.digest()
+
+
+def islands(count: int, edges: Indices) -> NDArray[np.int64]:
+    """Number of each point's island, (count,): the smallest number spreads along edges, (e, 2)."""
+    labels = np.arange(count)
+    while True:
+        before = labels.copy()
+        np.minimum.at(labels, edges[:, 0], before[edges[:, 1]])
+        np.minimum.at(labels, edges[:, 1], before[edges[:, 0]])
+        labels = labels[labels]  # pointer jumping
+        if np.array_equal(labels, before):
+            return labels
