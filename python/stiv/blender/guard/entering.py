@@ -137,7 +137,7 @@ def correct_extrusion(
 
 
 def find_copied(accepted: AcceptedScene, reference: ObjectReference, added: Flags) -> Indices | None:
-    """The vertex, (k,), of which each added one is a copy; None if they are no copies of the selected ones."""
+    """The vertex, (k,), of which each added one is a copy; None without copies of the selected ones."""
     selected = accepted.selected_vertices.get(reference.session_uid, np.empty(0, np.int32))
     return copied_from(selected, added, read_edges(reference.find().data))
 
@@ -150,10 +150,10 @@ def correct_part(
     part: Flags,
     origins: Singles,
 ) -> bool | None:
-    """Move components of a mesh from their vertices' origins, (k, 3), toward their place; None if that is no
-    translation from a free place, otherwise whether the place changed.
+    """Move components of a mesh from their vertices' origins, (k, 3), toward their place.
 
-    They move as a rigid body and pass through the rest of their object. Raises InputError and SceneChangedError.
+    Returns whether the place changed; None if the tool did not translate them from a free place. They move as a rigid
+    body and pass through the rest of their object. Raises InputError and SceneChangedError.
     """
     after = read_object(reference.find())
     assert after.points is not None

@@ -39,7 +39,7 @@ def find_free_place(
 ) -> Floats | None:
     """The shortest translation found, (3,), that frees the named objects from all others; None if none was found.
 
-    parts: flags of the vertices that move, by object, instead of whole objects. What moves stays together, and
+    parts: flags of the vertices that move, by object, instead of whole objects. All that moves stays together, and
     intersections within it are not counted. Places inside a closed surface do not count. A free place gives 0.
     """
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)

@@ -33,7 +33,7 @@ def joins_others(edges: Indices, part: Flags) -> bool:
 
 
 def copied_from(selected: Indices, added: Flags, edges: Indices) -> Indices | None:
-    """The vertex, (k,), of which each added one is a copy; None if these are no copies of the selected vertices.
+    """The vertex, (k,), of which each added one is a copy; None without copies of the selected vertices.
 
     selected: numbers in ascending order, before the tool. Blender copies in this order.
     """
