@@ -96,7 +96,7 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, random events and snaps in a window, soak, memory
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, random events and snaps in a window, soak, memory, pip install from source
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
@@ -107,6 +107,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	STIV_WINDOW_SNAPS=50 build/venv/bin/python tests/window/run.py snaps_as_blender
 	build/venv/bin/python tests/long/soak.py --drags 10000
 	build/venv/bin/python tests/long/cluster_throughput.py
+	build/venv/bin/python tests/long/source_archive.py
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
 	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 

@@ -1,14 +1,6 @@
 # The parts of OpenSubdiv that evaluate subdivision surfaces on the CPU (far, with vtr and sdc), compiled into the core
 # without visible symbols: Blender loads its own OpenSubdiv, which must not interfere with this one.
-# STIV_OPENSUBDIV_SOURCE is the folder of its source; tools/opensubdiv_source.sh downloads it from Debian.
-
-if(NOT EXISTS "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/stencilTable.h")
-  message(FATAL_ERROR
-    "The source of OpenSubdiv is missing: there is no opensubdiv/far/stencilTable.h in STIV_OPENSUBDIV_SOURCE "
-    "(\"${STIV_OPENSUBDIV_SOURCE}\"). Get it and configure again with:\n"
-    "  tools/opensubdiv_source.sh build/opensubdiv\n"
-    "  cmake -DSTIV_OPENSUBDIV_SOURCE=${PROJECT_SOURCE_DIR}/build/opensubdiv ...")
-endif()
+# STIV_OPENSUBDIV_SOURCE is the folder of its source (see dependencies.cmake).
 
 file(GLOB opensubdiv_sources
   "${STIV_OPENSUBDIV_SOURCE}/opensubdiv/far/*.cpp"
