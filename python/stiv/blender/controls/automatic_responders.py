@@ -8,6 +8,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
+from stiv.blender.controls.shared_meshes import other_users
 from stiv.blender.controls.transform_locks import is_location_locked
 from stiv.blender.scene.dependencies import ancestors, dependencies
 from stiv.blender.scene.evaluations import SURFACE_TYPES
@@ -24,7 +25,7 @@ def find_automatic_responders(
     already, has another role or a constraint, is animated, linked, locked or of zero size, or if modifiers, constraints
     or instances connect it with other objects. Metaballs are obstacles too, because moving them changes their surface.
     """
-    taken = {each.reference.name for each in participants}
+    taken = {name for each in participants for name in _moved_with(each)}
     links = _outside_links()
     found: list[Participant] = []
     for ob in sorted(objects, key=lambda each: len(ancestors(each))):
@@ -43,6 +44,12 @@ def find_automatic_responders(
         taken |= names
         found.append(Participant(ObjectReference.of(ob), "rigid", False))
     return found
+
+
+def _moved_with(participant: Participant) -> list[str]:
+    """Names of a participant's object and, if it deforms, of those that share its mesh."""
+    ob = participant.reference.find()
+    return [ob.name, *(user.name for user in other_users(ob) if participant.role != "rigid")]
 
 
 def _is_movable_family(family: Sequence[bpy.types.Object], settings: EditSettings) -> bool:

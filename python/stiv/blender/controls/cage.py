@@ -2,22 +2,24 @@
 """The vertices of a mesh as controls: the cage below its modifiers."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bmesh
 import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.affine_images import uniform_factor
+from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
-from stiv.blender.controls.editable import check_data
+from stiv.blender.controls.editable import check_data, shared_data_error
 from stiv.blender.controls.key_editing import KeyEditing, check_keys
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.controls.points import PointGoal, to_stored
+from stiv.blender.controls.shared_meshes import in_frames, sharing_note
 from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.scene.evaluations import SHOWN
+from stiv.blender.scene.evaluations import SHOWN, is_edited
 from stiv.blender.scene.lattice_reading import is_undeformed
 from stiv.blender.scene.mesh_reading import read_cage, read_edges
 from stiv.blender.scene.modifier_stack import LatticeStage, SubdivisionStage, modifier_error, read_stack
@@ -28,11 +30,11 @@ from stiv.blender.settings import EditSettings
 def make_cage_set(
     participant: Participant,
     surfaces: tuple[int, ...],
-    evaluations: Sequence[str],
+    shown: Sequence[ShownAs],
     scene: bpy.types.Scene,
     settings: EditSettings,
 ) -> ControlSet:
-    """Control set of a mesh's cage; `surfaces` were read from these evaluations.
+    """Control set of a mesh's cage; `shown` says where its `surfaces` were read.
 
     Raises InputError if the mesh cannot be edited, or has unsupported modifiers.
     """
@@ -41,7 +43,7 @@ def make_cage_set(
     found = control_weights(ob, settings)
     max_weights = found.max_weights
     writer = cage_writer(participant.reference, ob, frame, local, settings)
-    deformation = subdivision_in(ob, scene, writer, evaluations) or stiv.identity(len(local))
+    deformation = subdivision_in(ob, scene, writer, shown) or stiv.identity(len(local))
     selected = selected_vertices(ob, participant.selected) & found.movable
     controls = transform_points(frame, local)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
@@ -49,7 +51,7 @@ def make_cage_set(
         (ob.name,), "cage", surfaces, deformation, controls,
         response_weights(participant, selected, max_weights, settings), max_weights, frame,
         PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
-        writer, weight_axes=axes_of_weights(max_weights, found.directions),
+        writer, note=sharing_note(ob), weight_axes=axes_of_weights(max_weights, found.directions),
     )  # fmt: skip
 
 
@@ -63,17 +65,31 @@ def open_cage(ob: bpy.types.Object) -> tuple[Floats, Singles]:
 
 
 def subdivision_in(
-    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", evaluations: Sequence[str]
+    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", shown: Sequence[ShownAs]
 ) -> stiv.Deformation | None:
-    """Deformation from the cage to its mesh in all evaluations, stacked; None if there is one evaluation and no
-    subdivision.
+    """Deformation from the cage to all surfaces that show it, stacked; None if it is the identity.
 
     Raises InputError for unsupported modifiers.
     """
-    found = [_subdivision_of(ob, scene, writer, each) for each in evaluations or (SHOWN,)]
+    users = [bpy.data.objects[each.owner] for each in shown] if len(shown) > 1 else [ob]
+    users = [user if user.data == ob.data else ob for user in users]  # another mesh shows a Loop subdivision
+    evaluations = [each.evaluation for each in shown] or [SHOWN]
+    rows = list(zip(users, evaluations, strict=True))
+    found = [_subdivision_of(user, scene, _seen_from(writer, user, ob), each) for user, each in rows]
     if len(found) == 1:
         return found[0]
-    return stack_deformations([identity_deformation(_vertex_count(ob)) if each is None else each for each in found])
+    count = _vertex_count(ob)
+    if all(user == ob for user in users):
+        return stack_deformations([identity_deformation(count) if each is None else each for each in found])
+    inverse = np.linalg.inv(writer.frame).astype(np.float64)
+    maps = [as_matrix(user.matrix_world) @ inverse for user in users]
+    if any(uniform_factor(each) is None for each in maps):
+        raise shared_data_error(ob, users[-1])
+    return in_frames(found, maps, count)
+
+
+def _seen_from(writer: "CageWriter", user: bpy.types.Object, ob: bpy.types.Object) -> "CageWriter":
+    return writer if user == ob else replace(writer, frame=as_matrix(user.matrix_world))
 
 
 def _subdivision_of(
@@ -135,7 +151,7 @@ class CageWriter:
         ob = self.reference.find()
         if self.keys is not None:
             self.keys.restore(ob)
-        if self.keys is None or ob.mode == "EDIT":
+        if self.keys is None or is_edited(ob):
             _write_local(ob, self.original, self.keys)
         if self.refined is not None:
             self.refined.restore()
@@ -155,7 +171,7 @@ def cage_writer(
 def _write_local(ob: bpy.types.Object, local: Singles, keys: KeyEditing | None) -> None:
     if len(local) != _vertex_count(ob):
         raise SceneChangedError(f"{ob.name} changed its number of vertices")
-    if ob.mode == "EDIT":
+    if is_edited(ob):
         _write_edit_mesh(ob.data, local if keys is None else keys.active_positions(local))
     elif keys is not None:
         keys.write(ob, local)
@@ -164,7 +180,7 @@ def _write_local(ob: bpy.types.Object, local: Singles, keys: KeyEditing | None) 
 
 
 def _vertex_count(ob: bpy.types.Object) -> int:
-    return len(bmesh.from_edit_mesh(ob.data).verts) if ob.mode == "EDIT" else len(ob.data.vertices)
+    return len(bmesh.from_edit_mesh(ob.data).verts) if is_edited(ob) else len(ob.data.vertices)
 
 
 def _write_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.cage import make_cage_set
-from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
+from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.handles import make_handle_sets
 from stiv.blender.controls.joined_seams import join_seams
 from stiv.blender.controls.lattice_modifier import lattice_deformation
@@ -21,6 +22,7 @@ from stiv.blender.controls.rigid_groups import (
     find_rigid_groups,
 )
 from stiv.blender.controls.rigid_placement import make_rigid_set
+from stiv.blender.controls.shared_meshes import other_users
 from stiv.blender.controls.subdivision import stack_deformations
 from stiv.blender.controls.transform_locks import drop_locked
 from stiv.blender.scene.arrays import Floats
@@ -92,14 +94,18 @@ def _shown_by(names: frozenset[str] | set[str], meshes: Sequence[VisibleMesh]) -
     return tuple(index for index, mesh in enumerate(meshes) if mesh.owner.name in names)
 
 
-def _read_in(surfaces: tuple[int, ...], meshes: Sequence[VisibleMesh]) -> list[str]:
-    return [meshes[index].read_from for index in surfaces]
+def _read_in(surfaces: tuple[int, ...], meshes: Sequence[VisibleMesh]) -> list[ShownAs]:
+    return [ShownAs(meshes[index].owner.name, meshes[index].read_from) for index in surfaces]
 
 
 def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) -> tuple[int, ...]:
-    """Indices of the visible meshes that show a cage."""
+    """Indices of the visible meshes that show a cage, those of objects that share its mesh last."""
     shown = settings.shown_by(name)
-    indices = _shown_by({shown}, meshes)
+    ob = bpy.data.objects[name]
+    users = {user.name for user in other_users(ob)}
+    if users and (users | {name}) & set(settings.loops):
+        raise shared_data_error(ob, bpy.data.objects[min(users)])
+    indices = _shown_by({shown}, meshes) + _shown_by(users, meshes)
     if not indices and shown != name:
         raise InputError(f'{shown}: shows the cage "{name}" and is hidden; show it')
     if not any(len(meshes[index].local) for index in indices):
@@ -144,7 +150,7 @@ def _check_independent(
             if name in in_groups or any(m.reference.name == name and m.role in ("cage", "soft") for m in participants):
                 raise InputError(f'{name}: moves, and so does its lattice "{lattice.name}"; deselect one')
             in_lattices.add(name)
-    deforming = {each.reference.name for each in participants if each.role != "rigid"}
+    deforming = {name for each in participants if each.role != "rigid" for name in _deformed_with(each)}
     for name in sorted(deforming & in_groups):
         raise InputError(f"{name}: is deformed, and its parent moves; deselect one")
     check_dependents(
@@ -152,6 +158,12 @@ def _check_independent(
     )
     check_instances(deforming | in_groups | in_lattices, meshes)
     _check_children(deforming, in_groups, meshes)
+
+
+def _deformed_with(participant: Participant) -> list[str]:
+    """Names of a deforming object and of those that share its mesh."""
+    ob = participant.reference.find()
+    return [ob.name, *(user.name for user in other_users(ob))]
 
 
 def _check_children(deformed: set[str], in_groups: set[str], meshes: Sequence[VisibleMesh]) -> None:

@@ -22,6 +22,14 @@ class Participant:
     selected: bool
 
 
+@dataclass(frozen=True)
+class ShownAs:
+    """Where a surface was read: the name of the object that shows it, and the evaluation."""
+
+    owner: str
+    evaluation: str
+
+
 class Writer(Protocol):
     """Writes controls into Blender."""
 

@@ -54,9 +54,15 @@ def check_data(ob: bpy.types.Object) -> None:
     if ob.data.library is not None:
         raise _refusal(ob, "linked data", kind=kind)
     _check_scale(ob)
-    others = [other.name for other in bpy.data.objects if other.data == ob.data and other != ob]
-    if others:
-        raise _refusal(ob, "shared data", kind=kind, other=others[0])
+    if ob.type != "MESH":
+        others = [other for other in bpy.data.objects if other.data == ob.data and other != ob]
+        if others:
+            raise shared_data_error(ob, others[0])
+
+
+def shared_data_error(ob: bpy.types.Object, other: bpy.types.Object) -> InputError:
+    """The error for data that is shared with another object."""
+    return _refusal(ob, "shared data", kind=type_name(ob), other=other.name)
 
 
 def _refusal(ob: bpy.types.Object, reason: str, **names: Any) -> InputError:

@@ -79,6 +79,11 @@ def seam_message(name: str, selected: Flags, control_seams: Seams) -> str:
     return f"{name}: {counted} on its seams" if follow else ""
 
 
+def join_notes(*notes: str) -> str:
+    """All notes that are not empty."""
+    return "; ".join(note for note in notes if note)
+
+
 def _selection_weights(index: Indices, count: int) -> stiv.Weights:
     """Weights, (n, count), of rows that each equal one of `count` points, given by `index`, (n,)."""
     return stiv.Weights(np.arange(len(index) + 1, dtype=np.int32), index, np.ones(len(index)), (len(index), count))
@@ -117,7 +122,7 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
         rule=_merge_rule(rule, selected, max_weights, control_seams),
         writer=SeamWriter(control_set.writer, control_seams),
         control_seams=control_seams,
-        note=seam_message(control_set.names[0], rule.selected, control_seams),
+        note=join_notes(control_set.note, seam_message(control_set.names[0], rule.selected, control_seams)),
         weight_axes=None if control_set.weight_axes is None else control_set.weight_axes[control_seams.first],
     )
 

@@ -13,6 +13,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
+from stiv.blender.scene.evaluations import is_edited
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.shape_keys import KeyMix, active_key, following_keys, read_keys, read_mix
 
@@ -106,9 +107,9 @@ def _write_keys(ob: bpy.types.Object, positions: Sequence[tuple[int, Singles]]) 
         if len(points) != len(block.data):
             raise SceneChangedError(f"{ob.name} changed its number of vertices")
         block.data.foreach_set("co", points.ravel())
-        if block == keys.reference_key and ob.mode != "EDIT":
+        if block == keys.reference_key and not is_edited(ob):
             mesh.vertices.foreach_set("co", points.ravel())
-    if ob.mode == "EDIT":
+    if is_edited(ob):
         _write_key_layers(mesh, positions)
     else:
         mesh.update()

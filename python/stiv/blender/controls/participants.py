@@ -116,11 +116,14 @@ def _lattice_of(ob: bpy.types.Object) -> ObjectReference:
 
 
 def merge_participants(participants: list[Participant]) -> list[Participant]:
-    """Merge participants of the same object, such as the lattice of several meshes; selected if any of them is."""
-    merged: dict[ObjectReference, Participant] = {}
+    """Merge participants of the same object, such as the lattice of several meshes, and those that deform the same
+    mesh; selected if any of them is.
+    """
+    merged: dict[object, Participant] = {}
     for participant in participants:
-        known = merged.get(participant.reference)
-        merged[participant.reference] = participant if known is None or not known.selected else known
+        key = participant.reference if participant.role == "rigid" else participant.reference.find().data
+        known = merged.get(key)
+        merged[key] = participant if known is None or not known.selected else known
     return list(merged.values())
 
 

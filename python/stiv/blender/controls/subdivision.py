@@ -31,6 +31,15 @@ def identity_deformation(count: int) -> stiv.Deformation:
     return stiv.linear(stiv.Weights(rows, rows[:-1], np.ones(count), (count, count)))
 
 
+def is_linear(deformation: stiv.Deformation) -> bool:
+    """Does the deformation have weights, so that a deformation by handles can precede it?"""
+    try:
+        stiv.linear_weights(deformation)
+    except stiv.InputError:
+        return False
+    return True
+
+
 def stack_deformations(deformations: Sequence[stiv.Deformation]) -> stiv.Deformation:
     """Stack linear deformations of the same controls."""
     if len(deformations) == 1:

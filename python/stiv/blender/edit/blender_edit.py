@@ -113,9 +113,10 @@ class BlenderEdit:
 
     @property
     def start_notes(self) -> tuple[str, ...]:
-        """Notes about intersections at the start that the edit leaves as they are, and about stale exclusions."""
+        """Notes about stale exclusions, intersections at the start that stay, seams, and users of a shared mesh."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
-        return (*dropped, *intersection_notes(self._solver.excluded))
+        notes = tuple(each.note for each in self.control_sets if each.note)
+        return (*dropped, *intersection_notes(self._solver.excluded), *notes)
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:

@@ -53,7 +53,6 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
         guard.choice,
         (
             *((guard.reason,) if guard.reason else ()),
-            *(each.note for each in control_sets if each.note),
             *_warnings(assembly),
         ),
     )

@@ -14,7 +14,7 @@ from stiv.blender.controls.key_editing import KeyEditing
 from stiv.blender.controls.lattice_points import LatticeWriter
 from stiv.blender.controls.object_transform import ROTATION_PROPERTIES
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix
-from stiv.blender.scene.evaluations import is_visible
+from stiv.blender.scene.evaluations import is_edited, is_visible
 from stiv.blender.scene.lattice_reading import read_lattice_points
 from stiv.blender.scene.mesh_reading import read_cage
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
@@ -123,7 +123,7 @@ def read_state(context: bpy.types.Context) -> SceneState:
 
 def read_object(ob: bpy.types.Object) -> ObjectState:
     """Read one object."""
-    if ob.type == "MESH" and ob.mode == "EDIT":
+    if ob.type == "MESH" and is_edited(ob):
         ob.update_from_editmode()
     rotation = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
     return ObjectState(

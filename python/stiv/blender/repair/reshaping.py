@@ -20,6 +20,7 @@ from stiv.blender.controls.cage import CageWriter
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.joined_seams import SeamWriter, join_rows
+from stiv.blender.controls.participants import merge_participants
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.sessions import (
     assemble_with_controls,
@@ -213,7 +214,7 @@ def _participants(context: bpy.types.Context, settings: EditSettings) -> list[Pa
         participants.append(Participant(ObjectReference.of(ob), "cage", True))
     if not participants:
         raise InputError("no movable mesh is selected; select one that is not an obstacle")
-    return participants
+    return merge_participants(participants)
 
 
 def _cage_of(control_sets: Sequence[ControlSet]) -> stiv.Surface:

@@ -11,6 +11,8 @@ import bpy
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.editable import shared_data_error
+from stiv.blender.controls.shared_meshes import other_users
 from stiv.blender.scene.arrays import read_collection
 from stiv.blender.scene.references import ObjectReference
 
@@ -54,6 +56,8 @@ def weld_copies(objects: Sequence[bpy.types.Object]) -> WeldedMeshes:
             raise InputError(f"{ob.name}: cannot be welded in Edit Mode; use Merge by Distance")
         if ob.data.shape_keys is not None and len(ob.data.shape_keys.key_blocks) > 1:
             raise InputError(f"{ob.name}: has shape keys and cannot be welded; use Merge by Distance")
+        if users := other_users(ob):
+            raise shared_data_error(ob, users[0])
     owners, meshes, copies = [], [], []
     for ob in objects:
         owners.append(ObjectReference.of(ob))

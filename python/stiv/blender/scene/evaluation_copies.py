@@ -12,7 +12,7 @@ from typing import Any
 
 import bpy
 
-from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active
+from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
 
 NAME = "STIV Evaluation"
@@ -76,7 +76,7 @@ class EvaluationCopies:
             self.scene.render.simplify_subdivision = home.render.simplify_subdivision_render
 
     def _copy(self, ob: bpy.types.Object) -> bpy.types.Object:
-        if ob.mode == "EDIT":
+        if is_edited(ob):
             ob.update_from_editmode()
         twin = ob.copy()
         self._made.append(twin)

@@ -15,6 +15,7 @@ from stiv.blender.scene.evaluations import (
     VIEWPORT,
     WITHOUT_EFFECT,
     is_active,
+    is_edited,
     rendered_objects,
     signature,
 )
@@ -61,7 +62,7 @@ def find_differences(context: bpy.types.Context, evaluations: Collection[str]) -
 
 def _is_edited_otherwise(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     """Is the object in Edit Mode, with a shape that may differ in Object Mode?"""
-    if ob.mode != "EDIT" or ob.type != "MESH":
+    if ob.type != "MESH" or not is_edited(ob):
         return False
     if signature(ob, scene, SHOWN) != signature(ob, scene, VIEWPORT):
         return True

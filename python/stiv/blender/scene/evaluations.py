@@ -18,11 +18,16 @@ EVALUATIONS = (SHOWN, VIEWPORT, RENDER)
 WITHOUT_EFFECT = frozenset({"WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
 
 
+def is_edited(ob: bpy.types.Object) -> bool:
+    """Does Blender show the object as in Edit Mode? Other users of an edited mesh too, whatever their own mode."""
+    return ob.mode == "EDIT" or (ob.type == "MESH" and bool(ob.data.is_editmode))
+
+
 def is_active(modifier: bpy.types.Modifier, ob: bpy.types.Object, evaluation: str = SHOWN) -> bool:
     """Is the modifier switched on in an evaluation?"""
     if evaluation == RENDER:
         return bool(modifier.show_render)
-    return bool(modifier.show_viewport and (evaluation == VIEWPORT or ob.mode != "EDIT" or modifier.show_in_editmode))
+    return bool(modifier.show_viewport and (evaluation == VIEWPORT or not is_edited(ob) or modifier.show_in_editmode))
 
 
 def subdivision_levels(modifier: Any, scene: bpy.types.Scene, evaluation: str) -> int:

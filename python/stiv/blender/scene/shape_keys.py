@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Floats, Singles, read_collection
-from stiv.blender.scene.evaluations import SHOWN
+from stiv.blender.scene.evaluations import SHOWN, is_edited
 from stiv.blender.scene.vertex_groups import read_group_weights
 
 
@@ -33,7 +33,7 @@ class KeyMix:
 def read_mix(ob: bpy.types.Object, evaluation: str = SHOWN) -> KeyMix:
     """The mix of a mesh with relative shape keys; in Edit Mode as of the last `update_from_editmode`."""
     active = active_key(ob)
-    if ob.mode == "EDIT" and evaluation == SHOWN and not ob.use_shape_key_edit_mode:
+    if is_edited(ob) and evaluation == SHOWN and not ob.use_shape_key_edit_mode:
         return KeyMix(_points(active), np.ones(len(active.data)), 1.0)
     return _locked_mix(ob, active) if ob.show_only_shape_key else _relative_mix(ob, active)
 
