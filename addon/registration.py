@@ -18,7 +18,7 @@ from . import (
     properties,
     translations,
 )
-from .guard import watcher
+from .guard import waiting, watcher
 from .operators import running
 from .operators.transform import drag_results
 from .overlay import display
@@ -28,6 +28,7 @@ CLASSES = (
     *properties.CLASSES,
     *display.CLASSES,
     *operators.CLASSES,
+    *waiting.CLASSES,
     *getting_started.CLASSES,
     *panels.CLASSES,
     *menus.CLASSES,

@@ -12,6 +12,8 @@ from ..scene.edit_settings import edit_settings
 from ..translations import translate
 from .problem import listed
 
+TIME_LIMIT = 60.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -46,16 +48,28 @@ def test(context: bpy.types.Context) -> Outcome:
         return Outcome(reason=str(error), failed=True)
 
 
-def correct(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Outcome:
-    """Edit from the accepted scene toward the current one, and place new objects."""
+def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> stiv_blender.Steps[Outcome]:
+    """Steps that edit from the accepted scene toward the current one, and place new objects."""
+    settings = replace(_settings(context), time_budget=TIME_LIMIT)
     try:
-        guarded = stiv_blender.guard_result(context, _settings(context), accepted)
+        guarded = yield from stiv_blender.guard_result_steps(context, settings, accepted)
     except ValueError as error:
         return Outcome(reason=str(error), failed=True)
     reason = guarded.reason if guarded.pairs else ""
     if guarded.pairs and guarded.deformers:
         reason = translate("{} cannot be corrected").format(listed(guarded.deformers, translate))
     return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
+
+
+def stop(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Outcome:
+    """Restore the accepted scene; added objects and changed structures stay, and are tested."""
+    try:
+        stiv_blender.revert(context, accepted.state)
+    except ValueError as error:
+        return replace(test(context), reason=str(error))
+    added = any(ob.session_uid not in accepted.objects for ob in context.view_layer.objects)
+    outcome = test(context) if added else Outcome(accepted.known.pairs)
+    return replace(outcome, wrote=True, text=translate("stopped, back to the state before"))
 
 
 def _text(guarded: stiv_blender.GuardedResult) -> str:

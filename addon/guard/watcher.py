@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
 import bpy
 from bpy.app.handlers import persistent
@@ -12,12 +13,14 @@ from .. import native_module, stiv_blender
 from ..operators import last_edit
 from ..operators.reports import error_text
 from ..translations import translate
-from . import alerts, correction, undo_steps
+from . import alerts, correction, undo_steps, waiting
 from .decision import POLL_INTERVAL, Action, Guard, Observation, decide, is_new_result
 from .problem import Problem, listed
 from .record import Record
 
 STEP_NAME = "Live Guard"
+FIRST_WAIT = 0.1  # seconds that a correction may take before its progress is shown
+WAIT = 0.02  # seconds of each further look at it
 
 
 class Watch:
@@ -27,6 +30,7 @@ class Watch:
         record: the accepted state and its intersections.
         frame: the frame of the last observation.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
+        correction: the one that runs now; what it writes is no change to observe.
     """
 
     def __init__(self) -> None:
@@ -39,6 +43,18 @@ class Watch:
         self.own_edits = last_edit.written()
         self.uncorrected = 0
         self.working = False
+        self.correction: _Correction | None = None
+
+
+@dataclass
+class _Correction:
+    """A running correction, the scene from which it starts, and why it runs."""
+
+    work: waiting.Work
+    accepted: stiv_blender.AcceptedScene
+    action: Action
+    seen: Observation
+    restored: bool
 
 
 _watch = Watch()
@@ -93,6 +109,10 @@ def exclusions_changed(context: bpy.types.Context) -> None:
 def restart() -> None:
     """Reset the state; the next observation is the first."""
     global _watch
+    running, _watch.correction = _watch.correction, None
+    if running is not None:
+        waiting.end(bpy.context)
+        running.work.task.abandon()
     _watch = Watch()
     alerts.clear()
     if bpy.app.timers.is_registered(observe_and_act):
@@ -112,23 +132,26 @@ def observe_and_act() -> float | None:
         try:
             return _run(context, windows[0])
         except Exception as error:  # Blender would remove a timer that raises
+            waiting.end(context)
+            _watch.correction, _watch.working = None, False
             _give_up(Problem(reason=error_text(error)))
             return None
 
 
 def _run(context: bpy.types.Context, window: bpy.types.Window) -> float | None:
     watch = _watch
-    seen = _observe(context)
-    watch.guard, action = decide(watch.guard, seen)
-    if action is Action.WAIT:
-        return POLL_INTERVAL
-    if action is not Action.REST:
-        watch.working = True
-        try:
+    if watch.correction is None:
+        seen = _observe(context)
+        watch.guard, action = decide(watch.guard, seen)
+        if action is Action.WAIT:
+            return POLL_INTERVAL
+        if action is not Action.REST:
+            watch.working = True
             _act(context, window, action, seen)
-        finally:
-            watch.working = False
-    _watch.seen_updates = watch.updates
+    if watch.correction is not None and not _continue(context, window, watch.correction):
+        return 0.0
+    watch.working = False
+    watch.seen_updates = watch.updates
     return None
 
 
@@ -152,7 +175,44 @@ def _act(context: bpy.types.Context, window: bpy.types.Window, action: Action, s
     if seen.sculpting:
         correction.evaluate_strokes(context)
     restored = watch.guard.history and action is Action.WRITE
-    outcome = _test_and_correct(context, watch.record, action, restored)
+    outcome = _tested(context, watch.record, action, restored)
+    if outcome is not None:
+        _finish(context, window, action, seen, restored, outcome)
+        return
+    accepted = watch.record.accepted
+    assert accepted is not None
+    task = stiv_blender.Task(correction.correct_steps(context, accepted))
+    watch.correction = _Correction(waiting.Work(task), accepted, action, seen, restored)
+    task.advance(FIRST_WAIT)
+
+
+def _continue(context: bpy.types.Context, window: bpy.types.Window, running: _Correction) -> bool:
+    """Advance a correction, or stop it; returns whether it has ended."""
+    work = running.work
+    if not work.stopped and not work.task.advance(WAIT):
+        waiting.begin(window, work)
+        return False
+    waiting.end(context)
+    _watch.correction = None
+    if work.stopped:
+        work.task.abandon()
+        outcome = correction.stop(context, running.accepted)
+    else:
+        outcome = work.task.result
+    _finish(context, window, running.action, running.seen, running.restored, outcome)
+    return True
+
+
+def _finish(
+    context: bpy.types.Context,
+    window: bpy.types.Window,
+    action: Action,
+    seen: Observation,
+    restored: bool,
+    outcome: correction.Outcome,
+) -> None:
+    """Store a correction in the history, and accept the scene."""
+    watch = _watch
     if outcome.wrote:
         _store_in_history(window, action, seen)
     first = watch.record.accepted is None
@@ -163,12 +223,13 @@ def _act(context: bpy.types.Context, window: bpy.types.Window, action: Action, s
     alerts.show(context, outcome.text or _first_text(first), watch.record.problem)
 
 
-def _test_and_correct(context: bpy.types.Context, record: Record, action: Action, restored: bool) -> correction.Outcome:
+def _tested(context: bpy.types.Context, record: Record, action: Action, restored: bool) -> correction.Outcome | None:
+    """The outcome of a test; None if the scene has to be corrected."""
     if record.accepted is None or action in (Action.ACCEPT, Action.WRITE):
         tested = correction.test(context)
         if record.accepted is None or action is Action.ACCEPT or record.allows(tested.pairs, restored):
             return tested
-    return correction.correct(context, record.accepted)
+    return None
 
 
 def _first_text(first: bool) -> str:

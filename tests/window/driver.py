@@ -33,6 +33,7 @@ class Driver:
         from getting_started import GETTING_STARTED
         from grammar import GRAMMAR
         from guard_edit_mode import GUARD_EDIT_MODE
+        from guard_long_correction import GUARD_LONG_CORRECTION
         from guard_new_geometry import GUARD_NEW_GEOMETRY
         from guard_scenarios import GUARD
         from guard_sculpting import GUARD_SCULPTING
@@ -59,6 +60,7 @@ class Driver:
         bpy.context.preferences.edit.undo_steps = UNDO_STEPS
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
+        guard |= GUARD_LONG_CORRECTION
         drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | SNAPPING_BESIDE_BLENDER | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES

@@ -15,7 +15,7 @@ from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
-from stiv.blender.guard.guarding import GuardedResult, guard_result
+from stiv.blender.guard.guarding import GuardedResult, guard_result, guard_result_steps
 from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, object_pair
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state, revert
 from stiv.blender.layout.dropping import (
@@ -121,6 +121,7 @@ __all__ = [
     "fit_into",
     "follow",
     "guard_result",
+    "guard_result_steps",
     "intersection_text",
     "may_have_surface",
     "nearest_pair",

@@ -29,7 +29,7 @@ from stiv.task import Steps, run
 STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
 WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
-TIME_LIMIT = 5.0  # seconds for one correction; then what is accepted so far is written
+TIME_LIMIT = 5.0  # seconds for one correction without a budget; then what is accepted so far is written
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,11 @@ def correct_after_tool_steps(
     settings: EditSettings,
     accepted: SceneState,
     changes: Changes,
-    time_limit: float = TIME_LIMIT,
 ) -> Steps[ToolCorrection]:
-    """Steps of `correct_after_tool`, which take at most about `time_limit` seconds.
+    """Steps of `correct_after_tool`.
 
-    Between steps, the scene shows the accepted state of what changed. Steps that are closed leave the tool's result.
+    Between steps, the scene shows the accepted state of the changed objects. Steps that are closed leave the tool's
+    result.
     """
     chosen = [change for change in changes.changes if _participates(change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
@@ -82,7 +82,7 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(context, replace(settings, time_budget=time_limit), wanted, names)
+        outcomes = yield from _passes(context, settings, wanted, names)
         if all(outcome.reached for outcome in outcomes) and _is_tool_result_free(context, wanted, chosen, outcomes):
             return ToolCorrection(False, names, deformers=deformers)
     except BaseException:
@@ -140,7 +140,8 @@ def _passes(
     context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str]
 ) -> Steps[list[_Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children."""
-    deadline = time.monotonic() + settings.time_budget
+    limited = replace(settings, time_budget=settings.time_budget or TIME_LIMIT)
+    deadline = time.monotonic() + limited.time_budget
     done: set[tuple[int, str]] = set()
     outcomes: list[_Outcome] = []
     while True:
@@ -156,7 +157,7 @@ def _passes(
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {(change.reference.session_uid, _kind(change, done)) for change in now}
         goals = _ToolGoals.between(present, wanted, now)
-        outcomes.append((yield from _edit(context, settings, goals, kind, deadline)))
+        outcomes.append((yield from _edit(context, limited, goals, kind, deadline)))
 
 
 def _kind(change: Change, done: set[tuple[int, str]]) -> str:
@@ -182,7 +183,7 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
 
 @dataclass(frozen=True)
 class _ToolGoals:
-    """What a tool did to objects, by name: the change, the state after it, and for those that it placed the motion."""
+    """A tool's changes by the object's name: the change, the state after it, and the motion of placed objects."""
 
     changes: dict[str, Change]
     after: dict[str, ObjectState]

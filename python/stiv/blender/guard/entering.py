@@ -12,7 +12,7 @@ from mathutils import Matrix, Vector
 
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
-from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
+from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
 from stiv.blender.guard.extrusion import extruded_from, is_among
 from stiv.blender.guard.free_place import find_free_place
 from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, fresh_objects
@@ -24,6 +24,7 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps
 
 FIRST_FRACTIONS = (1 / 16, 1 / 64, 1 / 256)  # of an extrusion, from which its correction starts
 ROUNDING = 1e-5  # of the coordinates of a mesh; a translation of its vertices differs by less
@@ -83,8 +84,8 @@ def correct_copies(
     settings: EditSettings,
     accepted: AcceptedScene,
     originals: Mapping[int, int],
-) -> ToolCorrection:
-    """Move copies from the places of their originals toward their own. They pass through all originals.
+) -> Steps[ToolCorrection]:
+    """Steps that move copies from the places of their originals toward their own. They pass through all originals.
 
     Raises InputError and SceneChangedError, with nothing changed.
     """
@@ -101,7 +102,7 @@ def correct_copies(
     left_out = accepted.known.left_out(settings, names)
     through = tuple((copy, original) for copy in names for original in names.values())
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, *through))
-    return correct_after_tool(context, left_out, base, compare(base, present))
+    return (yield from correct_after_tool_steps(context, left_out, base, compare(base, present)))
 
 
 def correct_extrusion(
@@ -109,8 +110,8 @@ def correct_extrusion(
     settings: EditSettings,
     accepted: AcceptedScene,
     reference: ObjectReference,
-) -> ToolCorrection | None:
-    """Pull an extrusion out again up to where it is blocked; None if the new vertices were not extruded.
+) -> Steps[ToolCorrection | None]:
+    """Steps that pull an extrusion out again up to where it is blocked; None if the new vertices were not extruded.
 
     Raises InputError and SceneChangedError, with nothing changed.
     """
@@ -122,6 +123,7 @@ def correct_extrusion(
         return None
     origins, moved = extruded
     for fraction in FIRST_FRACTIONS:
+        yield None
         points = origins + fraction * (after.points - origins)
         start = replace(after, points=np.where(moved[:, None], points, after.points).astype(np.float32))
         start.restore_points()
@@ -132,7 +134,8 @@ def correct_extrusion(
         if is_free:
             base = {**read_state(context), reference.session_uid: start}
             change = Change(reference, moved=False, turned=False, scaled=False, points=moved)
-            return correct_after_tool(context, accepted.known.left_out(settings), base, Changes((change,)))
+            left_out = accepted.known.left_out(settings)
+            return (yield from correct_after_tool_steps(context, left_out, base, Changes((change,))))
     return None
 
 
@@ -149,8 +152,8 @@ def correct_part(
     reference: ObjectReference,
     part: Flags,
     origins: Singles,
-) -> bool | None:
-    """Move components of a mesh from their vertices' origins, (k, 3), toward their place.
+) -> Steps[bool | None]:
+    """Steps that move components of a mesh from their vertices' origins, (k, 3), toward their place.
 
     Returns whether the place changed; None if the tool did not translate them from a free place. They move as a rigid
     body and pass through the rest of their object. Raises InputError and SceneChangedError.
@@ -163,7 +166,7 @@ def correct_part(
     way = after.world[:3, :3] @ ways.mean(axis=0)
     left_out = known.left_out(settings)
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, (reference.name, reference.name)))
-    made = slide_part(context, left_out, {reference.name: part}, way)
+    made = yield from slide_part(context, left_out, {reference.name: part}, way)
     if made is None:
         return None
     if np.linalg.norm(made - way) <= ROUNDING * np.linalg.norm(way):
@@ -179,9 +182,12 @@ def touches_others(pairs: Iterable[FacePair], names: Collection[str]) -> bool:
 
 def place_freely(
     context: bpy.types.Context, settings: EditSettings, known: KnownIntersections, names: Collection[str]
-) -> bool:
-    """Put new objects, which stay together, at the nearest free place; False, with nothing changed, without success."""
-    translation = find_free_place(context, known.left_out(settings), names)
+) -> Steps[bool]:
+    """Steps that put new objects, which stay together, at the nearest free place.
+
+    False, with nothing changed, without success.
+    """
+    translation = yield from find_free_place(context, known.left_out(settings), names)
     if translation is None or not translation.any():
         return False
     roots = [ob for ob in map(bpy.data.objects.get, names) if ob and (not ob.parent or ob.parent.name not in names)]
@@ -205,9 +211,9 @@ def place_part_freely(
     known: KnownIntersections,
     reference: ObjectReference,
     added: Flags,
-) -> bool:
-    """Put a new part of a mesh at the nearest free place; False, with nothing changed, without success."""
-    translation = find_free_place(context, known.left_out(settings), (), {reference.name: added})
+) -> Steps[bool]:
+    """Steps that put a new part of a mesh at the nearest free place; False, with nothing changed, without success."""
+    translation = yield from find_free_place(context, known.left_out(settings), (), {reference.name: added})
     if translation is None or not translation.any():
         return False
     before = read_object(reference.find())

@@ -19,6 +19,7 @@ from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import tested_names
+from stiv.task import Steps
 
 DIRECTIONS = sorted(
     (np.array(each) / np.linalg.norm(each) for each in itertools.product((-1, 0, 1), repeat=3) if any(each)),
@@ -36,8 +37,8 @@ def find_free_place(
     settings: EditSettings,
     names: Collection[str],
     parts: Mapping[str, Flags] | None = None,
-) -> Floats | None:
-    """The shortest translation found, (3,), that frees the named objects from all others; None if none was found.
+) -> Steps[Floats | None]:
+    """Steps to the shortest translation found, (3,), that frees the named objects from all others; None without one.
 
     parts: flags of the vertices that move, by object, instead of whole objects. All that moves stays together, and
     intersections within it are not counted. Places inside a closed surface do not count. A free place gives 0.
@@ -55,7 +56,7 @@ def find_free_place(
     best, deadline = np.inf, time.monotonic() + TIME_LIMIT
     found = None
     for direction in DIRECTIONS:
-        distance = search.free_distance(direction, best, deadline)
+        distance = yield from search.free_distance(direction, best, deadline)
         if distance < best:
             best, found = distance, direction * distance
     return found
@@ -89,16 +90,18 @@ class _Search:
         test = stiv.IntersectionTest(assembly.surface, threads)
         return _Search(assembly, moving, test, others, size, extent)
 
-    def free_distance(self, direction: Floats, limit: float, deadline: float) -> float:
-        """The shortest free distance found along a direction below a limit, with a margin; infinity for none."""
+    def free_distance(self, direction: Floats, limit: float, deadline: float) -> Steps[float]:
+        """Steps to the shortest free distance found along a direction, below a limit, with a margin; else infinity."""
         low, step = 0.0, self.size * FIRST_STEP
         high = step
         while not self.is_free(direction * high):
+            yield None
             low, step = high, step * GROWTH
             high += step
             if low > min(limit, self.extent) or time.monotonic() > deadline:
                 return float("inf")
         for _ in range(BISECTIONS):
+            yield None
             middle = (low + high) / 2
             low, high = (low, middle) if self.is_free(direction * middle) else (middle, high)
         padded = high + MARGIN * self.size

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import bpy
@@ -12,7 +13,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
-from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
+from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
 from stiv.blender.guard.entering import (
     correct_copies,
     correct_extrusion,
@@ -26,11 +27,12 @@ from stiv.blender.guard.entering import (
 )
 from stiv.blender.guard.known_intersections import find_intersections, fresh_objects, object_pair
 from stiv.blender.guard.new_parts import find_new_part, joins_others
-from stiv.blender.guard.scene_state import SceneState, read_object, read_state
+from stiv.blender.guard.scene_state import SceneState, read_object, read_state, revert
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, run
 
 
 @dataclass
@@ -68,17 +70,40 @@ def guard_result(context: bpy.types.Context, settings: EditSettings, accepted: A
     New objects and extrusions that intersect are corrected or placed. Objects that were only shown stay where they are.
     Raises InputError if the scene cannot be read.
     """
-    changes = compare(accepted.state, read_state(context))
+    return run(guard_result_steps(context, settings, accepted))
+
+
+def guard_result_steps(
+    context: bpy.types.Context, settings: EditSettings, accepted: AcceptedScene
+) -> Steps[GuardedResult]:
+    """Steps of `guard_result`.
+
+    Between steps, the scene may show the accepted state. Steps that are closed leave the tool's result.
+    """
+    present = read_state(context)
+    try:
+        return (yield from _guard(context, settings, accepted, compare(accepted.state, present)))
+    except GeneratorExit:
+        with suppress(InputError, SceneChangedError):
+            revert(context, present)
+        raise
+
+
+def _guard(
+    context: bpy.types.Context, settings: EditSettings, accepted: AcceptedScene, changes: Changes
+) -> Steps[GuardedResult]:
     result = GuardedResult(reason=changes.unsupported)
     start = accepted.state
     if changes.unsupported:
         result.pairs = find_intersections(context, settings)
-        _guard_new_geometry(context, settings, accepted, changes, result)
+        yield None
+        yield from _guard_new_geometry(context, settings, accepted, changes, result)
         start = _start_of(changes, accepted.state, read_state(context))
-    if changes.changes and not _guard_overlapping_part(context, settings, accepted, changes, result):
-        _guard_moved(context, settings, accepted, start, changes, result)
+    if changes.changes and not (yield from _guard_overlapping_part(context, settings, accepted, changes, result)):
+        yield from _guard_moved(context, settings, accepted, start, changes, result)
     tested = changes.unsupported and not changes.changes and not result.wrote
     if not tested and (not changes.changes or result.reason or result.deformers or accepted.known.pairs):
+        yield None
         result.pairs = find_intersections(context, settings)
     return result
 
@@ -95,8 +120,11 @@ def _guard_overlapping_part(
     accepted: AcceptedScene,
     changes: Changes,
     result: GuardedResult,
-) -> bool:
-    """Correct a translation of whole components of a mesh that intersects itself; False if it is something else."""
+) -> Steps[bool]:
+    """Steps that correct a translation of whole components of a mesh that intersects itself.
+
+    False if it is something else.
+    """
     if changes.unsupported or len(changes.changes) != 1:
         return False
     change = changes.changes[0]
@@ -107,7 +135,7 @@ def _guard_overlapping_part(
     ob = reference.find()
     if ob.type != "MESH" or joins_others(read_edges(ob.data), part):
         return False
-    corrected = correct_part(context, settings, accepted.known, reference, part, before[part])
+    corrected = yield from correct_part(context, settings, accepted.known, reference, part, before[part])
     if corrected:
         result.wrote = True
         result.corrected.append(reference.name)
@@ -121,10 +149,11 @@ def _guard_moved(
     start: SceneState,
     changes: Changes,
     result: GuardedResult,
-) -> None:
+) -> Steps[None]:
     try:
         left_out = accepted.known.left_out(settings)
-        outcome = correct_after_tool(context, left_out, start, replace(changes, unsupported=""))
+        supported = replace(changes, unsupported="")
+        outcome = yield from correct_after_tool_steps(context, left_out, start, supported)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
         return
@@ -138,7 +167,7 @@ def _guard_new_geometry(
     accepted: AcceptedScene,
     changes: Changes,
     result: GuardedResult,
-) -> None:
+) -> Steps[None]:
     """Correct extrusions and new objects that intersect, by the pairs of the result."""
     fresh = accepted.known.fresh(result.pairs)
     names = {name for pair in fresh for name in object_pair(pair)}
@@ -146,10 +175,10 @@ def _guard_new_geometry(
     try:
         for reference in changes.rebuilt:
             if reference.name in names:
-                _guard_rebuilt(context, settings, accepted, changes, reference, result)
+                yield from _guard_rebuilt(context, settings, accepted, changes, reference, result)
         if touches_others(fresh, created):
             entering = [created[name].session_uid for name in sorted(names & created.keys())]
-            _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result)
+            yield from _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
 
@@ -161,12 +190,12 @@ def _guard_rebuilt(
     changes: Changes,
     reference: ObjectReference,
     result: GuardedResult,
-) -> None:
+) -> Steps[None]:
     """Correct an extrusion, or a part that was added and did not come from an object that is gone, as in Join."""
     before, after = accepted.state[reference.session_uid], read_object(reference.find())
     added = None if changes.removed else find_new_part(before, after, read_edges(reference.find().data))
     if added is None:
-        result.add(correct_extrusion(context, settings, accepted, reference))
+        result.add((yield from correct_extrusion(context, settings, accepted, reference)))
         return
     source, known, corrected = find_copied(accepted, reference, added), accepted.known, False
     if source is not None and after.points is not None:
@@ -174,9 +203,9 @@ def _guard_rebuilt(
         if np.array_equal(after.points[added], origins):
             result.reason = f"{reference.name}: the copy is in the place of its source; move it"
             return
-        corrected = bool(correct_part(context, settings, known, reference, added, origins))
+        corrected = bool((yield from correct_part(context, settings, known, reference, added, origins)))
     is_left = reference.name in fresh_objects(context, settings, known)
-    placed = is_left and place_part_freely(context, settings, known, reference, added)
+    placed = is_left and (yield from place_part_freely(context, settings, known, reference, added))
     result.wrote |= corrected or placed
     if placed or corrected:
         (result.placed if placed else result.corrected).append(reference.name)
@@ -190,7 +219,7 @@ def _guard_new_objects(
     entering: list[int],
     fresh: Sequence[FacePair],
     result: GuardedResult,
-) -> None:
+) -> Steps[None]:
     """Correct copies from the places of their originals, then place new objects that still intersect.
 
     created: names of all new objects. entering: session numbers of those that intersect. fresh: their intersections.
@@ -207,9 +236,10 @@ def _guard_new_objects(
     }
     blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
     if originals and touches_others(blocking, created):
-        result.add(correct_copies(context, settings, accepted, originals))
+        result.add((yield from correct_copies(context, settings, accepted, originals)))
+        yield None
         if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
             return
-    if place_freely(context, settings, accepted.known, created):
+    if (yield from place_freely(context, settings, accepted.known, created)):
         result.wrote = True
         result.placed += [present[number].reference.name for number in entering]

@@ -9,13 +9,14 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.edit.sessions import body_separations
+from stiv.blender.edit.sessions import body_separations, open_session
 from stiv.blender.guard.new_parts import split_parts
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.scene.assembly import assemble
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import tested_names
+from stiv.task import Call, Steps
 
 STEP = 0.1  # longest step toward the goal, of the part's size
 MAX_STEPS = 200
@@ -23,8 +24,8 @@ MAX_STEPS = 200
 
 def slide_part(
     context: bpy.types.Context, settings: EditSettings, parts: Mapping[str, Flags], way: Floats
-) -> Floats | None:
-    """The part, (3,), of a translation that new parts can make toward their present place; None without a free start.
+) -> Steps[Floats | None]:
+    """Steps to the part, (3,), of a translation that new parts can make toward their place; None without a free start.
 
     parts: flags of the cage's vertices, by object. way: the translation from their source, (3,). Raises InputError.
     """
@@ -45,13 +46,15 @@ def slide_part(
         weights=np.array([1.0, 0.0]),
     )
     try:
-        session = stiv.EditSession(assembly.surface, deformation, controls, options)
+        session: stiv.EditSession = yield Call(
+            open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options
+        )
     except stiv.StartIntersectsError:
         return None
     size = float(np.linalg.norm(np.ptp(start[rows], axis=0)))
     count = int(np.clip(np.ceil(np.linalg.norm(way) / (STEP * size)), 1, MAX_STEPS)) if size > 0 else 1
     for fraction in np.arange(1, count + 1) / count:
-        session.drag(controls + [fraction * way, np.zeros(3)])
-    session.settle()
+        yield Call(session.drag, session.start_drag, controls + [fraction * way, np.zeros(3)])
+    yield Call(session.settle, session.start_settle)
     moved: Floats = session.controls[0] - controls[0]
     return moved

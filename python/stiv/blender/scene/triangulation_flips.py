@@ -6,7 +6,7 @@ their shape. A surface free of intersections in its first triangulation may ther
 shows. Quads close to a flip keep both triangulations free from the start; others from the first flip on.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -52,18 +52,22 @@ class CurrentTriangulation:
 
 
 def find_flips(
-    context: bpy.types.Context, assembly: Assembly, opened: OpenEvaluations | None = None
+    context: bpy.types.Context,
+    assembly: Assembly,
+    opened: OpenEvaluations | None = None,
+    certain: Callable[[int], bool] = lambda number: False,
 ) -> tuple[CurrentTriangulation, ...]:
     """Find the meshes whose present triangulation has triangles that the assembly does not include.
 
-    opened: the evaluations from which the meshes were read; None for the one shown now.
+    opened: the evaluations from which the meshes were read; None for the one shown now. certain: whether the mesh with
+    a number certainly has its first triangulation, so that it is not read.
 
     Only deformable bodies change their shape, and thus their triangulation.
     """
     source = opened or OpenEvaluations(context)
     flips = []
     for number, mesh in enumerate(assembly.meshes):
-        if not _is_deformable(assembly, number):
+        if not is_deformable(assembly, number) or certain(number):
             continue
         with evaluated_mesh(source.evaluated(mesh.read_from, mesh.owner)) as evaluated:
             triangles, faces = read_triangles(evaluated)
@@ -110,7 +114,7 @@ def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
 
 def _bent_quads(assembly: Assembly, number: int) -> FaceTriangles | None:
     """The second triangulation of each strongly bent quad of a mesh."""
-    if not _is_deformable(assembly, number):
+    if not is_deformable(assembly, number):
         return None
     mesh, q = assembly.meshes[number], assembly.positions[assembly.vertices(number)]
     first = np.flatnonzero(mesh.faces[:-1] == mesh.faces[1:])
@@ -166,7 +170,8 @@ def _corners(mesh: VisibleMesh, flip: FaceTriangles) -> Iterator[Indices]:
         yield np.unique(mesh.triangles[mesh.faces == face])
 
 
-def _is_deformable(assembly: Assembly, mesh: int) -> bool:
+def is_deformable(assembly: Assembly, mesh: int) -> bool:
+    """Can the mesh change its shape?"""
     surface, start = assembly.surface, int(assembly.starts[mesh])
     return start < surface.vertex_count and surface.bodies[surface.vertex_body[start]].mobility == "deformable"
 

@@ -16,6 +16,7 @@ from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
+from stiv.blender.scene.quad_diagonals import QuadDiagonals
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import (
     CurrentTriangulation,
@@ -56,6 +57,7 @@ class Verifier:
         self._threads = threads
         self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
+        self._diagonals: dict[int, QuadDiagonals | None] = {}
 
     def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
         """Is this the verifier of an assembly and its exclusions? Both may change during an edit."""
@@ -72,7 +74,8 @@ class Verifier:
             return self._verify(context, accepted, opened)
 
     def _verify(self, context: bpy.types.Context, accepted: Floats, opened: OpenEvaluations) -> Verification:
-        meshes = _read_meshes(self.assembly, opened)
+        placed = _read_placed(self.assembly, opened)
+        meshes = _world(self.assembly, placed)
         shown = _merged(self.assembly, meshes)
         message = _displacement_message(self.assembly, accepted, meshes)
         if message:
@@ -83,8 +86,14 @@ class Verifier:
                 return self._failure(pairs)
         elif not self._is_step_free(accepted, shown):
             return self._failure(find_face_pairs(self.assembly, shown, self._threads))
-        flips = find_flips(context, self.assembly, opened)
+        flips = find_flips(context, self.assembly, opened, lambda number: self._keeps_diagonals(number, placed[number]))
         return self._verify_flips(flips, shown) if flips else Verification(True)
+
+    def _keeps_diagonals(self, number: int, placed: EvaluatedPositions | None) -> bool:
+        if number not in self._diagonals:
+            self._diagonals[number] = QuadDiagonals.of(self.assembly.meshes[number])
+        quads = self._diagonals[number]
+        return quads is not None and placed is not None and quads.are_kept(placed.local)
 
     def _not_excluded(self, accepted: Floats, shown: Floats) -> tuple[FacePair, ...]:
         """Intersecting pairs of a surface that are not excluded, or of excluded objects that the edit has parted.
@@ -129,11 +138,11 @@ def _objects(pair: FacePair) -> frozenset[str]:
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
     """World positions of the assembly's meshes in Blender's present evaluation, (N, 3)."""
     with _opened(context, assembly) as opened:
-        return _merged(assembly, _read_meshes(assembly, opened))
+        return _merged(assembly, _world(assembly, _read_placed(assembly, opened)))
 
 
-def _read_meshes(assembly: Assembly, opened: OpenEvaluations) -> list[Floats]:
-    """World positions of each mesh in Blender's present evaluation, seams not merged.
+def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> list[EvaluatedPositions | None]:
+    """Positions of each mesh in Blender's present evaluation; None for strands.
 
     Strands are not read again: edits leave out those that depend on moving objects.
     """
@@ -149,7 +158,13 @@ def _read_meshes(assembly: Assembly, opened: OpenEvaluations) -> list[Floats]:
         each if mesh.cropped is None else each.limited_to(mesh.cropped.vertices)
         for each, mesh in zip(placed, meshes, strict=True)
     )
-    return [next(control_sets).world() if mesh.strands is None else mesh.world() for mesh in assembly.meshes]
+    return [next(control_sets) if mesh.strands is None else None for mesh in assembly.meshes]
+
+
+def _world(assembly: Assembly, placed: Sequence[EvaluatedPositions | None]) -> list[Floats]:
+    """World positions of each mesh, seams not merged."""
+    pairs = zip(placed, assembly.meshes, strict=True)
+    return [mesh.world() if each is None else each.world() for each, mesh in pairs]
 
 
 def _merged(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live guard's correction in steps: the same result as at once, and the tool's own if they are closed."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import pytest
+from building import add_cube, add_grid, evaluated, snapshot
+
+from stiv.blender import AcceptedScene, EditSettings, Task, check_scene, guard_result, guard_result_steps
+
+WALL = 3.0  # where its face is, along x
+
+
+def scene() -> Any:
+    add_cube("Wall", (WALL + 0.5, 0, 0), 1.0, scale=(0.5, 4, 4))
+    grid = add_grid("Grid", 8)
+    return grid
+
+
+def place(grid: Any) -> None:
+    grid.location.x = 9.0
+
+
+def stroke(grid: Any) -> None:
+    for vertex in grid.data.vertices:
+        vertex.co.x += 6.0 if vertex.co.x > 0 else 0.0
+
+
+def duplicate(grid: Any) -> None:
+    copy = grid.copy()
+    bpy.context.collection.objects.link(copy)
+    copy.location.x = 3.5
+
+
+def accepted_then_changed(change: Callable[[Any], None]) -> tuple[AcceptedScene, list[Any]]:
+    grid = scene()
+    bpy.context.view_layer.update()
+    accepted = AcceptedScene.read(bpy.context, ())
+    change(grid)
+    bpy.context.view_layer.update()
+    return accepted, snapshot()
+
+
+def task_of(accepted: AcceptedScene) -> Task[Any]:
+    return Task(guard_result_steps(bpy.context, EditSettings(), accepted))
+
+
+def finish(task: Task[Any]) -> Any:
+    deadline = time.monotonic() + 60
+    while not task.advance(0.02):
+        assert time.monotonic() < deadline
+    return task.result
+
+
+@pytest.mark.parametrize("change", [place, stroke, duplicate])
+def test_steps_give_the_result_of_the_synchronous_call(change: Callable[[Any], None]) -> None:
+    accepted, _ = accepted_then_changed(change)
+    outcome = finish(task_of(accepted))
+    state = snapshot()
+    assert outcome.wrote and check_scene(bpy.context).pairs == ()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    accepted, _ = accepted_then_changed(change)
+    assert guard_result(bpy.context, EditSettings(), accepted) == outcome
+    assert snapshot() == state
+
+
+@pytest.mark.parametrize("change", [place, stroke, duplicate])
+def test_closed_steps_leave_the_tools_result_exactly(change: Callable[[Any], None]) -> None:
+    """Wherever they are: after each turn, until they are done."""
+    for turns in range(1, 8):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        accepted, changed = accepted_then_changed(change)
+        task = task_of(accepted)
+        if any(task.advance(0.0005) for _ in range(turns)):
+            break
+        task.abandon()
+        bpy.context.view_layer.update()
+        assert snapshot() == changed
+    assert turns > 1
+
+
+def test_a_scene_shows_the_accepted_state_while_a_correction_solves() -> None:
+    accepted, _ = accepted_then_changed(stroke)
+    before = [state.points for state in accepted.state.values() if state.reference.name == "Grid"]
+    task = task_of(accepted)
+    seen = 0
+    while not task.advance(0.0):
+        if evaluated(bpy.data.objects["Grid"])[:, 0].max() < WALL:
+            seen += 1
+    assert seen and len(before) == 1
