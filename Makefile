@@ -24,7 +24,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: docs test-docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -111,10 +111,18 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
 	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 
-docs: ## Make the API reference of the core from its headers: build/docs/html
+docs: build/venv-docs/ready ## Build the documentation site with the references of Python and C++: build/site/index.html
 	tools/install_debian_packages.sh tools/debian_packages_docs.txt
 	mkdir -p build/docs
 	doxygen docs/Doxyfile
+	rm -rf build/site-source
+	$(PYTHON) tools/site_pages.py build/site-source build/docs/html
+	NO_MKDOCS_2_WARNING=1 build/venv-docs/bin/python -m mkdocs build --quiet --strict -f docs/site/mkdocs.yml
+	echo build/site/index.html
+
+test-docs: docs build/venv/lint ## Build the documentation site, and check its links, formulas, reference and search
+	tools/install_debian_packages.sh tools/debian_packages_browser.txt
+	STIV_SITE=build/site build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_site.py
 
 clean: ## Remove everything that was built or downloaded
 	rm -rf build dist
@@ -131,6 +139,10 @@ build/venv/ready: tools/requirements/build.txt tools/requirements/test.txt | bui
 
 build/venv/lint: tools/requirements/lint.txt build/venv/ready
 	tools/make_venv.sh $(PYTHON) build/venv -r tools/requirements/lint.txt
+	touch $@
+
+build/venv-docs/ready: tools/requirements/docs.txt | build/debian
+	tools/make_venv.sh $(PYTHON) build/venv-docs -r tools/requirements/docs.txt
 	touch $@
 
 build/venv/bench: tools/requirements/bench.txt build/venv/stiv

@@ -48,7 +48,7 @@ from stiv.blender.verify.untested import unguarded_text
 from stiv.task import Steps, Task
 from stiv.task import run as run_steps
 
-follow = correct_after_tool  # its name in version 0.1.0
+follow = correct_after_tool  #: the name of `correct_after_tool` in version 0.1.0
 
 __all__ = [
     "AcceptedScene",
