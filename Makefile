@@ -24,7 +24,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: docs test-docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -66,6 +66,11 @@ extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready #
 ifdef BLENDER
 	build/venv/bin/python tools/install_extension.py "$$(cat build/extension-all)" --blender "$(BLENDER)"
 endif
+
+release: extension ## Build a release in dist/release: zips for the extension platform, wheels and sources for PyPI, notes, hashes
+	rm -f dist/*.tar.gz
+	tools/source_archive.sh build/venv/bin/python dist
+	build/venv/bin/python tools/release.py dist dist/release
 
 bench: build/venv/bench ## Run every benchmark with its default settings, and the compared libraries from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done

@@ -5,7 +5,6 @@ Usage: source_archive.py [--folder F]   a new folder for archive and environment
 """
 
 import argparse
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,20 +15,9 @@ ROOT = Path(__file__).resolve().parents[2]
 TEST = "import stiv; result = stiv.self_test(); print(stiv.__file__, result); raise SystemExit(not result.passed)"
 
 
-def clean_tree(folder: Path) -> Path:
-    """A copy of the files of the repository."""
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
-    for name in subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines():
-        if (ROOT / name).is_file():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(ROOT / name, folder / name)
-    return folder
-
-
 def main(folder: Path) -> None:
     """Archive, install, test."""
-    build = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
-    subprocess.run([sys.executable, "-c", build, folder], cwd=clean_tree(folder / "tree"), check=True)
+    subprocess.run([ROOT / "tools/source_archive.sh", sys.executable, folder], cwd=ROOT, check=True)
     (archive,) = folder.glob("stiv-*.tar.gz")
     venv.create(folder / "venv", with_pip=True)
     python = folder / "venv/bin/python"
