@@ -20,6 +20,6 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/licenses DESTINATION ${CMAKE_INSTALL_DAT
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/stivConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/stivConfig.cmake INSTALL_DESTINATION ${config_folder})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/stivConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/stivConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/stivConfig.cmake ${PROJECT_BINARY_DIR}/stivConfigVersion.cmake
         DESTINATION ${config_folder} COMPONENT development ${in_wheel})

@@ -38,7 +38,8 @@ def test_a_manifest_with_a_version_of_its_own_is_refused(tmp_path: Path, monkeyp
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "addon/blender_manifest.toml", "CITATION.cff", "docs/Doxyfile"])
 def test_no_other_file_repeats_it(name: str) -> None:
-    assert VERSION not in (ROOT / name).read_text()
+    text = (ROOT / name).read_text().replace('schema_version = "1.0.0"', "")  # of Blender's manifests
+    assert VERSION not in text
 
 
 def test_the_changelog_has_a_section_for_it() -> None:
