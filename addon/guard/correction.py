@@ -9,7 +9,7 @@ import bpy
 
 from .. import stiv_blender
 from ..scene.edit_settings import edit_settings
-from ..translations import translate
+from ..translations import translate, translate_error
 from .problem import listed
 
 TIME_LIMIT = 60.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
@@ -45,7 +45,7 @@ def test(context: bpy.types.Context) -> Outcome:
     try:
         return Outcome(stiv_blender.find_intersections(context, _settings(context)))
     except ValueError as error:
-        return Outcome(reason=str(error), failed=True)
+        return Outcome(reason=translate_error(error), failed=True)
 
 
 def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> stiv_blender.Steps[Outcome]:
@@ -54,8 +54,8 @@ def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedSce
     try:
         guarded = yield from stiv_blender.guard_result_steps(context, settings, accepted)
     except ValueError as error:
-        return Outcome(reason=str(error), failed=True)
-    reason = guarded.reason if guarded.pairs else ""
+        return Outcome(reason=translate_error(error), failed=True)
+    reason = translate_error(guarded.reason) if guarded.pairs else ""
     if guarded.pairs and guarded.deformers:
         reason = translate("{} cannot be corrected").format(listed(guarded.deformers, translate))
     return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
@@ -66,7 +66,7 @@ def stop(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Ou
     try:
         stiv_blender.revert(context, accepted.state)
     except ValueError as error:
-        return replace(test(context), reason=str(error))
+        return replace(test(context), reason=translate_error(error))
     added = any(ob.session_uid not in accepted.objects for ob in context.view_layer.objects)
     outcome = test(context) if added else Outcome(accepted.known.pairs)
     return replace(outcome, wrote=True, text=translate("stopped, back to the state before"))

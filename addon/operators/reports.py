@@ -12,7 +12,7 @@ from .. import stiv_blender
 from ..intersection_texts import LENGTH, brief, short_name
 from ..modal.drag_loop import DragEnded, restore_after_error
 from ..modal.header_texts import result_text
-from ..translations import translate
+from ..translations import translate, translate_error
 from ..units import length_text
 
 last_messages: deque[str] = deque(maxlen=10)  # for the report that a user copies into an issue
@@ -31,7 +31,7 @@ def outcome_text(result: stiv_blender.EditResult) -> str:
 
 def write_failure(report: stiv_blender.WriteReport | None) -> str:
     """Why the accepted state could not be written; empty if it was, or if nothing was written yet."""
-    return "" if report is None or report.passed else str(report.message)
+    return "" if report is None or report.passed else translate_error(report.message)
 
 
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str) -> None:
@@ -46,9 +46,10 @@ def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blen
     """Report an error after restoring `edit`; unexpected errors print their trace."""
     if edit is not None:
         restore_after_error(edit, error)
-    text = "; ".join([error_text(error), *getattr(error, "__notes__", ())])
+    text = "; ".join([error_text(error), *map(translate_error, getattr(error, "__notes__", ()))])
     objects = getattr(error, "objects", ())  # of stiv.blender.ObjectsIntersectError
-    _report_with_details(operator, text, stiv_blender.intersection_text(*objects[0]) if objects else "")
+    short = translate_error(stiv_blender.intersection_text(*objects[0])) if objects else ""
+    _report_with_details(operator, text, short)
     return {"CANCELLED"}
 
 
@@ -63,7 +64,7 @@ def _report_with_details(operator: bpy.types.Operator, text: str, short: str = "
 def error_text(error: Exception) -> str:
     """The message of an error that names its cause. Texts of Python and NumPy go to the console with their trace."""
     if isinstance(error, stiv_blender.InputError | stiv_blender.SceneChangedError | DragEnded):
-        return str(error)
+        return translate_error(error)
     traceback.print_exception(error)
     return translate("Unexpected error, the edit is undone; the system console has the details")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import chinese, german, japanese, korean
+from . import chinese, errors, german, japanese, korean
 
 CATALOGUES = {
     "de_DE": german.MESSAGES,
@@ -24,7 +24,11 @@ CONTEXTS = ("*", "Operator")  # Blender looks up labels of buttons in the second
 def dictionary() -> dict[str, dict[tuple[str, str], str]]:
     """All catalogues in Blender's format."""
     return {
-        language: {(context, english): text for english, text in messages.items() for context in CONTEXTS}
+        language: {
+            (context, english): text
+            for english, text in (errors.CATALOGUES[language] | messages).items()
+            for context in CONTEXTS
+        }
         for language, messages in CATALOGUES.items()
     }
 
@@ -47,3 +51,8 @@ def counted(count: int, one: str, many: str) -> str:
 def translate(text: str) -> str:
     """A text in the language of the interface; the same text if there is no translation."""
     return str(bpy.app.translations.pgettext_iface(text))
+
+
+def translate_error(text: object) -> str:
+    """The text of an error or a note of the package, in the language of the interface."""
+    return errors.in_language(str(text), translate)

@@ -10,6 +10,16 @@ from playing import INTO_WALL, click, prepared, start
 from simulation import Steps, Window
 
 SAYS = {"de_DE": "Rechnet {}, Esc hält an", "ja_JP": "計算中 {}、Escで停止"}  # for the progress
+REFUSES = {"de_DE": "Box: die Skalierung ist null; ändern", "ja_JP": "Box: スケールが 0 です。変更してください"}
+
+
+def refusal() -> str:
+    """The error of a move of the selection."""
+    try:
+        bpy.ops.stiv.move("EXEC_DEFAULT", value=(1.0, 0.0, 0.0))
+    except RuntimeError as error:
+        return str(error)
+    return ""
 
 
 def in_language(code: str) -> object:
@@ -26,6 +36,8 @@ def in_language(code: str) -> object:
             yield from window.glide(window.pixel(INTO_WALL))
             window.picture(f"drag_{code}")
             yield from click(window, "ESC")
+            bpy.data.objects["Box"].scale.x = 0.0
+            assert REFUSES[code] in refusal()
         finally:
             view.language = before
 

@@ -11,7 +11,7 @@ from ... import stiv_blender
 from ...intersection_texts import counted_faces, short_name
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
-from ...translations import translate
+from ...translations import translate, translate_error
 from ..reports import report_error
 
 
@@ -59,7 +59,7 @@ def excluded_count(stored: str) -> str:
     try:
         excluded = stiv_blender.Exclusions.from_json(stored)
     except ValueError as error:
-        return str(error)
+        return translate_error(error)
     return _excluded(excluded) if excluded.pairs else ""
 
 

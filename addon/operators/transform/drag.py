@@ -32,7 +32,7 @@ from ...transform import Transform, requested_transform
 from ...transform.frame import Frame
 from ...transform.pointing import with_view
 from ...transform.view import Vector
-from ...translations import translate
+from ...translations import translate, translate_error
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
 from ..repair import decisions
@@ -176,7 +176,7 @@ class DragOperator(Mixin):
             return
         self._shown = news
         turned = turned_text(drag.turned, translate)
-        notes = [text for text in (turned, drag.note, write_failure(drag.report)) if text]
+        notes = [text for text in (turned, translate_error(drag.note), write_failure(drag.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if drag.written is not None and drag.written is drag.result:
             display.show_edit(drag.edit, drag.written, self._motion_of_all())

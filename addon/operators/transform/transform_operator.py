@@ -17,6 +17,7 @@ from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
 from ...transform.view import Vector
+from ...translations import translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
@@ -185,7 +186,7 @@ def _solve_values(
 def report_start(operator: bpy.types.Operator, context: bpy.types.Context, edit: stiv_blender.BlenderEdit) -> None:
     """Report the warnings of an edit of typed values, and the objects that it does not guard."""
     for text in edit.summary.warnings:
-        operator.report({"WARNING"}, text)
+        operator.report({"WARNING"}, translate_error(text))
     if context.window_manager.stiv_check.left_out:
         operator.report({"INFO"}, context.window_manager.stiv_check.left_out)
 
@@ -215,4 +216,4 @@ def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None
     left_out = (stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried), passing_text(context.scene))
     check.left_out = "\n".join(filter(None, left_out))
     if edit.start_notes:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
-        check.summary = "; ".join(edit.start_notes)
+        check.summary = "; ".join(map(translate_error, edit.start_notes))
