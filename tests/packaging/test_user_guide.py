@@ -12,8 +12,8 @@ BLENDERS = {
     "Add-ons", "Adjust Last Operation", "Affect Only", "Align Rotation to Target", "Alt Navigation", "Closest",
     "Cursor", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
-    "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
-    "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
+    "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
+    "Shape Key Edit Mode", "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
 }  # fmt: skip
 
 
