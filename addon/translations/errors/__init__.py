@@ -21,7 +21,7 @@ CATALOGUES = {
 }
 # Words within messages that Blender's own translation has, with a capital.
 BLENDERS = {"curve", "curves", "lattice", "location", "mesh", "metaball", "rotation", "scale", "surface", "text"}
-_MODIFIER = re.compile(r'([^":]+) "(.+)" (.+)', re.DOTALL)  # its type, its name, and why it is refused
+_MODIFIER = re.compile(r'([^":]+) "(.+?)" (.+)', re.DOTALL)  # its type, its name, and why it is refused
 
 Translate = Callable[[str], str]
 
