@@ -9,7 +9,8 @@ import pytest
 import stiv
 from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.shape import joined
-from stiv.separating import find_separation
+from stiv.separating import find_separation, find_separation_steps
+from stiv.task import Task
 
 
 def two(first, second) -> tuple[stiv.Surface, np.ndarray, np.ndarray]:
@@ -54,3 +55,13 @@ def test_a_small_ball_in_the_wall_of_a_large_one_leaves_to_the_outside() -> None
 def test_bodies_that_are_apart_stay() -> None:
     surface, q, moving = two(icosphere(1), icosphere(1).moved((3, 0, 0)))
     assert np.array_equal(find_separation(surface, q, moving), np.zeros(3))
+
+
+def test_steps_give_turns_between_the_tests_and_the_same_translation() -> None:
+    surface, q, moving = two(icosphere(3), icosphere(3).moved((0.4, -0.3, 1.5)))
+    task, turns, fractions = Task(find_separation_steps(surface, q, moving)), 0, []
+    while not task.advance():
+        turns += 1
+        fractions.append(task.progress.fraction)
+    assert turns > 100 and fractions == sorted(fractions) and fractions[-1] > 0.9
+    assert np.array_equal(task.result, find_separation(surface, q, moving))

@@ -30,7 +30,7 @@ class Watch:
         record: the accepted state and its intersections.
         frame: the frame of the last observation.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
-        correction: the one that runs now; what it writes is no change to observe.
+        correction: the one that runs now; its writes are not observed.
     """
 
     def __init__(self) -> None:

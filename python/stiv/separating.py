@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv.arrays import Floats, as_floats, as_number
 from stiv.intersections import IntersectionTest
 from stiv.surface import Surface
+from stiv.task import Steps, run
 
 _DIRECTIONS = 96  # on the sphere
 _BISECTIONS = 14  # of a distance: to a 16,000th
@@ -33,11 +32,18 @@ def find_separation(
     that nothing intersects there, and that no body lies inside another. Returns None if no direction is clear; a
     translation of 0 if nothing intersects.
     """
+    return run(find_separation_steps(surface, vertices, moving, separation, threads))
+
+
+def find_separation_steps(
+    surface: Surface, vertices: ArrayLike, moving: ArrayLike, separation: float = 0.0, threads: int = 0
+) -> Steps[Floats | None]:
+    """Return the steps of :func:`find_separation`, which give a turn before each exact test."""
     q = as_floats(vertices, "vertices", (surface.vertex_count, 3))
     search = _Search(surface, q, np.asarray(moving, bool), threads)
     if search.is_clear(np.zeros(3)):
         return np.zeros(3)
-    found = search.best_translation()
+    found = yield from search.best_translation()
     if found is None:
         return None
     distance = float(np.linalg.norm(found))
@@ -58,24 +64,30 @@ class _Search:
         q = self._q + np.where(self._moving[:, None], translation, 0.0)
         return len(self._test.find(q)) == 0 and not self._has_body_inside(q)
 
-    def best_translation(self) -> Floats | None:
+    def best_translation(self) -> Steps[Floats | None]:
         best: Floats | None = None
-        for direction in self._directions():
-            best = self._improved(best, direction)
+        directions, tilts = self._directions(), np.repeat(_TILTS, _AROUND)
+        total = len(directions) + len(tilts)
+        for number, direction in enumerate(directions):
+            yield number / total
+            best = yield from self._improved(best, direction)
         chance = np.random.default_rng(0)
-        for tilt in np.repeat(_TILTS, _AROUND):
+        for number, tilt in enumerate(tilts):
+            yield (len(directions) + number) / total
             if best is not None:
-                best = self._improved(best, best / np.linalg.norm(best) + tilt * chance.normal(size=3))
+                direction = best / np.linalg.norm(best) + tilt * chance.normal(size=3)
+                best = yield from self._improved(best, direction)
         return best
 
-    def _directions(self) -> Iterator[Floats]:
+    def _directions(self) -> Floats:
         """Directions on the sphere, the axes and the normals of the intersecting triangles; the shortest way first."""
         around = np.arange(_DIRECTIONS) + 0.5
         height, angle = 1 - 2 * around / _DIRECTIONS, np.pi * (1 + 5**0.5) * around
         ring = np.sqrt(1 - height**2)
         sphere = np.stack([ring * np.cos(angle), ring * np.sin(angle), height], axis=1)
         every = np.concatenate([np.eye(3), -np.eye(3), self._normals(), sphere])
-        yield from every[np.argsort([self._bound(each) for each in every], kind="stable")]
+        sorted_by_length: Floats = every[np.argsort([self._bound(each) for each in every], kind="stable")]
+        return sorted_by_length
 
     def _normals(self) -> Floats:
         """The mean normal of the intersecting triangles on each side, both ways."""
@@ -93,14 +105,24 @@ class _Search:
         along = self._q @ direction
         return float(along[~self._moving].max(initial=-np.inf) - along[self._moving].min(initial=np.inf))
 
-    def _improved(self, best: Floats | None, direction: Floats) -> Floats | None:
+    def _improved(self, best: Floats | None, direction: Floats) -> Steps[Floats | None]:
         """The least clear translation along a direction if it is shorter than the best."""
         direction = direction / np.linalg.norm(direction)
         bound = self._bound(direction) * (1 + 1e-9)
         clear = bound if best is None else min(bound, float(np.linalg.norm(best)) * _WORTHWHILE)
+        yield None
         if clear <= 0 or not self.is_clear(clear * direction):
             return best
-        return direction * _bisect(lambda distance: self.is_clear(distance * direction), clear)
+        intersecting = 0.0
+        for _ in range(_BISECTIONS):
+            yield None
+            middle = (intersecting + clear) / 2
+            if self.is_clear(middle * direction):
+                clear = middle
+            else:
+                intersecting = middle
+        shortest: Floats = direction * clear
+        return shortest
 
     def _has_body_inside(self, q: Floats) -> bool:
         """Does a body lie inside another one that moves against it?"""
@@ -111,17 +133,6 @@ class _Search:
             if any(abs(_winding_number(others, q[seed])) > 0.5 for seed in seeds):
                 return True
         return False
-
-
-def _bisect(is_clear: Callable[[float], bool], clear: float) -> float:
-    intersecting = 0.0
-    for _ in range(_BISECTIONS):
-        middle = (intersecting + clear) / 2
-        if is_clear(middle):
-            clear = middle
-        else:
-            intersecting = middle
-    return clear
 
 
 def _winding_number(triangles: Floats, point: Floats) -> float:

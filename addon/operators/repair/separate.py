@@ -11,19 +11,28 @@ from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ...units import length_text
 from ..reports import report_error
+from ..task_operator import TaskOperator
 
 
-class STIV_OT_separate(NeedsNativeModule, bpy.types.Operator):
+class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
     """Move the selected objects the least distance that parts them from all others"""
 
     bl_idname = "stiv.separate"
     bl_label = "Collision Separate"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}  # noqa: RUF012 (Blender reads a set)
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
         """In Object Mode."""
         return bool(context.mode == "OBJECT")
+
+    step_seconds = 0.04  # many short steps
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Find the translation in steps, with progress in the header; at once without a window."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        return self.start_task(context, stiv_blender.separate_steps(context, edit_settings(context.scene)))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the translation, write it, test the result, report the distance."""
@@ -31,6 +40,10 @@ class STIV_OT_separate(NeedsNativeModule, bpy.types.Operator):
             found = stiv_blender.separate(context, edit_settings(context.scene))
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error)
+        return self.finish_task(context, found)
+
+    def finish_task(self, context: bpy.types.Context, found: stiv_blender.SeparationReport) -> set[str]:
+        """Report the distance."""
         if not found.others:
             self.report({"INFO"}, translate("The selection intersects no other object"))
             return {"CANCELLED"}

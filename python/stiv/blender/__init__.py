@@ -34,7 +34,7 @@ from stiv.blender.repair.contraction import BlenderContraction, ContractionSetti
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
-from stiv.blender.repair.separation import SeparationReport, separate
+from stiv.blender.repair.separation import SeparationReport, separate, separate_steps
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
@@ -139,6 +139,7 @@ __all__ = [
     "run_to_end",
     "select_faces",
     "separate",
+    "separate_steps",
     "settle_into_contact",
     "triangles_of",
     "unguarded_text",

@@ -16,7 +16,8 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
-from stiv.separating import find_separation
+from stiv.separating import find_separation_steps
+from stiv.task import Steps, run
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,13 @@ def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationRe
     Pairs of `ignored_pairs` may intersect. Raises InputError, with nothing changed, if nothing can be moved, or no
     direction parts them.
     """
+    return run(separate_steps(context, settings))
+
+
+def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[SeparationReport]:
+    """Steps of `separate`; the last one writes."""
     free = replace(settings, interference=False, object_response="rigid", responders="selected")
-    edit = BlenderEdit.begin(context, free, "move")
+    edit = yield from BlenderEdit.begin_steps(context, free, "move")
     moving = edit.moving
     surfaces = _against_others(edit.assembly, moving, settings)
     pairs = find_face_pairs(surfaces, surfaces.positions, settings.threads)
@@ -50,7 +56,9 @@ def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationRe
     is_moving = np.zeros(len(surfaces.positions), bool)
     is_moving[surfaces.vertices_of(_indices(surfaces, moving))] = True
     gap = settings.separation or 1e-4 * float(np.ptp(surfaces.positions[is_moving], axis=0).max())
-    translation = find_separation(surfaces.surface, surfaces.positions, is_moving, gap, settings.threads)
+    translation = yield from find_separation_steps(
+        surfaces.surface, surfaces.positions, is_moving, gap, settings.threads
+    )
     if translation is None:
         raise InputError(f"{others[0]}: no direction parts it from the selection; repair it, or let it pass")
     _write(context, edit, surfaces, translation, settings)
