@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..transform import Transform
 
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
+MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 DOUBLINGS = 4  # of a budget, at most; those of a goal for which nothing was accepted end a motion sooner
 DOUBLINGS_UNFINISHED = 2
@@ -133,6 +134,8 @@ class DragLoop:
         self._fruitless = self._idle = 0
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
+        self._budget = BUDGET
+        self._writes_since: float | None = None  # until the next call, so that drawing counts
         self._run(calls.begin(state.request), self._take_first_edit)
         self._advance_task(START_WAIT)
 
@@ -172,6 +175,9 @@ class DragLoop:
         return self._guarded(lambda: self._fail(reason))
 
     def _guarded(self, action: Callable[[], None]) -> Progress:
+        if self._writes_since is not None:
+            self._budget = min(max(BUDGET, time.perf_counter() - self._writes_since), MAX_BUDGET)
+            self._writes_since = None
         if not self.progress.ended:
             try:
                 action()
@@ -267,7 +273,7 @@ class DragLoop:
         is_new = self._unfinished is None
         self._unfinished = None
         doublings = min(self._fruitless, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
-        budget = (FINAL_BUDGET if self._confirmed else BUDGET) * 2**doublings
+        budget = (FINAL_BUDGET if self._confirmed else self._budget) * 2**doublings
         steps = self.edit.drag_steps(goal.motion, time_budget=budget)
         can_cancel = is_new and self._fruitless > 0 and not self._confirmed
         self._run(_noting(steps), lambda found: self._take_solved(goal, found), can_cancel)
@@ -411,6 +417,7 @@ class DragLoop:
     def _write(self) -> None:
         assert self.edit is not None
         self._unwritten = False
+        self._writes_since = time.perf_counter()
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A replacement of `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
 
+import time
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -24,7 +25,7 @@ class FakeEdit:
     """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
     `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
-    from the name of a call to the turns that it takes.
+    from the name of a call to the turns that it takes. `writing`: seconds of each write. `budgets`: of all solves.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -35,6 +36,8 @@ class FakeEdit:
     accepted: float = 0.0
     shown: float = 0.0
     goals: list[float] = field(default_factory=list)
+    budgets: list[float] = field(default_factory=list)
+    writing: float = 0.0
     requests: list[Any] = field(default_factory=list)
     interference: bool = True
     moving = frozenset({"Box"})
@@ -67,7 +70,7 @@ class FakeEdit:
         return ""
 
     def drag_steps(self, matrix: Any, *, time_budget: float) -> "Steps[Any]":
-        assert time_budget > 0
+        self.budgets.append(time_budget)
         yield from self._delayed("drag")
         self._called("drag")
         return self._solve(matrix)
@@ -100,6 +103,7 @@ class FakeEdit:
 
     def write(self) -> Any:
         self._called("write")
+        time.sleep(self.writing)
         self.shown = self.accepted
         return None
 

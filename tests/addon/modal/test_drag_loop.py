@@ -316,6 +316,21 @@ def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
     assert "settle" not in edit.calls
 
 
+def test_a_solve_may_take_as_long_as_writing_and_drawing_up_to_a_limit() -> None:
+    """Of a large mesh, a shorter solve would draw a part of the way."""
+    edit = FakeEdit(writing=0.08)
+    drag = new_drag(edit)
+    for x in (10, 20):
+        drag.handle(move_to(x))
+        drag.tick()
+    edit.writing = 0.2
+    for x in (30, 40):
+        drag.handle(move_to(x))
+        drag.tick()
+    first, second, _, last = edit.budgets
+    assert first == drag_loop.BUDGET < 0.08 <= second < drag_loop.MAX_BUDGET == last
+
+
 def test_an_endless_solve_can_be_confirmed() -> None:
     edit = FakeEdit(statuses=["budget"] * 1000, furthest=0.0)
     drag = new_drag(edit)
