@@ -49,4 +49,6 @@ def expect_free() -> None:
 
 
 def names_of_steps() -> list[str]:
-    return [line.split("name=")[1].strip("'") for line in undo_steps._printed().splitlines() if "name=" in line]
+    """Names of the undo steps, without those that Blender adds for itself and skips when it undoes."""
+    found = [line.split("name=")[1].strip("'") for line in undo_steps._printed().splitlines() if "name=" in line]
+    return [name for name in found if not name.startswith("MemFile Internal")]
