@@ -75,6 +75,44 @@ def test_rotation_and_scaling_use_the_mean_as_centre():
         np.testing.assert_allclose(mesh.vertices[4:], two_sheets().vertices[4:] * (2, 1, 1), atol=1e-9)
 
 
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+@pytest.mark.parametrize("chosen", [(True, False, False), (True, False, True)])
+def test_contact_leaves_no_constrained_axis(mode, chosen):
+    """A sheet under a tilted one: without constraint, it slides down and turns."""
+    tilt = np.array([[0.8, 0, 0.6], [0, 1, 0.1], [-0.6, 0.1, 0.8]])
+    vertices = np.vstack([2 * SHEET @ tilt.T + (1.5, 0, 0), 0.3 * SHEET + (-1, 0.2, 0.4)])
+    mesh = checked_mesh(vertices, np.vstack([FACES, FACES + 4]), ("Below", "Above ü"), np.array([0, 0, 1, 1], np.int32))
+    step = {"operator": "move", "objects": ["Above ü"], "values": {"value": [2, 0, 0]}, "mode": mode}
+    free, _ = edited(step, mesh=mesh)
+    step["values"]["constraint_axis"] = list(chosen)
+    held, (report,) = edited(step, mesh=mesh)
+    moved = np.abs(held.vertices - vertices)[4:].max(axis=0)
+    assert report["rounds"] > 0 and moved[0] > 0.1
+    assert (moved[~np.array(chosen)] < 1e-12).all() and np.abs(free.vertices - vertices)[4:, 1:].max() > 0.01
+    assert len(stiv.find_intersections(held.vertices, held.triangles)) == 0
+
+
+def test_constrained_rotations_and_scales_keep_their_centre_and_axes():
+    wall = 4 * SHEET[:, [2, 0, 1]] + (0.6, 0, 0)
+    vertices = np.vstack([wall, 0.5 * SHEET * (1, 0.4, 1) + (0, 0, 0.1)])
+    mesh = checked_mesh(vertices, np.vstack([FACES, FACES + 4]), ("Below", "Above ü"), np.array([0, 0, 1, 1], np.int32))
+    values = {"value": [2, 1.5, 1], "constraint_axis": [True, True, False]}
+    scaled, (report,) = edited({"operator": "scale", "objects": ["Above ü"], "values": values}, mesh=mesh)
+    assert report["rounds"] > 0 and np.array_equal(scaled.vertices[4:, 2], vertices[4:, 2])
+    long = checked_mesh(
+        np.vstack([wall, SHEET * (0.2, 0.9, 1) + (0, 0, 0.1)]), mesh.triangles, mesh.object_names, mesh.triangle_object
+    )
+    values = {"angle": 1.5, "axis": [0, 0, 1], "constraint_axis": [False, False, True]}
+    for mode in ("OBJECT", "EDIT"):
+        turned, (report,) = edited(
+            {"operator": "rotate", "objects": ["Above ü"], "values": values, "mode": mode}, mesh=long
+        )
+        assert report["rounds"] > 0
+        np.testing.assert_allclose(turned.vertices[4:, 2], 0.1, atol=1e-12)
+        if mode == "OBJECT":
+            np.testing.assert_allclose(turned.vertices[4:].mean(axis=0), [0, 0, 0.1], atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("step", "message"),
     [
@@ -85,10 +123,6 @@ def test_rotation_and_scaling_use_the_mean_as_centre():
         (
             {"operator": "rotate", "objects": ["Below"], "values": {"angle": 1, "axis": [0, 0, 0]}},
             "axis: the zero vector has no direction",
-        ),
-        (
-            {"operator": "move", "objects": ["Below"], "values": {"value": [0, 0, 1], "constraint_axis": [True] * 3}},
-            "mesh files do not support constraint_axis",
         ),
         (
             {"operator": "repair", "objects": ["Below"]},

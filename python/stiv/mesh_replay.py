@@ -60,8 +60,6 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
     begin = time.perf_counter()
     if step.operator not in TRANSFORMS:
         raise InputError(f"mesh files only support {', '.join(TRANSFORMS)}; run `stiv repair` to repair them")
-    if CONSTRAINT in step.values:
-        raise InputError(f"mesh files do not support {CONSTRAINT}; leave it out")
     chosen = _objects(step, mesh)
     members = np.flatnonzero(np.isin(owners, chosen)).astype(np.int32)
     moved = members if step.points is None else members[_points(step, members)]
@@ -77,7 +75,10 @@ def _edit(step: EditStep, settings: Mapping[str, Any], mesh: Mesh, owners: Indic
     map_of = _point_map if step.mode == "EDIT" else _object_map
     deformation, controls, goal = map_of(step, joined.positions[moved])
     whole = stiv.concatenate([(deformation, moved)], joined.positions)
-    options = stiv.EditOptions(single_precision=False, **_options({**settings, **step.settings}))
+    weights, axes = _constraint(step, len(controls))
+    options = stiv.EditOptions(
+        single_precision=False, weights=weights, weight_axes=axes, **_options({**settings, **step.settings})
+    )
     result = stiv.EditSession(joined.surface, whole, controls, options).edit(goal)
     result = replace(result, surface=result.surface[joined.vertex_map])
     return result, 1000 * (time.perf_counter() - begin)
@@ -135,6 +136,34 @@ def _object_map(step: EditStep, points: Floats) -> tuple[stiv.Deformation, Float
     start = stiv.rigid_rest_controls(points)
     turn = start[1] + _rotation_vector(step)
     return stiv.rigid(points), start, np.array([start[0] + _shift(step), turn])
+
+
+def _constraint(step: EditStep, count: int) -> tuple[Floats | None, Floats | None]:
+    """Response weights of the controls, (m, 3), and their axes, (m, 3, 3), that hold the axes not chosen; None: all.
+
+    As in Blender: a move leaves no axis and does not turn, a rotation keeps its centre and its axis, and points that
+    rotate stay in their planes.
+    """
+    chosen = step.values.get(CONSTRAINT)
+    if chosen is None:
+        return None, None
+    flags, none = np.array(chosen, np.float64), np.zeros(3)
+    if step.operator != "rotate":
+        rows = {"EDIT": [flags] * count, "OBJECT": [flags, flags if step.operator == "scale" else none]}[step.mode]
+        return np.array(rows), None
+    axes = np.tile(_axes_from(_rotation_vector(step)), (count, 1, 1))
+    along = np.array([1.0, 0.0, 0.0])
+    return np.array([1 - along] * count if step.mode == "EDIT" else [none, along]), axes
+
+
+def _axes_from(direction: Floats) -> Floats:
+    """Orthonormal axes as columns, (3, 3), the first along a direction; the world's for the zero vector."""
+    if not direction.any():
+        return np.eye(3)
+    first = direction / np.linalg.norm(direction)
+    second = np.cross(first, np.eye(3)[np.abs(first).argmin()])
+    second /= np.linalg.norm(second)
+    return np.stack([first, second, np.cross(first, second)], axis=1)
 
 
 def _shift(step: EditStep) -> Floats:
