@@ -36,12 +36,13 @@ class Found:
 
 @dataclass(frozen=True)
 class _Hit:
-    """The face under the pointer, in world space."""
+    """The face under the pointer, in world space; `in_front`: it is turned to the viewer."""
 
     target: SnapTarget
     position: Vector
     normal: Vector
     face: int
+    in_front: bool
 
 
 @dataclass
@@ -84,7 +85,7 @@ class SnapSearch:
         hit = self._cast(pixel, view) if self.occlusion or "FACE" in self.elements else None
         found = self._on_screen(pixel, view, source, hit) if self.elements & SCREEN_ELEMENTS else None
         if found is None and hit is not None and "FACE" in self.elements:
-            found = Found(hit.position, self._direction(hit.target, hit.normal), "FACE")
+            found = Found(hit.position, hit.normal, "FACE")
         return found
 
     def middle(self, pixel: Pixel, view: View, *, whole: bool) -> Found | None:
@@ -132,12 +133,12 @@ class SnapSearch:
             if not target.surface:
                 continue
             for hit in _hits(target, origin, direction):
-                if self.culling and hit.normal @ direction >= 0.0:
+                if self.culling and not hit.in_front:
                     continue
                 if (away := float((hit.position - origin) @ direction)) < distance:
                     best, distance = hit, away
                 break
-        return best
+        return None if best is None else replace(best, normal=self._direction(best.target, best.normal))
 
     def _on_screen(self, pixel: Pixel, view: View, source: Vector, hit: _Hit | None) -> Found | None:
         """The vertex or edge nearest to the pointer, in pixels."""
@@ -319,7 +320,9 @@ def _hits(target: SnapTarget, origin: Vector, direction: Vector) -> Iterator[_Hi
         if found is None:
             return
         place, normal, face = found
-        yield _Hit(target, _world(target, place[None])[0], _unit(target.matrix[:3, :3] @ normal), face)
+        yield _Hit(
+            target, _world(target, place[None])[0], _unit(target.matrix[:3, :3] @ normal), face, normal @ along < 0.0
+        )
         start = place + along * 1e-5 * max(size, 1e-6)
 
 
