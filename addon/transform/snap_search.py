@@ -321,7 +321,11 @@ def _hits(target: SnapTarget, origin: Vector, direction: Vector) -> Iterator[_Hi
             return
         place, normal, face = found
         yield _Hit(
-            target, _world(target, place[None])[0], _unit(target.matrix[:3, :3] @ normal), face, normal @ along < 0.0
+            target,
+            _world(target, place[None])[0],
+            _unit(target.matrix[:3, :3] @ normal),
+            face,
+            bool(normal @ along < 0.0),
         )
         start = place + along * 1e-5 * max(size, 1e-6)
 
