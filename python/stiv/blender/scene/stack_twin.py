@@ -69,7 +69,7 @@ class StackTwin:
             return EvaluatedStack(read_positions(mesh), *read_corners(mesh))
 
     def write(self, local: Singles) -> None:
-        """Write local positions, (m, 3). Writing an attribute instead would leave normals and bounds as they were."""
+        """Write local positions, (m, 3). Writing an attribute instead would leave normals and bounds unchanged."""
         mesh, flat = self.ob.data, np.ascontiguousarray(local, np.float32).ravel()
         mesh.vertices.foreach_set("co", flat)
         if mesh.shape_keys is not None:
