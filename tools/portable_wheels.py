@@ -6,8 +6,8 @@ Usage: portable_wheels.py WHEEL FOLDER PLATFORM MODULE...
 WHEEL is the wheel of this source tree, for any Python; each MODULE replaces its module in one of the new
 wheels. They replace the files in FOLDER and are tagged for PLATFORM: manylinux_2_17_x86_64 if the modules are
 compiled for that version of the C library, linux_x86_64 if they are for systems like this one. The wheels
-differ only in module and tag. They omit the add-on, which the extension contains itself, and the demo, which
-belongs to the command line.
+differ only in module and tag. The zips contain the same wheels as PyPI, so these also contain the add-on and the
+demo, which scripts and commands use.
 """
 
 import base64
@@ -17,7 +17,7 @@ import sys
 import zipfile
 from pathlib import Path
 
-LEFT_OUT = ("stiv/_native.", "stiv/demo/", "stiv_addon/")
+MODULE = "stiv/_native."
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -30,10 +30,10 @@ def python_tag(module: Path) -> str:
 
 
 def read_wheel(path: Path) -> dict[str, bytes]:
-    """Files of a wheel by name, without its native module, the list of files, and parts that the extension omits."""
+    """Files of a wheel by name, without its native module and the list of files."""
     with zipfile.ZipFile(path) as archive:
         names = [name for name in archive.namelist() if not name.endswith(("/", "/RECORD"))]
-        return {name: archive.read(name) for name in names if not name.startswith(LEFT_OUT)}
+        return {name: archive.read(name) for name in names if not name.startswith(MODULE)}
 
 
 def with_module(files: dict[str, bytes], module: Path, tag: str) -> dict[str, bytes]:
