@@ -39,6 +39,7 @@ inline py::dict dict_of(const Counters& counters) {
   result["pairs_tested"] = counters.pairs_tested;
   result["events"] = counters.events;
   result["acceptance_tries"] = counters.acceptance_tries;
+  result["infeasible"] = counters.infeasible;
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "stiv/deformation/combination.hpp"
 #include "stiv/deformation/handles.hpp"
 #include "stiv/deformation/lattice.hpp"
+#include "stiv/deformation/observed.hpp"
 #include "stiv/deformation/placement.hpp"
 #include "stiv/deformation/subdivision.hpp"
 #include "stiv/error.hpp"
@@ -105,10 +106,54 @@ py::object linear_parts(const std::shared_ptr<Deformation>& deformation) {
   return py::make_tuple(rows_of(linear->weights()), linear->offset());
 }
 
-const LinearDeformation& as_linear(const std::shared_ptr<Deformation>& deformation) {
-  const auto* linear = dynamic_cast<const LinearDeformation*>(deformation.get());
-  if (linear == nullptr) throw InputError("only linear deformations can be composed; concatenate others side by side");
-  return *linear;
+/// Weights of shape (k,), or blocks of shape (k, 3, 3).
+Jacobian jacobian_of(const Array<Index>& starts, const Array<Index>& controls, const Array<double>& values,
+                     Index control_count) {
+  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  if (values.ndim() == 1)
+    return {weights_from_rows(vector_of(starts), vector_of(controls), vector_of(values), control_count), {}};
+  std::vector<Eigen::Matrix3d> blocks;
+  for (py::ssize_t k = 0; k < values.shape(0); ++k) blocks.emplace_back(Eigen::Map<const Block>(values.data() + 9 * k));
+  return jacobian_from_blocks(vector_of(starts), vector_of(controls), blocks, control_count);
+}
+
+/// A function of Python, which any thread may release.
+using SharedFunction = std::shared_ptr<py::object>;
+
+SharedFunction share(py::object function) {
+  return SharedFunction(new py::object(std::move(function)), [](py::object* released) {
+    const py::gil_scoped_acquire locked;
+    delete released;
+  });
+}
+
+std::shared_ptr<ObservedDeformation> observe(py::object evaluate, Jacobian jacobian) {
+  return make_observed(
+      [function = share(std::move(evaluate))](const Controls& p) -> std::optional<Positions> {
+        const py::gil_scoped_acquire locked;
+        const py::object value = (*function)(p);
+        if (value.is_none()) return std::nullopt;
+        return value.cast<Positions>();
+      },
+      std::move(jacobian));
+}
+
+void bind_observed(py::module_& module) {
+  const py::arg starts("starts"), controls("controls"), values("values"), control_count("control_count");
+  py::class_<ObservedDeformation, Deformation, std::shared_ptr<ObservedDeformation>>(module, "ObservedDeformation")
+      .def(py::init([](py::object evaluate, const Array<Index>& rows, const Array<Index>& columns,
+                       const Array<double>& entries, Index count) {
+             return observe(std::move(evaluate), jacobian_of(rows, columns, entries, count));
+           }),
+           py::arg("evaluate"), starts, controls, values, control_count)
+      .def(
+          "replace_jacobian",
+          [](ObservedDeformation& deformation, const Array<Index>& rows, const Array<Index>& columns,
+             const Array<double>& entries,
+             Index count) { deformation.set_jacobian(jacobian_of(rows, columns, entries, count)); },
+          starts, controls, values, control_count)
+      .def_property_readonly("jacobian_revision", &ObservedDeformation::revision,
+                             "How often the Jacobian was replaced.");
 }
 
 LatticeInterpolation interpolation_of(const std::string& name) {
@@ -148,13 +193,20 @@ HandleDefinition make_handles(Positions rest, Triangles triangles, std::vector<I
           std::move(pull), std::move(fixed),     edge_weights_of(edge_weights)};
 }
 
-/// Linear after linear is linear; linear after handles keeps the handles.
 std::shared_ptr<Deformation> compose(const std::shared_ptr<Deformation>& outer,
                                      const std::shared_ptr<Deformation>& inner) {
-  as_linear(outer);
-  if (const auto handles = std::dynamic_pointer_cast<const HandleDeformation>(inner))
-    return shared(make_composition(std::dynamic_pointer_cast<const LinearDeformation>(outer), handles));
-  return shared(make_composition(as_linear(outer), as_linear(inner)));
+  const auto linear = std::dynamic_pointer_cast<const LinearDeformation>(outer);
+  const auto observed = std::dynamic_pointer_cast<const SparseJacobianDeformation>(outer);
+  const auto inner_linear = std::dynamic_pointer_cast<const LinearDeformation>(inner);
+  const auto inner_other = std::dynamic_pointer_cast<const ComposableDeformation>(inner);
+  if (linear && inner_linear) return shared(make_composition(*linear, *inner_linear));
+  if (linear && inner_other) return shared(make_composition(linear, inner_other));
+  if (observed && inner_linear) return shared(make_composition(observed, inner_linear));
+  if (observed && inner_other) return shared(make_composition(observed, inner_other));
+  throw InputError(
+      "compose: the outer deformation must be linear or observed, the inner one linear, observed or by handles; "
+      "compose "
+      "chains from the inside, and concatenate others side by side");
 }
 
 std::shared_ptr<Deformation> concatenate(
@@ -203,6 +255,7 @@ void bind_class(py::module_& module) {
 
 void bind_deformation(py::module_& module) {
   bind_class(module);
+  bind_observed(module);
   module.def(
       "identity", [](Index count) { return shared(make_identity(count)); }, py::arg("vertex_count"));
   module.def(

@@ -15,8 +15,12 @@ struct UnlockedDelete {
   }
 };
 
+/// The calls of the work take Python's lock themselves.
 py::tuple poll(const NativeJob& job) {
-  const JobProgress progress = job.poll();
+  const JobProgress progress = [&] {
+    const py::gil_scoped_release unlocked;
+    return job.poll();
+  }();
   return py::make_tuple(progress.phase, progress.fraction, progress.done);
 }
 
@@ -33,7 +37,7 @@ py::object result_of(const NativeJob& job) {
 void bind_job(py::module_& module) {
   py::class_<NativeJob, std::unique_ptr<NativeJob, UnlockedDelete>>(module, "Job")
       .def("poll", &poll)
-      .def("cancel", &NativeJob::cancel)
+      .def("cancel", &NativeJob::cancel, py::call_guard<py::gil_scoped_release>())
       .def("wait_for", &NativeJob::wait_for, py::arg("seconds"), py::call_guard<py::gil_scoped_release>())
       .def("result", &result_of);
 }

@@ -11,6 +11,7 @@ namespace {
 
 // Never freed: the translators may run for as long as the interpreter does.
 PyObject* input_error = nullptr;
+PyObject* infeasible_error = nullptr;
 PyObject* start_intersects_error = nullptr;
 PyObject* cancelled_error = nullptr;
 
@@ -34,6 +35,8 @@ void raise_start_intersects(const stiv::StartIntersectsError& error) {
 void register_exceptions(py::module_& module) {
   input_error = new_exception(module, "InputError", PyExc_ValueError,
                               "Invalid input: the message names object and element. Nothing was changed.");
+  infeasible_error = new_exception(module, "InfeasibleError", input_error,
+                                   "A deformation has no surface at these controls. Nothing was changed.");
   start_intersects_error = new_exception(module, "StartIntersectsError", input_error,
                                          "The start intersects itself; `pairs`, (K, 2) int32, lists the triangles.");
   cancelled_error = new_exception(module, "CancelledError", PyExc_RuntimeError,
@@ -44,6 +47,8 @@ void register_exceptions(py::module_& module) {
           if (pointer) std::rethrow_exception(pointer);
         } catch (const stiv::StartIntersectsError& error) {
           raise_start_intersects(error);
+        } catch (const stiv::InfeasibleError& error) {
+          PyErr_SetString(infeasible_error, error.what());
         } catch (const stiv::InputError& error) {
           PyErr_SetString(input_error, error.what());
         } catch (const stiv::Interrupted& error) {

@@ -38,9 +38,11 @@ std::uint32_t read_control() { return 0; }
 void write_control(std::uint32_t) {}
 #endif
 
+thread_local Execution::Owner owner_of_thread;
+
 }  // namespace
 
-Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()) {}
+Execution::Execution(int threads) : threads_(threads > 0 ? threads : usable_processors()), owner_(owner_of_thread) {}
 Execution::~Execution() = default;
 
 void Execution::set_time_budget(double seconds, BudgetEnd end) {
@@ -60,6 +62,18 @@ void Execution::check() const {
 
 void Execution::report(const char* phase, double fraction) const {
   if (progress_) progress_(phase, fraction);
+}
+
+void Execution::call_owner(const std::function<void()>& call) const {
+  if (owner_)
+    owner_(call);
+  else
+    call();
+}
+
+void Execution::set_owner(Owner owner) {
+  owner_ = std::move(owner);
+  owner_of_thread = owner_;
 }
 
 void Execution::for_chunks(Index count, Index chunk_size, const std::function<void(Index, Index, Index)>& work) const {

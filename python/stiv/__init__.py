@@ -31,6 +31,7 @@ from stiv.handles import arap, laplacian, stored_mesh
 from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
 from stiv.job import CancelledError, Job, JobProgress
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
+from stiv.observed import InfeasibleError, ObservedDeformation, observed
 from stiv.paper_preset import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair, start_repair
 from stiv.self_test import SelfTest, self_test
@@ -53,11 +54,13 @@ __all__ = [
     "EditResult",
     "EditSession",
     "Events",
+    "InfeasibleError",
     "InputError",
     "IntersectionTest",
     "Job",
     "JobProgress",
     "LeastDistance",
+    "ObservedDeformation",
     "RepairOptions",
     "RepairResult",
     "SelfTest",
@@ -89,6 +92,7 @@ __all__ = [
     "linear",
     "linear_weights",
     "loop",
+    "observed",
     "repair",
     "rigid",
     "rigid_rest_controls",

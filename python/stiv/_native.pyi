@@ -12,6 +12,7 @@ from numpy import float64, int32
 from numpy.typing import ArrayLike, NDArray
 
 class InputError(ValueError): ...
+class InfeasibleError(InputError): ...
 class CancelledError(RuntimeError): ...
 
 class StartIntersectsError(InputError):
@@ -110,6 +111,28 @@ class Deformation:
     def vertex_count(self) -> int:
         """
         n, the number of vertices of the surface.
+        """
+
+class ObservedDeformation(Deformation):
+    def __init__(
+        self,
+        evaluate: Any,
+        starts: Annotated[ArrayLike, int32],
+        controls: Annotated[ArrayLike, int32],
+        values: Annotated[ArrayLike, float64],
+        control_count: int,
+    ) -> None: ...
+    def replace_jacobian(
+        self,
+        starts: Annotated[ArrayLike, int32],
+        controls: Annotated[ArrayLike, int32],
+        values: Annotated[ArrayLike, float64],
+        control_count: int,
+    ) -> None: ...
+    @property
+    def jacobian_revision(self) -> int:
+        """
+        How often the Jacobian was replaced.
         """
 
 class Handles:

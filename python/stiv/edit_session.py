@@ -40,14 +40,17 @@ class EditResult:
     status: str
     controls: NDArray[np.float64]  #: (m, 3) accepted controls, as stored
     surface: NDArray[np.float64]  #: (N, 3) surface of these controls, world coordinates
-    energy: float  #: half the sum of squared distances to the surface of the goal
+    #: half the sum of squared distances to the surface of the goal; if the goal has none (`stiv.observed`), to that of
+    #: the last point before it
+    energy: float
     fraction: float  #: minimum accepted fraction of a step
     rounds: int  #: detections followed by a response
     events: Events  #: contacts of the last round with contacts
     patches: int  #: number of contact patches in that round
     blocking: tuple[str, ...]  #: names of the bodies in contact when blocked
     timings: dict[str, float]  #: seconds of each stage of the pipeline, and "total"
-    counters: dict[str, int]  #: counts of work, independent of the machine
+    #: counts of work, independent of the machine; "infeasible" counts goals and candidates without a surface
+    counters: dict[str, int]
     #: accepted controls in order, the last of them `controls`; the linear motion of the surface between two of them is
     #: free of intersections
     path: list[NDArray[np.float64]] = field(default_factory=list)

@@ -30,6 +30,9 @@ class Job(Generic[Result]):
 
     The result has the same bits as that of the synchronous call. The job's thread touches no Python objects. Until
     the job is done, other calls of its session raise InputError. A job without references is cancelled.
+
+    A function given to :func:`stiv.observed` runs in the thread that calls `poll`, `wait` or `result`. `poll` makes one
+    call that the job waits for, the others all that come. Its exceptions are raised by `result`.
     """
 
     def __init__(self, native: _native.Job, translate: Callable[[Any], Result]) -> None:
@@ -38,7 +41,7 @@ class Job(Generic[Result]):
         self._result: list[Result] = []
 
     def poll(self) -> JobProgress:
-        """Return the progress, without waiting."""
+        """Return the progress, without waiting for the job."""
         return JobProgress(*self._native.poll())
 
     def cancel(self) -> None:

@@ -42,6 +42,7 @@ PRINTED = {
         r"(corrected|budget) True 0\nTrue \(.*\) 0\.99\d+",
         r"done \('Cube',\) 1\.01",
         r"corrected",
+        r"corrected 0 True",
     ],
     "checks": [r"1 passed"],
 }

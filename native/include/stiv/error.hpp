@@ -26,6 +26,12 @@ class StartIntersectsError : public InputError {
   std::vector<std::pair<Index, Index>> pairs;
 };
 
+/// A deformation has no surface at some controls. Sessions cut the step there.
+class InfeasibleError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// The work was cancelled, or its time budget ended. Sessions catch it and return the last accepted state.
 class Interrupted : public std::runtime_error {
  public:

@@ -24,6 +24,7 @@ struct Counters {
   std::int64_t pairs_tested = 0;      ///< pairs that reached the iterative narrow phase
   std::int64_t events = 0;            ///< interference events found
   std::int64_t acceptance_tries = 0;  ///< states proposed to the acceptance test
+  std::int64_t infeasible = 0;        ///< goals and candidates without a surface (InfeasibleError)
 };
 
 /// Wall times in seconds.
@@ -75,6 +76,14 @@ class Execution {
   void set_progress(std::function<void(const char* phase, double fraction)> report) { progress_ = std::move(report); }
   void report(const char* phase, double fraction) const;
 
+  /// Runs functions of the caller. @see JobThread
+  using Owner = std::function<void(const std::function<void()>& call)>;
+  /// Runs `call` where the caller's functions may run: in this thread, or for a job in the thread that waits for it.
+  /// @throws what `call` throws; Interrupted if a job is cancelled before its call begins
+  void call_owner(const std::function<void()>& call) const;
+  /// Sets the owner, also of all executions that the current thread makes from now on.
+  void set_owner(Owner owner);
+
   /// Calls `work(begin, end, chunk)` for consecutive chunks of [0, count), on all threads. Chunk boundaries depend on
   /// `count` and `chunk_size` alone, so results collected by chunk number do not depend on the number of threads.
   /// The first exception (lowest chunk) is rethrown in the calling thread after all threads have ended the loop.
@@ -93,6 +102,7 @@ class Execution {
   std::optional<std::chrono::steady_clock::time_point> deadline_;
   bool awaits_checkpoint_ = false;
   std::function<void(const char*, double)> progress_;
+  Owner owner_;
   mutable std::atomic<bool> in_loop_{false};
   mutable std::unique_ptr<ThreadPool> helpers_;
 };

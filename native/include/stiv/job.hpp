@@ -22,6 +22,8 @@ struct JobProgress {
 };
 
 /// Runs work on a thread of its own. All members may be called from any other thread.
+/// Functions of the caller (Execution::call_owner), such as those of observed deformations, run in the thread that
+/// calls poll, wait_for or wait, one at a time. Until then the work waits. Their exceptions end the work.
 class JobThread {
  public:
   using Work = std::function<void(Execution&)>;
@@ -33,21 +35,33 @@ class JobThread {
   JobThread(const JobThread&) = delete;
   JobThread& operator=(const JobThread&) = delete;
 
-  JobProgress poll() const;
+  /// Makes one call that the work waits for, if any.
+  JobProgress poll();
   /// Asks the work to stop, which it does within milliseconds; does not wait for it.
-  void cancel() noexcept { execution_.request_cancel(); }
-  /// Waits until the work has ended, at most these seconds; returns whether it has.
-  bool wait_for(double seconds) const;
-  void wait() const;
+  void cancel() noexcept;
+  /// Makes the calls of the work until it has ended, for at most these seconds; returns whether it has.
+  bool wait_for(double seconds);
+  void wait();
   /// Rethrows the exception that ended the work, if any. Only when done.
   void rethrow() const;
 
  private:
+  /// A function of the caller that the work waits for.
+  struct Call {
+    const std::function<void()>& function;
+    bool has_begun = false, has_ended = false;
+    std::exception_ptr raised = nullptr;
+  };
+
   void run(const Work& work);
+  void call_owner(const std::function<void()>& function);
+  bool has_waiting_call() const;
+  void make_call(std::unique_lock<std::mutex>& lock);
 
   Execution execution_;
   mutable std::mutex mutex_;
-  mutable std::condition_variable ended_;
+  mutable std::condition_variable changed_;
+  Call* call_ = nullptr;
   JobProgress progress_;
   std::exception_ptr raised_;
   std::thread thread_;

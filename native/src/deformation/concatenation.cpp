@@ -238,6 +238,12 @@ class Concatenation final : public Deformation {
     return vertices;
   }
 
+  std::uint64_t revision() const override {
+    std::uint64_t sum = 0;
+    for (const DeformationComponent& component : components_) sum += component.deformation->revision();
+    return sum;
+  }
+
   std::vector<Index> rotation_rows() const override {
     std::vector<Index> rows;
     for (std::size_t component = 0; component < components_.size(); ++component)

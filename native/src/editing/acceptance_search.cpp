@@ -2,6 +2,7 @@
 #include "editing/acceptance_search.hpp"
 
 #include "editing/control_interpolation.hpp"
+#include "editing/feasible_state.hpp"
 
 namespace stiv {
 
@@ -10,13 +11,12 @@ namespace {
 constexpr int max_attempts = 24;  // 2^-24 of a step is the precision of float32
 constexpr double before_contact = 0.9;
 
-State state_at_fraction(const EditCall& call, const State& candidate, double fraction) {
+/// Nothing if the deformation has no surface there.
+std::optional<State> state_at_fraction(const EditCall& call, const State& candidate, double fraction) {
   if (fraction == 1) return candidate;
-  State state;
-  state.controls = call.context.stored(
+  const Controls controls = call.context.stored(
       interpolate(call.accepted.controls, candidate.controls, fraction, call.context.rotation_rows()));
-  state.surface = call.context.surface_at(state.controls, call.execution);
-  return state;
+  return feasible_state(call.context, controls, call.execution);
 }
 
 }  // namespace
@@ -27,14 +27,15 @@ Acceptance accept_largest_fraction(EditCall& call, const RoundOutcome& outcome, 
   double fraction = 1;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     call.execution.check();
-    State state = state_at_fraction(call, outcome.candidate, fraction);
-    if (state.controls == call.accepted.controls) break;
+    std::optional<State> found = state_at_fraction(call, outcome.candidate, fraction);
+    if (found && found->controls == call.accepted.controls) break;
     const bool settled = fraction == 1 && outcome.clear;
-    if (!is_agreeable(state)) {
+    if (!found || !is_agreeable(*found)) {
       if (settled) break;
       fraction *= 0.5;
       continue;
     }
+    State& state = *found;
     ++call.execution.counters.acceptance_tries;
     const bool path_is_clear = settled && call.queries.rounds_prove_clearance();
     const std::optional<double> contact =

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
+#include "editing/feasible_state.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "stiv/error.hpp"
 
@@ -45,9 +46,11 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
     arrives = way <= drag.stride || !call.execution.has_time_budget();
     State next{aim.controls, aim.surface};
     if (!arrives) {
-      next.controls =
+      const Controls stride =
           interpolate(drag.followed.controls, aim.controls, drag.stride / way, call.context.rotation_rows());
-      next.surface = call.context.surface_at(next.controls, call.execution);
+      std::optional<State> reached = feasible_state(call.context, stride, call.execution);
+      arrives = !reached;  // no surface on the way: at once to the goal
+      if (reached) next = std::move(*reached);
     }
     const std::size_t accepted_before = call.report.path.size();
     try {

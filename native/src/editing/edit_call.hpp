@@ -27,6 +27,7 @@ struct RoundProgress {
   bool cache_is_pruned = false;                 ///< for the step to this goal
   std::optional<Events> events = std::nullopt;  ///< of the step to the candidate, if a search has ended
   bool events_are_constrained = false;          ///< their rows are among `constraints`
+  bool is_cut = false;                          ///< the step to the candidate was shortened to where there is a surface
 
   bool belongs_to(const Controls& from, const Controls& to, Projection kind) const {
     return accepted == from && goal == to && projection == kind;
@@ -35,9 +36,10 @@ struct RoundProgress {
 
 /// The outcome of a call so far, summed over its sub-edits.
 struct EditReport {
-  bool blocked = false;  ///< the last sub-edit ended before the response settled
-  double fraction = 1;   ///< least fraction of a step that was accepted
-  Events events;         ///< of the last round that had any
+  bool blocked = false;             ///< the last sub-edit ended before the response settled
+  bool goal_is_infeasible = false;  ///< a point before the goal was the goal
+  double fraction = 1;              ///< least fraction of a step that was accepted
+  Events events;                    ///< of the last round that had any
   Index patches = 0;
   std::vector<Controls> path;  ///< accepted controls, in order
 };

@@ -47,15 +47,16 @@ std::vector<Index> free_rotation_rows(const Deformation& deformation, const Eige
 double energy(const Positions& a, const Positions& b) { return 0.5 * (a - b).squaredNorm(); }
 
 EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                         const Controls& start, EditOptions options)
+                         const Controls& start, EditOptions options, const Execution& execution)
     : surface_(checked(std::move(surface), deformation)),
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
       rotation_rows_(free_rotation_rows(*deformation_, options_.weights)),
+      revision_(deformation_->revision()),
       metric_(metric_of(*deformation_, options_)) {
   check_overlapping(*surface_, options_.overlapping);
   check_controls(start, "controls");
-  const Positions q = deformation_->surface_in_range(start);
+  const Positions q = deformation_->surface_in_range(start, execution);
   surface_->check_positions(q);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
   reference_ = centred(q);
@@ -91,9 +92,19 @@ void EditContext::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix
   changed.weights = std::move(weights);
   changed.weight_axes = std::move(weight_axes);
   check_options(changed, deformation_->control_count());
+  const std::uint64_t revision = deformation_->revision();
   metric_ = metric_of(*deformation_, changed);
+  revision_ = revision;
   rotation_rows_ = free_rotation_rows(*deformation_, changed.weights);
   options_ = std::move(changed);
+}
+
+bool EditContext::renew_metric() {
+  const std::uint64_t revision = deformation_->revision();
+  if (revision == revision_) return false;
+  metric_ = metric_of(*deformation_, options_);
+  revision_ = revision;
+  return true;
 }
 
 void EditContext::check_controls(const Controls& controls, const char* name) const {

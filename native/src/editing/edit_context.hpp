@@ -22,12 +22,12 @@ struct State {
 /// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
 double energy(const Positions& a, const Positions& b);
 
-/// The validated input of a session, and data derived from it once. Only the weights can change.
+/// The validated input of a session, and data derived from it once. Only the weights and the metric can change.
 class EditContext {
  public:
   /// @throws InputError for shapes and values that do not fit
   EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-              const Controls& start, EditOptions options);
+              const Controls& start, EditOptions options, const Execution& execution);
   EditContext(const EditContext&) = delete;  // proximities point into it
   EditContext& operator=(const EditContext&) = delete;
 
@@ -49,12 +49,15 @@ class EditContext {
   double pull_distance() const { return options_.pull_limit * diagonal_; }
   /// @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
+  /// Factors the metric again if the Jacobian was replaced, and returns whether it was.
+  bool renew_metric();
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
   /// @param name of the argument: "controls" or "goal"
   /// @throws InputError for a shape or values that do not fit; names object and control
   void check_controls(const Controls& controls, const char* name) const;
   Controls stored(const Controls& controls) const { return as_stored(controls, options_.storage); }
+  /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
   /// Relative to the center of the start: smaller coordinates round less.
   Positions centred(const PositionsView& q) const;
@@ -66,6 +69,7 @@ class EditContext {
   std::shared_ptr<const Deformation> deformation_;
   EditOptions options_;
   std::vector<Index> rotation_rows_;
+  std::uint64_t revision_;  ///< of the deformation, for the metric
   std::unique_ptr<Metric> metric_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;  ///< of the moving vertices

@@ -8,6 +8,7 @@
 
 #include "editing/control_interpolation.hpp"
 #include "editing/round_volumes.hpp"
+#include "stiv/error.hpp"
 #include "stiv/response/resolver.hpp"
 #include "stiv/volumes/relative.hpp"
 
@@ -20,6 +21,9 @@ constexpr double smallest_fraction = 0x1p-16;
 
 /// `is_diverging` needs the whole surface of a candidate, so it is called only this often.
 constexpr int rounds_before_giving_up = 6;
+
+/// Halvings of a step to where there is a surface; after the last one, the accepted state is the candidate.
+constexpr int max_halvings = 16;
 
 /// The rounds to resume, or new ones.
 RoundProgress& progress_toward(EditCall& call, const Controls& goal, Projection projection) {
@@ -54,6 +58,7 @@ RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection
 
 RoundOutcome RoundLoop::run() {
   for (; candidate() && search() && constrain(); ++progress_.round) project();
+  outcome_.is_cut = progress_.is_cut;
   return std::move(outcome_);
 }
 
@@ -120,10 +125,33 @@ void RoundLoop::project() {
   ConstraintSet& constraints = progress_.constraints;
   progress_.p = options_.solver == ConstraintSolver::lcp ? constraints.project(from, call_.execution)
                                                          : constraints.project_as_equations(from, call_.execution);
-  progress_.events_are_constrained = false;
+  progress_.events_are_constrained = progress_.is_cut = false;
   outcome_.events = std::move(*progress_.events);
   progress_.events.reset();
   call_.execution.checkpoint();
+}
+
+/// Shortens the step to the candidate, at which there is no surface.
+void RoundLoop::shorten_step(int cuts) {
+  const Controls& from = call_.accepted.controls;
+  ++call_.execution.counters.infeasible;
+  progress_.p =
+      cuts < max_halvings ? interpolate(from, outcome_.candidate.controls, 0.5, call_.context.rotation_rows()) : from;
+  outcome_.candidate.controls = call_.context.stored(progress_.p);
+  progress_.is_cut = true;
+}
+
+/// Evaluates the candidate, or the first one without InfeasibleError at half, a quarter and so on of the step to it.
+template <class Evaluate>
+auto RoundLoop::at_feasible_candidate(const Evaluate& evaluate) {
+  for (int cuts = 1;; ++cuts) {
+    try {
+      return evaluate();
+    } catch (const InfeasibleError&) {
+      if (outcome_.candidate.controls == call_.accepted.controls) throw;
+      shorten_step(cuts);
+    }
+  }
 }
 
 /// Events among the cached candidates or, if there are none, among all pairs. At the vertices of events, the
@@ -138,7 +166,8 @@ std::optional<Events> RoundLoop::find_events() {
     call_.queries.prune_cache(start, *placed, call_.execution);
     progress_.cache_is_pruned = true;
   }
-  Events cached = call_.queries.find_cached(start, outcome_.candidate, call_.execution);
+  Events cached =
+      at_feasible_candidate([&] { return call_.queries.find_cached(start, outcome_.candidate, call_.execution); });
   if (!cached.empty()) return cached;
   if (placed)
     outcome_.candidate.surface = std::move(*placed);
@@ -148,7 +177,8 @@ std::optional<Events> RoundLoop::find_events() {
 }
 
 void RoundLoop::place_surface() {
-  outcome_.candidate.surface = call_.context.surface_at(outcome_.candidate.controls, call_.execution);
+  outcome_.candidate.surface =
+      at_feasible_candidate([&] { return call_.context.surface_at(outcome_.candidate.controls, call_.execution); });
 }
 
 RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Projection projection, double& fraction,

@@ -16,7 +16,8 @@ struct RoundOutcome {
   bool too_far = false;  ///< the step exceeds the pair limit: no round was made
   PairLimit pair_limit = PairLimit::respected;  ///< of the searches of these rounds
   bool given_up = false;                        ///< `is_diverging` was true
-  Events events;                                ///< of the last round that had any
+  bool is_cut = false;  ///< the step to the candidate was shortened to where the deformation has a surface
+  Events events;        ///< of the last round that had any
   Index patches = 0;
 };
 
@@ -37,6 +38,9 @@ class RoundLoop {
   bool search();
   bool constrain();
   void project();
+  void shorten_step(int cuts);
+  template <class Evaluate>
+  auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
   std::vector<ControlConstraint> linearised(const std::vector<Stiv>& stivs) const;

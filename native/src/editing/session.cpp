@@ -5,6 +5,7 @@
 
 #include "editing/drag.hpp"
 #include "editing/edit_result.hpp"
+#include "editing/feasible_state.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "stiv/error.hpp"
 
@@ -28,7 +29,8 @@ class EditSession::Implementation {
  public:
   Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                  const Controls& controls, EditOptions options, Execution& execution)
-      : context_(std::move(surface), std::move(deformation), controls, std::move(options)), queries_(context_) {
+      : context_(std::move(surface), std::move(deformation), controls, std::move(options), execution),
+        queries_(context_) {
     execution.check();
     restore(controls, controls, execution);
   }
@@ -48,8 +50,8 @@ class EditSession::Implementation {
     checked_ = controls;
     progress_.reset();
     queries_.clear_cache();
-    goal_ = {goal, context_.surface_at(goal, execution)};
-    drag_ = {.followed = goal_};
+    drag_ = {.followed = last_feasible(context_, state, goal, execution)};
+    goal_ = goal;
     accepted_ = std::move(state);
     is_dragging_ = goal != controls;
   }
@@ -57,7 +59,7 @@ class EditSession::Implementation {
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
     context_.set_weights(std::move(weights), std::move(weight_axes));
     checked_ = accepted_.controls;
-    restore(Controls(accepted_.controls), Controls(goal_.controls));
+    restore(Controls(accepted_.controls), Controls(goal_));
   }
 
   EditResult edit(const Controls& goal, Execution& execution) {
@@ -79,7 +81,7 @@ class EditSession::Implementation {
   }
 
   EditResult settle(Execution& execution) {
-    const Controls goal = goal_.controls;
+    const Controls goal = goal_;
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
       PullLimits limits;
       if (is_dragging_) limits.distance = context_.pull_distance();
@@ -139,6 +141,7 @@ class EditSession::Implementation {
   EditResult carry_out(const Controls& goal, Execution& execution, FollowedGoal followed, const Work& work) {
     const FloatingPointScope floating_point;
     context_.check_controls(goal, "goal");
+    if (context_.renew_metric()) progress_.reset();
     EditReport report;
     State target{goal, accepted_.surface};
     EditStatus status = EditStatus::unchanged;
@@ -148,20 +151,23 @@ class EditSession::Implementation {
       if (time_budget > 0 && !execution.has_time_budget())
         execution.set_time_budget(time_budget, BudgetEnd::after_checkpoint);
       EditCall call{context_, queries_, accepted_, progress_, report, execution};
-      status = solve(call, target, followed, work);
+      status = solve(call, goal, target, followed, work);
     }
     return make_result(context_, accepted_, target.surface, std::move(report), status, execution);
   }
 
+  /// @param target the goal, or the point before it that has a surface
   template <class Work>
-  EditStatus solve(EditCall& call, State& target, FollowedGoal followed, const Work& work) {
+  EditStatus solve(EditCall& call, const Controls& goal, State& target, FollowedGoal followed, const Work& work) {
     Transaction transaction(*this);
     try {
-      target.surface = context_.surface_at(target.controls, call.execution);
+      target = last_feasible(context_, accepted_, goal, call.execution);
+      call.report.goal_is_infeasible = target.controls != goal;
       context_.surface().check_positions(target.surface);
       if (!context_.is_empty() && target.controls != accepted_.controls)
         work(call, {target.controls, target.surface, false});
-      goal_ = drag_.followed = target;
+      goal_ = goal;
+      drag_.followed = target;
       progress_.reset();
       transaction.commit();
       return status_of(context_, transaction.controls_before(), accepted_.controls, target.controls, call.report);
@@ -170,7 +176,7 @@ class EditSession::Implementation {
         call.report.path.clear();
         return EditStatus::cancelled;
       }
-      goal_ = target;
+      goal_ = goal;
       const bool accepted_some = !is_dragging_ || !call.report.path.empty();
       if (followed == FollowedGoal::after_any_acceptance && accepted_some) drag_.followed = target;
       transaction.commit();
@@ -181,7 +187,7 @@ class EditSession::Implementation {
   EditContext context_;
   CollisionQueries queries_;
   State accepted_;
-  State goal_;  ///< of the last call, as given
+  Controls goal_;  ///< of the last call, as given
   DragProgress drag_;
   std::optional<RoundProgress> progress_;  ///< of a call that the time budget ended
   Controls checked_;                       ///< last restored; a drag that is cancelled goes back to them

@@ -6,6 +6,7 @@
 
 #include "editing/acceptance_search.hpp"
 #include "editing/control_interpolation.hpp"
+#include "editing/feasible_state.hpp"
 #include "editing/round_loop.hpp"
 
 namespace stiv {
@@ -16,11 +17,12 @@ constexpr int max_cuts = 256;               // fractions of a motion that is too
 constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
 constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
-/// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted.
+/// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted. Without a surface
+/// there, the accepted state.
 RoundOutcome goal_as_outcome(const EditCall& call, const Aim& aim, PairLimit pair_limit) {
   RoundOutcome outcome;
-  outcome.candidate.controls = call.context.stored(aim.controls);
-  outcome.candidate.surface = call.context.surface_at(outcome.candidate.controls, call.execution);
+  outcome.candidate =
+      feasible_state(call.context, call.context.stored(aim.controls), call.execution).value_or(call.accepted);
   outcome.pair_limit = pair_limit;
   return outcome;
 }
@@ -113,7 +115,7 @@ void SubEditLoop::report(RoundOutcome& outcome, const Acceptance& acceptance) {
     report.patches = outcome.patches;
   }
   if (acceptance.truncated) report.fraction = std::min(report.fraction, acceptance.fraction);
-  report.blocked = !outcome.clear || acceptance.truncated;
+  report.blocked = !outcome.clear || acceptance.truncated || outcome.is_cut;
 }
 
 void SubEditLoop::run() {

@@ -3,6 +3,7 @@
 
 #include "stiv/deformation/handles.hpp"
 #include "stiv/deformation/linear.hpp"
+#include "stiv/deformation/observed.hpp"
 
 namespace stiv {
 
@@ -11,11 +12,22 @@ namespace stiv {
 std::shared_ptr<const LinearDeformation> make_composition(const LinearDeformation& outer,
                                                           const LinearDeformation& inner);
 
-/// q = outer(inner(p)) for a mesh moved by handles, such as a cage, and a linear deformation of it, such as a
-/// subdivision.
+/// q = outer(inner(p)) for a linear deformation, such as a subdivision, of a mesh that handles or a function of the
+/// caller move.
 /// @throws InputError as above
-std::shared_ptr<const HandleDeformation> make_composition(std::shared_ptr<const LinearDeformation> outer,
-                                                          std::shared_ptr<const HandleDeformation> inner);
+std::shared_ptr<const ComposableDeformation> make_composition(std::shared_ptr<const LinearDeformation> outer,
+                                                              std::shared_ptr<const ComposableDeformation> inner);
+
+/// q = outer(inner(p)) for a function of the caller after a linear deformation.
+/// @throws InputError as above
+std::shared_ptr<const SparseJacobianDeformation> make_composition(
+    std::shared_ptr<const SparseJacobianDeformation> outer, std::shared_ptr<const LinearDeformation> inner);
+
+/// q = outer(inner(p)) for a function of the caller after another one, or after a mesh moved by handles. In the latter
+/// case, the metric treats x, y and z alike.
+/// @throws InputError as above
+std::shared_ptr<const ComposableDeformation> make_composition(std::shared_ptr<const SparseJacobianDeformation> outer,
+                                                              std::shared_ptr<const ComposableDeformation> inner);
 
 /// A component of a concatenation: a deformation, and the vertices of the whole surface that it moves, in its order.
 struct DeformationComponent {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,7 +13,8 @@
 namespace stiv {
 
 /// A map q = f(p) from controls to surface positions, and the products with its Jacobian J. [P5.1, App. B]
-/// Immutable: every method may be called from several threads.
+/// Every method may be called from several threads. Immutable, except that J of a function of the caller can be
+/// replaced (observed.hpp).
 class Deformation {
  public:
   virtual ~Deformation() = default;
@@ -21,7 +23,7 @@ class Deformation {
   virtual Index vertex_count() const = 0;   ///< n
 
   /// q = f(p), (n, 3), at controls p, (m, 3), on the threads of `execution`.
-  /// @throws Interrupted
+  /// @throws Interrupted; InfeasibleError if there is no surface at these controls
   virtual Positions surface(const Controls& p, const Execution& execution) const = 0;
   Positions surface(const Controls& p) const { return surface(p, Execution(1)); }
 
@@ -47,6 +49,9 @@ class Deformation {
 
   /// The factored metric of the controls, computed once per session. @see Metric
   virtual std::unique_ptr<Metric> metric(const MetricOptions& options) const = 0;
+
+  /// Grows whenever the caller replaces J (ObservedDeformation::set_jacobian): sessions then factor the metric again.
+  virtual std::uint64_t revision() const { return 0; }
 
   /// Vertices that a control moves, ascending.
   virtual std::vector<Index> support(Index control) const = 0;

@@ -24,15 +24,8 @@ struct HandleDefinition {
   EdgeWeights edge_weights = EdgeWeights::uniform;
 };
 
-/// A deformation by handles. A linear deformation may follow it (make_composition).
-class HandleDeformation : public Deformation {
- public:
-  using Deformation::metric;
-
-  /// The metric of E = 1/2 |S f(p) - S f(p~)|^2 for a linear deformation S that follows.
-  /// @param surface_gram S'S, (n, n)
-  virtual std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const = 0;
-};
+/// A deformation by handles.
+class HandleDeformation : public ComposableDeformation {};
 
 /// Laplacian editing [Sorkine et al. 2004; App. B, Eq. 4]: q minimizes |L (q - rest)|^2 + sum pull_k |q_h(k) - p_k|^2.
 /// Each row of the Laplacian L is divided by its diagonal. Hard handles and fixed vertices are constraints instead.

@@ -32,4 +32,14 @@ class LinearDeformation : public Deformation {
 /// @throws InputError naming the row: weights or offset not finite, shapes that do not match
 std::shared_ptr<const LinearDeformation> make_linear(WeightMatrix matrix, Positions offset = Positions());
 
+/// A deformation that a linear one may follow (make_composition).
+class ComposableDeformation : public Deformation {
+ public:
+  using Deformation::metric;
+
+  /// The metric of E = 1/2 |S f(p) - S f(p~)|^2 for a linear deformation S that follows.
+  /// @param surface_gram S'S, (n, n)
+  virtual std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const = 0;
+};
+
 }  // namespace stiv

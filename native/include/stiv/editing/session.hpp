@@ -17,7 +17,8 @@ namespace stiv {
 enum class EditStatus {
   reached,    ///< the goal itself
   corrected,  ///< interference was resolved, short of the goal
-  blocked,    ///< stopped at the last clear state before the response settled; `blocking` lists the bodies
+  blocked,    ///< stopped at the last clear state before the response settled; `blocking` lists the bodies. Or stopped
+              ///< before controls without a surface: `counters.infeasible` is positive
   budget,     ///< the time budget ended first; the last accepted state is returned
   cancelled,  ///< cancelled; the state before the edit is returned
   unchanged   ///< nothing to do: empty surface, no controls, or goal equal to the accepted controls
@@ -29,7 +30,7 @@ struct EditResult {
   std::vector<Controls> path;   ///< accepted controls in order, ending with `controls`; the linear steps between them
                                 ///< are free of intersections
   Positions surface;            ///< f(controls), (N, 3), world
-  double energy = 0;            ///< 1/2 |f(controls) - f(goal)|^2
+  double energy = 0;            ///< 1/2 |f(controls) - f(goal)|^2; without f(goal), of the last point before it
   double fraction = 1;          ///< least fraction of a step that acceptance allowed
   Events events;                ///< of the last round with a response
   Index patches = 0;            ///< number of patches of these events

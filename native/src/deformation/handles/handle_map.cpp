@@ -64,7 +64,9 @@ HandleMap::HandleMap(const HandleDefinition& definition, const Surface& mesh, co
       handles_(definition.handles),
       hard_(definition.pull.size() == 0),
       drive_(drive_matrix(definition, partition_, stiffness)),
-      factor_(std::make_unique<SparseFactor>(free_stiffness(definition, partition_, stiffness), "handles")) {
+      factor_(std::make_unique<SparseFactor>(
+          free_stiffness(definition, partition_, stiffness),
+          "handles: the system is singular to rounding; add handles or fixed vertices")) {
   const std::vector<Index> driven = rows_in_use(drive_);
   needed_ = factor_->needed_for(driven);
   if (static_cast<double>(vertex_count()) * control_count() <= limits_.entries) {

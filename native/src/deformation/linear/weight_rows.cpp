@@ -76,4 +76,15 @@ WeightMatrix weights_from_rows(const std::vector<Index>& starts, const std::vect
   return rows.matrix();
 }
 
+WeightMatrix weight_product(const WeightMatrix& outer, const WeightMatrix& inner) {
+  using Entry = WeightMatrix::InnerIterator;
+  WeightRows rows(static_cast<Index>(outer.rows()), static_cast<Index>(inner.cols()));
+  for (Index row = 0; row < outer.rows(); ++row) {
+    for (Entry a(outer, row); a; ++a)
+      for (Entry b(inner, a.col()); b; ++b) rows.add(static_cast<Index>(b.col()), a.value() * b.value());
+    rows.end_row();
+  }
+  return rows.matrix();
+}
+
 }  // namespace stiv

@@ -27,4 +27,7 @@ class WeightRows {
   std::vector<double> weights_;
 };
 
+/// Weights of outer(inner(p)).
+WeightMatrix weight_product(const WeightMatrix& outer, const WeightMatrix& inner);
+
 }  // namespace stiv

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deformation/metric/sparse_factor.hpp"
 
-#include <string>
-
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -13,9 +11,8 @@ bool SparseFactor::factor(const SymmetricMatrix& matrix) {
   return factor_.info() == Eigen::Success && factor_.vectorD().minCoeff() > 0;
 }
 
-SparseFactor::SparseFactor(const SymmetricMatrix& matrix, const char* what) {
-  if (!factor(matrix))
-    throw InputError(std::string(what) + ": the system is singular to rounding; add handles or fixed vertices");
+SparseFactor::SparseFactor(const SymmetricMatrix& matrix, const char* message) {
+  if (!factor(matrix)) throw InputError(message);
 }
 
 Index SparseFactor::parent(Index column) const {

@@ -19,8 +19,8 @@ using ColumnBlock = Eigen::Matrix<double, Eigen::Dynamic, 16, Eigen::RowMajor>;
 /// result do not depend on the other columns.
 class SparseFactor {
  public:
-  /// @throws InputError that begins with `what` if the matrix cannot be factored
-  SparseFactor(const SymmetricMatrix& matrix, const char* what);
+  /// @throws InputError with this message if the matrix cannot be factored
+  SparseFactor(const SymmetricMatrix& matrix, const char* message);
 
   Index size() const { return static_cast<Index>(factor_.rows()); }
   Index entries() const { return size() == 0 ? 0 : static_cast<Index>(lower().nonZeros()); }  ///< of L

@@ -145,5 +145,5 @@ TEST_CASE("sparse factor: sixteen right-hand sides have the bits of three, and s
   CHECK((matrix * x - three).norm() < 1e-12);
   CHECK(factor.solve(sixteen).middleCols<3>(5) == x);
   matrix.coeffRef(20, 20) = -1;
-  CHECK_THROWS_WITH_AS(SparseFactor(matrix, "test"), doctest::Contains("test: the system"), InputError);
+  CHECK_THROWS_WITH_AS(SparseFactor(matrix, "test"), "test", InputError);
 }

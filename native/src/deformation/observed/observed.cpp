@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stiv/deformation/observed.hpp"
+
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "deformation/checks.hpp"
+#include "deformation/observed/jacobian.hpp"
+#include "deformation/observed/jacobian_metric.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+std::shared_ptr<const JacobianProducts> checked_products(Jacobian jacobian) {
+  jacobian.weights.makeCompressed();
+  check_jacobian(jacobian);
+  return std::make_shared<JacobianProducts>(std::move(jacobian));
+}
+
+class Observed final : public ObservedDeformation {
+ public:
+  Observed(Evaluation evaluate, Jacobian jacobian)
+      : evaluate_(std::move(evaluate)),
+        products_(checked_products(std::move(jacobian))),
+        control_count_(products_->control_count()),
+        vertex_count_(products_->vertex_count()) {}
+
+  Index control_count() const override { return control_count_; }
+  Index vertex_count() const override { return vertex_count_; }
+
+  Positions surface(const Controls& p, const Execution& execution) const override {
+    check_control_rows(p, control_count_);
+    std::optional<Evaluated> known = stored(p);
+    if (!known) known = evaluated(p, execution);
+    if (!known->surface) throw InfeasibleError("evaluate has no surface at these controls");
+    return std::move(*known->surface);
+  }
+
+  SparseField pull_back(const ControlsView&, const SparseField& g) const override { return products()->pull_back(g); }
+  Positions push_forward(const Controls&, const Controls& d) const override { return products()->push_forward(d); }
+  std::vector<Index> support(Index control) const override { return products()->support(control); }
+
+  std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
+    return make_jacobian_metric(*products(), options, nullptr);
+  }
+  std::unique_ptr<Metric> metric(const MetricOptions& options, const WeightMatrix& surface_gram) const override {
+    return make_jacobian_metric(*products(), options, &surface_gram);
+  }
+
+  std::shared_ptr<const Jacobian> jacobian() const override {
+    const std::shared_ptr<const JacobianProducts> now = products();
+    return {now, &now->jacobian()};
+  }
+
+  void set_jacobian(Jacobian jacobian) override {
+    if (jacobian.weights.rows() != vertex_count_ || jacobian.weights.cols() != control_count_)
+      throw InputError("jacobian: it is for " + std::to_string(jacobian.weights.rows()) + " vertices and " +
+                       std::to_string(jacobian.weights.cols()) + " controls, the deformation has " +
+                       std::to_string(vertex_count_) + " and " + std::to_string(control_count_));
+    std::shared_ptr<const JacobianProducts> next = checked_products(std::move(jacobian));
+    const std::lock_guard lock(mutex_);
+    products_ = std::move(next);
+    ++revision_;
+  }
+
+  std::uint64_t revision() const override {
+    const std::lock_guard lock(mutex_);
+    return revision_;
+  }
+
+ private:
+  /// The value of the function at some controls.
+  struct Evaluated {
+    Controls controls;
+    std::optional<Positions> surface;
+  };
+
+  std::shared_ptr<const JacobianProducts> products() const {
+    const std::lock_guard lock(mutex_);
+    return products_;
+  }
+
+  std::optional<Evaluated> stored(const Controls& p) const {
+    const std::lock_guard lock(mutex_);
+    return last_ && last_->controls == p ? last_ : std::nullopt;
+  }
+
+  Evaluated evaluated(const Controls& p, const Execution& execution) const {
+    execution.check();
+    Evaluated value{p, {}};
+    execution.call_owner([&] {
+      const std::lock_guard one_at_a_time(calling_);
+      value.surface = evaluate_(p);
+    });
+    if (value.surface) {
+      if (value.surface->rows() != vertex_count_)
+        throw InputError("evaluate returned " + std::to_string(value.surface->rows()) + " vertices, expected " +
+                         std::to_string(vertex_count_) + "; return nothing if the topology differs");
+      check_finite(*value.surface, "evaluate, vertex");
+    }
+    const std::lock_guard lock(mutex_);
+    last_ = value;
+    return value;
+  }
+
+  Evaluation evaluate_;
+  std::shared_ptr<const JacobianProducts> products_;
+  Index control_count_, vertex_count_;
+  std::uint64_t revision_ = 0;
+  mutable std::optional<Evaluated> last_;
+  mutable std::mutex mutex_;  ///< of J and the last value
+  mutable std::mutex calling_;
+};
+
+}  // namespace
+
+std::shared_ptr<ObservedDeformation> make_observed(Evaluation evaluate, Jacobian jacobian) {
+  return std::make_shared<Observed>(std::move(evaluate), std::move(jacobian));
+}
+
+}  // namespace stiv
