@@ -8,14 +8,17 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.controls.motion import Motion
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.references import ObjectReference
 from stiv.seams import Seams
 
 
 @dataclass(frozen=True)
 class Participant:
-    """An object with controls: role "cage", "soft", "lattice" or "rigid"; the goal moves it if it is `selected`."""
+    """An object with controls; the goal moves it if it is `selected`.
+
+    Its role is "cage", "soft", "lattice", "curve" or "rigid".
+    """
 
     reference: ObjectReference
     role: str
@@ -72,7 +75,7 @@ class ControlSet:
 
     Attributes:
         names: the objects that are written.
-        role: "cage", "soft", "lattice" or "rigid".
+        role: "cage", "soft", "lattice", "curve" or "rigid".
         surfaces: indices of the visible meshes that the controls move, in the order of the deformation.
         deformation: from the controls to the world positions of these meshes, without duplicates on seams.
         controls: (m, 3) at the start.
@@ -85,6 +88,7 @@ class ControlSet:
         seams: for each of `surfaces`, the vertices that stay together; empty if none do.
         note: message for the user; may be "".
         weight_axes: axes of (m, 3) weights as columns of rotations, (m, 3, 3); None for the world axes.
+        kept: controls that are left of mirrored groups, by their former numbers, (m,); None without mirrored editing.
     """
 
     names: tuple[str, ...]
@@ -101,6 +105,7 @@ class ControlSet:
     seams: tuple[Seams | None, ...] = ()
     note: str = ""
     weight_axes: Floats | None = None
+    kept: Indices | None = None
 
     def values_at_controls(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values at the controls, (m, ...), from values at all vertices of the object, (n, ...)."""

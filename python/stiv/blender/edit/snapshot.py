@@ -9,6 +9,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.mirrored_controls import mirror_controls
 from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.arrays import Indices, as_matrix, digest
@@ -69,7 +70,7 @@ def take_snapshot(
     )
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     found, groups = make_control_sets(context, participants, solid, settings, kind)
-    control_sets = tuple(adapt(each) for each in found)
+    control_sets = tuple(adapt(mirror_controls(each)) for each in found)
     if not any(each.rule.moves for each in control_sets):
         raise _nothing_moves(participants, solid)
     moving = {each.reference.name for each in participants}.union(

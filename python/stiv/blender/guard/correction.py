@@ -20,7 +20,7 @@ from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
 from stiv.blender.guard.tool_motion import tool_motion
-from stiv.blender.scene.arrays import Floats, Indices, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
@@ -289,10 +289,15 @@ def _goal_of(control_set: ControlSet, goals: _ToolGoals) -> Floats:
 def _followed_vertices(control_set: ControlSet, change: Change) -> Indices:
     """The vertex or point that each control follows, (m,); on a seam, one that the tool moved."""
     assert change.points is not None
+    chosen = _unmirrored_vertices(control_set, change.points)
+    return chosen if control_set.kept is None else chosen[control_set.kept]
+
+
+def _unmirrored_vertices(control_set: ControlSet, changed: Flags) -> Indices:
     if control_set.control_seams is None:
-        return np.arange(len(change.points), dtype=np.int32)
+        return np.arange(len(changed), dtype=np.int32)
     chosen = control_set.control_seams.first.copy()
-    moved = np.flatnonzero(change.points)[::-1].astype(np.int32)
+    moved = np.flatnonzero(changed)[::-1].astype(np.int32)
     chosen[control_set.control_seams.index[moved]] = moved
     return chosen
 
