@@ -156,7 +156,7 @@ def _check_independent(
     check_dependents(
         deforming | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices), evaluations_of(meshes)
     )
-    check_instances(deforming | in_groups | in_lattices, meshes)
+    check_instances(deforming | in_groups | in_lattices, meshes, groups)
     _check_children(deforming, in_groups, meshes)
 
 

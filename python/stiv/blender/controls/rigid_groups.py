@@ -9,6 +9,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
+from stiv.blender.controls.rigid_trial import moves_as_a_whole
 from stiv.blender.scene.dependencies import Dependency, ancestors, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 
@@ -36,7 +37,8 @@ def find_rigid_groups(participants: list[Participant], evaluations: Collection[s
             groups = _merge_groups(groups, dependency)
     for group in groups:
         for dependency in _outside_dependencies(group, evaluations):
-            raise InputError(f'{dependency.user}: {dependency.through} depends on "{dependency.used}"; select both')
+            if not moves_as_a_whole(bpy.data.objects[dependency.user]):
+                raise InputError(f'{dependency.user}: {dependency.through} depends on "{dependency.used}"; select both')
     return groups
 
 
@@ -71,11 +73,19 @@ def check_dependents(moved: Iterable[str], names: Iterable[str], evaluations: Co
                 raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; select both')
 
 
-def check_instances(moved: set[str], meshes: Iterable[VisibleMesh]) -> None:
-    """Refuse to change objects that others show as instances. Raises InputError."""
+def check_instances(moved: set[str], meshes: Iterable[VisibleMesh], groups: Iterable[RigidGroup] = ()) -> None:
+    """Refuse to change objects that others show as instances, except on the faces and vertices of a parent that moves
+    along. Raises InputError.
+    """
     for mesh in meshes:
-        if mesh.is_instance and mesh.source in moved:
+        if mesh.is_instance and mesh.source in moved and not _carries(mesh, groups):
             raise InputError(f'{mesh.source}: "{mesh.owner.name}" instances it; make the instances real')
+
+
+def _carries(mesh: VisibleMesh, groups: Iterable[RigidGroup]) -> bool:
+    """Do the instancer and its child move in the same group?"""
+    is_child = mesh.owner.find().instance_type in ("FACES", "VERTS")
+    return is_child and any({mesh.owner.name, mesh.source} <= group.members for group in groups)
 
 
 def _topmost(participants: list[Participant]) -> list[Participant]:
