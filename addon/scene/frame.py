@@ -55,7 +55,7 @@ def view_areas(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
 
 
 def selected_points(context: bpy.types.Context) -> Vector:
-    """Origins of the selected objects, or the selected vertices or lattice points, (k, 3) in world space."""
+    """Origins of the selected objects, or the selected vertices or points, (k, 3) in world space."""
     if context.mode == "OBJECT":
         points = [np.array(obj.matrix_world.translation) for obj in moved_objects(context)]
     else:
@@ -73,13 +73,28 @@ def moved_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def selected_elements(obj: bpy.types.Object) -> list[Vector]:
-    """Selected vertices or lattice points of an object in Edit Mode, in world space."""
+    """Selected vertices or points of an object in Edit Mode, in world space."""
     if obj.type == "MESH":
         positions = [vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
+    elif obj.type in {"CURVE", "SURFACE"}:
+        positions = [position for spline in obj.data.splines for position in _selected_on(spline)]
     else:
         positions = [point.co_deform[:] for point in obj.data.points if point.select]
     matrix = np.array(obj.matrix_world)
     return list(np.array(positions).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3])
+
+
+def _selected_on(spline: bpy.types.Spline) -> Iterator[tuple[float, ...]]:
+    """Positions of the selected points of a curve; of Bezier points, or of their handles that are selected alone."""
+    yield from (point.co[:3] for point in spline.points if point.select)
+    for point in spline.bezier_points:
+        if point.select_control_point:
+            yield point.co[:]
+            continue
+        if point.select_left_handle:
+            yield point.handle_left[:]
+        if point.select_right_handle:
+            yield point.handle_right[:]
 
 
 def active_point(context: bpy.types.Context) -> Vector | None:

@@ -13,7 +13,7 @@ BLENDERS = {
     "Cursor", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
     "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
-    "Shape Key Edit Mode", "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
+    "Shape Key Edit Mode", "Topology Mirror", "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
 }  # fmt: skip
 
 

@@ -26,7 +26,7 @@ from . import drag_results
 from .constraint import Constraint, free_directions
 from .options import TransformOptions
 
-MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE"}
+MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
 
 
 class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
@@ -36,7 +36,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """In Object Mode, and in Edit Mode of a mesh or a lattice, while no edit runs."""
+        """In Object Mode, and in Edit Mode of a mesh, a lattice or a curve, while no edit runs."""
         if obstacle := running.obstacle():
             cls.poll_message_set(obstacle)
         return context.mode in MODES and not obstacle

@@ -49,10 +49,11 @@ def test_modes_without_controls() -> None:
     refused("mode Sculpt is not supported")
 
 
-def test_curves_have_no_controls() -> None:
-    curve = bpy.data.curves.new("Curve", "CURVE")
-    select(add("Curve", curve), add_cube("Cube"))
-    refused("Curve: a curve has no controls", EditSettings(roles={"Curve": "controls"}))
+def test_text_and_curves_without_a_surface_have_no_controls() -> None:
+    text, curve = add("Text", bpy.data.curves.new("Text", "FONT")), add("Curve", bpy.data.curves.new("Curve", "CURVE"))
+    select(text, curve, add_cube("Cube"))
+    refused("Text: a text has no controls", EditSettings(roles={"Text": "controls"}))
+    refused("Curve: has no surface that deforms", EditSettings(roles={"Curve": "controls"}))
 
 
 def test_unknown_names_in_settings() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.controls.cage import make_cage_set
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
+from stiv.blender.controls.curve_points import make_curve_set
 from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.handles import make_handle_sets
 from stiv.blender.controls.joined_seams import join_seams
@@ -57,6 +58,10 @@ def make_control_sets(
             control_sets.append(
                 make_cage_set(participant, surfaces, _read_in(surfaces, meshes), context.scene, settings)
             )
+        elif participant.role == "curve":
+            surfaces = _shown_as(participant.reference.name, meshes, settings)
+            evaluations = [meshes[index].read_from for index in surfaces]
+            control_sets.append(make_curve_set(participant, surfaces, evaluations, context.scene, settings))
         elif participant.role == "soft":
             surfaces = _shown_as(participant.reference.name, meshes, settings)
             control_sets += make_handle_sets(participant, surfaces, _read_in(surfaces, meshes), context.scene, settings)

@@ -60,7 +60,7 @@ def join_seams(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> Contro
 
 def copy_to_seams(deformation: stiv.Deformation, control_seams: Seams) -> stiv.Deformation:
     """Deformation of all vertices, from that of the mesh with merged seams."""
-    return stiv.compose(_selection_weights(control_seams.index, len(control_seams.first)), deformation)
+    return stiv.compose(selection_weights(control_seams.index, len(control_seams.first)), deformation)
 
 
 def join_rows(rows: Indices, control_seams: Seams | None) -> Indices:
@@ -84,7 +84,7 @@ def join_notes(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
-def _selection_weights(index: Indices, count: int) -> stiv.Weights:
+def selection_weights(index: Indices, count: int) -> stiv.Weights:
     """Weights, (n, count), of rows that each equal one of `count` points, given by `index`, (n,)."""
     return stiv.Weights(np.arange(len(index) + 1, dtype=np.int32), index, np.ones(len(index)), (len(index), count))
 
@@ -173,7 +173,7 @@ def _weights(deformation: stiv.Deformation) -> stiv.Weights:
     try:
         return stiv.linear_weights(deformation)[0]
     except InputError:
-        return _selection_weights(np.arange(deformation.vertex_count, dtype=np.int32), deformation.control_count)
+        return selection_weights(np.arange(deformation.vertex_count, dtype=np.int32), deformation.control_count)
 
 
 def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
@@ -183,7 +183,7 @@ def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
 
 def _restrict(control_set: ControlSet, rows: Indices) -> stiv.Deformation:
     """The deformation restricted to some vertices; the identity if each of them is a control."""
-    chosen = _selection_weights(rows, control_set.deformation.vertex_count)
+    chosen = selection_weights(rows, control_set.deformation.vertex_count)
     if control_set.role == "soft":
         return stiv.compose(chosen, control_set.deformation)
     try:

@@ -12,7 +12,8 @@ from stiv.blender.scene.evaluations import SURFACE_TYPES, is_active, is_visible
 from stiv.blender.scene.references import ObjectReference, type_name
 from stiv.blender.settings import EditSettings
 
-EDITABLE_TYPES = ("MESH", "LATTICE")
+EDITABLE_TYPES = {"MESH": "cage", "LATTICE": "lattice", "CURVE": "curve", "SURFACE": "curve"}  # and their roles
+EDIT_MODES = ("EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE")
 SOFT = ("laplacian", "arap")
 
 
@@ -55,7 +56,9 @@ def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:
 
 
 def _in_edit_mode(context: bpy.types.Context, objects: list[bpy.types.Object]) -> list[bpy.types.Object]:
-    if context.mode not in ("EDIT_MESH", "EDIT_LATTICE"):
+    if context.mode == "EDIT_TEXT":
+        raise InputError(f"{context.edit_object.name}: text has no points; use Object Mode")
+    if context.mode not in EDIT_MODES:
         mode = context.mode.replace("_", " ").title()
         raise InputError(f"mode {mode} is not supported; use Object Mode")
     return [ob for ob in objects if ob.mode == "EDIT"]
@@ -77,7 +80,7 @@ def make_participant(ob: bpy.types.Object, selected: bool, settings: EditSetting
         return Participant(_lattice_of(ob), "lattice", selected)
     if ob.type not in EDITABLE_TYPES:
         raise InputError(f"{ob.name}: a {type_name(ob)} has no controls; set its deformation to Rigid")
-    return Participant(ObjectReference.of(ob), "cage" if ob.type == "MESH" else "lattice", selected)
+    return Participant(ObjectReference.of(ob), EDITABLE_TYPES[ob.type], selected)
 
 
 def _yields_by_deformation(ob: bpy.types.Object, settings: EditSettings) -> bool:
