@@ -13,6 +13,8 @@ EXTENSION := build/extension
 ZIP_VENV := build/venv-blender-$(firstword $(BLENDERS))
 EXTENSION_TOOLS := tools/build_extension.py tools/build_guide.py addon/blender_manifest.toml \
 	$(wildcard docs/user_guide.md docs/images/* docs/films/* blend_fixtures/examples/*)
+PLATFORMS := $(shell sed -n 's/^\([a-z][^ ]*\).*/\1/p' tools/platforms.txt)
+HERE := linux_x64
 FUZZ_SECONDS := 30
 WINDOW_RELEASE := trixie
 WINDOW_SEQUENCES := 200
@@ -24,7 +26,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test wheels test-windows test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -58,19 +60,24 @@ test-window: $(WHEEL) ## Drive the installed zip in a real window (needs root an
 lint: build/venv/lint $(WHEEL) ## Check format, style, types, spelling, and the wording of documents and code
 	build/venv/bin/python tools/run_tests.py lint
 
-extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(ZIP_VENV)/ready ## Build dist/stiv-<version>.zip, validate and test it; BLENDER=blender: install it there
-	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist >build/extension-all
-	$(ZIP_VENV)/bin/python tools/install_extension.py "$$(cat build/extension-all)"
+extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(BLENDER_VENVS) ## Build dist/stiv-<version>-<platform>.zip for all PLATFORMS (an hour, the first time), validate and test them; BLENDER=blender: install it there
+	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist $(PLATFORMS) >build/extension-all
+	set -e; for zip in $$(cat build/extension-all); do for venv in $(dir $(BLENDER_VENVS)); do \
+		$$venv/bin/python tools/install_extension.py "$$zip" --validate; done; done
+	set -e; for zip in $$(grep $(HERE) build/extension-all); do $(ZIP_VENV)/bin/python tools/install_extension.py "$$zip"; done
 	build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_extension_wheels.py
 	cat build/extension-all
 ifdef BLENDER
-	build/venv/bin/python tools/install_extension.py "$$(cat build/extension-all)" --blender "$(BLENDER)"
+	build/venv/bin/python tools/install_extension.py "$$(grep $(HERE) build/extension-all)" --blender "$(BLENDER)"
 endif
 
 release: extension ## Build a release in dist/release: zips for the extension platform, wheels and sources for PyPI, notes, hashes
 	rm -f dist/*.tar.gz
 	tools/source_archive.sh build/venv/bin/python dist
 	build/venv/bin/python tools/release.py dist dist/release
+
+wheels: build/venv/stiv $(OPENSUBDIV) build/venv/portable ## Build the wheels of all PLATFORMS into dist: those in the zips
+	set -e; for platform in $(PLATFORMS); do tools/portable_wheels.sh build/venv/bin/python $(OPENSUBDIV) dist $$platform; done
 
 bench: build/venv/bench ## Run every benchmark with its default settings, and the compared libraries from PyPI
 	set -e; for name in $(BENCHMARKS); do echo "== $$name"; build/venv/bin/python -m benchmarks.$$name; done

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The self-test gives the committed hashes for all vector targets and any number of runs."""
 
+import sys
+
 import pytest
 
 import stiv
 from stiv import _native
+from stiv.command_line.program import run
 
 
 @pytest.mark.parametrize("target", _native.VectorTarget)
@@ -19,3 +22,14 @@ def test_hashes_are_those_committed(target):
         _native.limit_vector_target(best)
     assert result.passed, result
     assert result.vectors == target.name
+
+
+def test_the_command_prints_both_hashes_and_fails_on_other_bits(capsys, monkeypatch):
+    assert run(["self-test"]) == 0
+    out = capsys.readouterr().out
+    result = stiv.self_test()
+    assert f"40 edits: {result.edits} (as expected)" in out
+    assert f"100,000 intersection tests: {result.intersections} (as expected)" in out
+    monkeypatch.setattr(sys.modules["stiv.self_test"], "_hash", lambda arrays: "0" * 16)
+    assert run(["self-test"]) == 3
+    assert f"0000000000000000 (WRONG: expected {result.edits})" in capsys.readouterr().out

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build stiv-<version>.zip, the add-on as a Blender extension with the given wheels.
+"""Build stiv-<version>-<platform>.zip, the add-on as a Blender extension, for each platform of the given wheels.
 
-Usage: build_extension.py FOLDER WHEEL...   one wheel per version of Python; Blender unpacks the matching one.
+Usage: build_extension.py FOLDER WHEEL...   one wheel per platform and version of Python; Blender unpacks the matching
+one. The names are those that Blender's own `extension build --split-platforms` gives.
 """
 
 import sys
@@ -16,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
 EXAMPLES = ROOT / "blend_fixtures" / "examples"
 EMPTY_WHEELS = "wheels = []\n"
+NO_PLATFORMS = "platforms = []\n"
 NO_VERSION = 'version = "0.0.0"\n'
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
@@ -26,11 +28,27 @@ def project_version() -> str:
     return str(project["version"])
 
 
+def platform_names() -> dict[str, str]:
+    """Blender's names of platforms by the tags of wheels, with those of a wheel for this system."""
+    rows = [line.split() for line in (ROOT / "tools/platforms.txt").read_text().splitlines() if line[:1].isalpha()]
+    return {"linux_x86_64": "linux-x64", "linux_aarch64": "linux-arm64"} | {row[5]: row[0] for row in rows}
+
+
+def platform_of(wheel: Path) -> str:
+    """The platform of a wheel, as Blender calls it."""
+    tag = wheel.stem.split("-")[-1]
+    if tag not in platform_names():
+        raise SystemExit(f"{wheel.name}: tools/platforms.txt has no platform with the tag {tag}")
+    return platform_names()[tag]
+
+
 def filled_manifest(wheels: list[Path]) -> str:
-    """The add-on's manifest with the project's version and the list of wheels."""
+    """The add-on's manifest with the project's version, the wheels and their platforms."""
     names = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in wheels)
     text = (ADDON / "blender_manifest.toml").read_text()
     text = replace_line(text, NO_VERSION, f'version = "{project_version()}"\n')
+    platforms = ", ".join(f'"{platform}"' for platform in sorted({platform_of(wheel) for wheel in wheels}))
+    text = replace_line(text, NO_PLATFORMS, f"platforms = [{platforms}]\n")
     return replace_line(text, EMPTY_WHEELS, f"wheels = [\n{names}]\n")
 
 
@@ -57,19 +75,26 @@ def contents(wheels: list[Path]) -> dict[str, bytes]:
     return files
 
 
-def build(wheels: list[Path], folder: Path) -> Path:
-    """Write the archive into a folder; the same input gives the same bytes."""
+def build(wheels: list[Path], folder: Path) -> list[Path]:
+    """Write an archive for each platform into a folder; the same input gives the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
-    target = folder / f"stiv-{project_version()}.zip"
+    built = []
+    for platform in sorted({platform_of(wheel) for wheel in wheels}):
+        built.append(folder / f"stiv-{project_version()}-{platform.replace('-', '_')}.zip")
+        write_archive(built[-1], contents([wheel for wheel in wheels if platform_of(wheel) == platform]))
+    return built
+
+
+def write_archive(target: Path, files: dict[str, bytes]) -> None:
+    """Write a zip with fixed dates, in the order of the names."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in sorted(contents(wheels).items()):
+        for name, data in sorted(files.items()):
             entry = zipfile.ZipInfo(name, FIRST_DATE)
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, data)
-    return target
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         raise SystemExit("build_extension.py: name a folder and at least one wheel")
-    print(build([Path(argument) for argument in sys.argv[2:]], Path(sys.argv[1])))
+    print(*build([Path(argument) for argument in sys.argv[2:]], Path(sys.argv[1])), sep="\n")

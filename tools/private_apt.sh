@@ -2,13 +2,14 @@
 # Source this file: `open_archive deb|deb-src SUITE` defines an apt() that reads Debian's archive into $work, a separate
 # folder that is removed at the end. Needs no privileges, and leaves the system's lists unchanged.
 
+work=
 fail() { echo "$(basename "$0"): $1" >&2; exit 1; }
 
 open_archive() {
     command -v apt-get >/dev/null || fail "apt-get is missing"
     keyring=/usr/share/keyrings/debian-archive-keyring.gpg
     [ -f "$keyring" ] || fail "$keyring is missing: install the package debian-archive-keyring"
-    work=$(mktemp -d)
+    work=${work:-$(mktemp -d)}
     trap 'rm -rf "$work"' EXIT
     chmod 755 "$work"  # apt downloads as a separate user if possible
     mkdir -p "$work/lists/partial" "$work/cache/archives/partial"

@@ -85,7 +85,5 @@ def _printed() -> str:
 
 def _flush() -> None:
     """Flush the C library's buffer, which Python's own flush does not reach."""
-    try:
-        ctypes.CDLL(None).fflush(None)
-    except (OSError, TypeError, AttributeError):  # Windows: the process has no symbols of its own
-        ctypes.cdll.msvcrt.fflush(None)
+    # Blender and Python use the universal C runtime. The older msvcrt has buffers of its own.
+    ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None).fflush(None)

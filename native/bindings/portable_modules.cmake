@@ -1,8 +1,16 @@
 # One module for each version of Python in STIV_PYTHON_HEADERS, a list of VERSION=FOLDER, all with the same core. A module
-# needs only the headers of its Python: the process that loads it provides the symbols.
+# needs only the headers of its Python, and on Windows the import library of its DLL.
 if(NOT TARGET pybind11::headers)
   set(PYBIND11_NOPYTHON ON)
   find_package(pybind11 CONFIG REQUIRED)
+endif()
+
+# The ends of the names that each Python looks for: cpython-311-x86_64-linux-gnu.so, cpython-311-darwin.so, and
+# cp311-win_amd64.pyd.
+set(STIV_MODULE_SUFFIX "${CMAKE_SYSTEM_PROCESSOR}-linux-gnu.so" CACHE STRING "End of the names of the portable modules")
+set(python_name cpython-)
+if(WIN32)
+  set(python_name cp)
 endif()
 
 add_custom_target(stiv_portable_modules)
@@ -20,8 +28,11 @@ foreach(entry IN LISTS STIV_PYTHON_HEADERS)
   stiv_link_module(_native_cp3${minor})
   target_compile_options(_native_cp3${minor} PRIVATE -O1)  # they only translate, and are compiled several times
   set_target_properties(_native_cp3${minor} PROPERTIES
-    PREFIX "" OUTPUT_NAME "_native.cpython-3${minor}-x86_64-linux-gnu" SUFFIX ".so")
+    PREFIX "" IMPORT_PREFIX "" OUTPUT_NAME "_native.${python_name}3${minor}-${STIV_MODULE_SUFFIX}" SUFFIX "")
   # Without debug information, nine tenths of the file.
-  add_custom_command(TARGET _native_cp3${minor} POST_BUILD COMMAND ${CMAKE_STRIP} $<TARGET_FILE:_native_cp3${minor}>)
+  target_link_options(_native_cp3${minor} PRIVATE -s)
+  if(WIN32)  # elsewhere, the process that loads the module provides the symbols
+    target_link_libraries(_native_cp3${minor} PRIVATE "${folder}/libpython3${minor}.a")
+  endif()
   add_dependencies(stiv_portable_modules _native_cp3${minor})
 endforeach()

@@ -11,6 +11,11 @@ using namespace stiv;
 
 namespace {
 
+#ifdef _WIN32
+int setenv(const char* name, const char* value, int) { return _putenv_s(name, value); }
+int unsetenv(const char* name) { return _putenv_s(name, ""); }
+#endif
+
 /// Sets the variable for its lifetime, then restores it.
 class Setting {
  public:

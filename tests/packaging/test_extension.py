@@ -28,7 +28,8 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("no wheel in build/wheel")
     from tools import build_extension
 
-    return build_extension.build(wheels, tmp_path_factory.mktemp("dist"))
+    (archive,) = build_extension.build(wheels, tmp_path_factory.mktemp("dist"))
+    return archive
 
 
 def site_packages_without_stiv(folder: Path) -> Path:

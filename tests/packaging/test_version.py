@@ -24,13 +24,15 @@ def test_cmake_reads_it(tmp_path: Path) -> None:
 
 
 def test_the_manifest_in_the_zip_has_it() -> None:
-    manifest = tomllib.loads(build_extension.filled_manifest([Path("stiv-1-cp311.whl")]))
+    name = "stiv-1-cp311-cp311-win_amd64.whl"
+    manifest = tomllib.loads(build_extension.filled_manifest([Path(name)]))
     assert manifest["version"] == VERSION
-    assert manifest["wheels"] == ["./wheels/stiv-1-cp311.whl"]
+    assert manifest["wheels"] == [f"./wheels/{name}"]
+    assert manifest["platforms"] == ["windows-x64"]
 
 
 def test_a_manifest_with_a_version_of_its_own_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "blender_manifest.toml").write_text('version = "9.9.9"\nwheels = []\n')
+    (tmp_path / "blender_manifest.toml").write_text('version = "9.9.9"\nplatforms = []\nwheels = []\n')
     monkeypatch.setattr(build_extension, "ADDON", tmp_path)
     with pytest.raises(SystemExit, match=re.escape('version = "0.0.0"')):
         build_extension.filled_manifest([])

@@ -3,12 +3,14 @@
 
 #include <cmath>
 
+#include "portable_math.hpp"
+
 namespace stiv {
 
 namespace {
 
 /// sin(x) / x
-double sine_ratio(double x) { return x == 0 ? 1 : std::sin(x) / x; }
+double sine_ratio(double x) { return x == 0 ? 1 : portable_sin(x) / x; }
 
 /// (1 - cos x) / x^2, by the half angle, without cancellation.
 double cosine_ratio(double x) {
@@ -19,7 +21,7 @@ double cosine_ratio(double x) {
 /// (x - sin x) / x^3. Near 0, where the difference cancels, the series up to x^8 / 11! is exact to rounding.
 double sine_remainder(double x) {
   const double s = x * x;
-  if (std::abs(x) > 0.25) return (x - std::sin(x)) / (s * x);
+  if (std::abs(x) > 0.25) return (x - portable_sin(x)) / (s * x);
   return (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110)))) / 6;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "portable_math.hpp"
+
 namespace stiv {
 
 namespace {
@@ -13,14 +15,15 @@ using Quaternion = Eigen::Quaterniond;
 Quaternion rotation(const Vector3& vector) {
   const double angle = vector.norm();
   if (angle == 0) return Quaternion::Identity();
-  return Quaternion(Eigen::AngleAxisd(angle, vector / angle));
+  const Vector3 imaginary = portable_sin(0.5 * angle) * (vector / angle);
+  return {portable_cos(0.5 * angle), imaginary.x(), imaginary.y(), imaginary.z()};
 }
 
 /// The rotation vector with an angle in [0, pi].
 Vector3 rotation_vector(const Quaternion& rotation) {
   const double length = rotation.vec().norm();
   if (length == 0) return Vector3::Zero();
-  const double angle = 2 * std::atan2(length, std::abs(rotation.w()));
+  const double angle = 2 * portable_atan2(length, std::abs(rotation.w()));
   return std::copysign(angle / length, rotation.w()) * rotation.vec();
 }
 

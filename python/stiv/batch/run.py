@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from stiv import InputError
 from stiv.batch.job import Entry, Job
@@ -130,11 +131,19 @@ def _locked(state: Path, name: str) -> Iterator[None]:
         raise InputError(f"{state}: cannot be written: {error.strerror or error}") from error
     with lock:
         try:
-            import fcntl
-
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except ImportError:  # not a POSIX system
-            pass
+            _lock_file(lock)
         except OSError as error:
             raise InputError(f"{state}: another process is running this job") from error
         yield
+
+
+def _lock_file(file: TextIO) -> None:
+    """Locks a file for this process. Raises OSError if another process holds the lock."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -9,6 +9,7 @@ or absent.
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import io
 import json
 import os
@@ -69,9 +70,19 @@ def _reply(out: TextIO, message: dict[str, Any]) -> None:
 
 
 def _peak_megabytes() -> float:
-    try:
-        import resource
-    except ImportError:  # not a POSIX system
-        return 0.0
+    if sys.platform == "win32":
+        return round(_peak_on_windows() / 1e6, 1)
+    import resource
+
     unit = 1 if sys.platform == "darwin" else 1024
     return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6, 1)
+
+
+def _peak_on_windows() -> int:
+    """The peak of the working set in bytes, from PROCESS_MEMORY_COUNTERS: two 32-bit fields, then nine of 64 bits."""
+    kernel = ctypes.CDLL("kernel32")
+    kernel.GetCurrentProcess.restype = ctypes.c_void_p
+    process = ctypes.c_void_p(kernel.GetCurrentProcess())
+    counters = (ctypes.c_uint64 * 9)()
+    known = kernel.K32GetProcessMemoryInfo(process, ctypes.byref(counters), ctypes.sizeof(counters))
+    return int(counters[1]) if known else 0

@@ -76,7 +76,8 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     state = arguments.job.resolve().with_suffix(".state")
     part = "" if arguments.part is None else "-{}-of-{}".format(*arguments.part)
     options = RunOptions(state, arguments.resume, arguments.worker_blender, f"lock{part}")
-    signal.signal(signal.SIGTERM, _cancel)
+    for name in {"SIGTERM", "SIGBREAK"} & set(dir(signal)):  # the second: Ctrl+Break on Windows
+        signal.signal(signal.Signals[name], _cancel)
     begin = time.perf_counter()
     with progress_bar("scenes", len(job.entries)) as advance:
         try:

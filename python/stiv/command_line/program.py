@@ -12,11 +12,11 @@ from typing import NoReturn
 
 from stiv import InputError
 from stiv.batch.worker import serve
-from stiv.command_line import batch, bench, check, demo, repair, replay, resolve
+from stiv.command_line import batch, bench, check, demo, repair, replay, resolve, self_test
 from stiv.command_line.installed_blender import run_inside, without_option
 from stiv.exit_codes import ExitCode
 
-_SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench)
+_SUBCOMMANDS = (demo, check, replay, repair, resolve, batch, bench, self_test)
 
 
 class Parser(argparse.ArgumentParser):
