@@ -30,7 +30,7 @@ def messages() -> Iterator[tuple[str, str]]:
     """The place and the text of every error and report of the add-on and of stiv.blender."""
     for folder in ("addon", "python/stiv/blender"):
         for path in sorted((ROOT / folder).rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text())):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if not isinstance(node, ast.Call):
                     continue
                 name = getattr(node.func, "id", getattr(node.func, "attr", ""))

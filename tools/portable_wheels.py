@@ -4,7 +4,7 @@
 Usage: portable_wheels.py WHEEL FOLDER PLATFORM MODULE...
 
 WHEEL is the wheel of this source tree, for any Python; each MODULE replaces its module in one of the new
-wheels. They replace the files in FOLDER and are tagged for PLATFORM: manylinux_2_17_x86_64 if the modules are
+wheels. They replace those for PLATFORM in FOLDER and are tagged for it: manylinux_2_17_x86_64 if the modules are
 compiled for that version of the C library, linux_x86_64 if they are for systems like this one. The wheels
 differ only in module and tag. The zips contain the same wheels as PyPI, so these also contain the add-on and the
 demo, which scripts and commands use.
@@ -23,10 +23,10 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 
 def python_tag(module: Path) -> str:
     """Tag of the Python version in a module's name: "cp313"."""
-    found = re.fullmatch(r"_native\.cpython-(\d+)-x86_64-linux-gnu\.so", module.name)
+    found = re.fullmatch(r"_native\.(?:cpython-(\d+)-(?:\w+-linux-gnu|darwin)\.so|cp(\d+)-win_\w+\.pyd)", module.name)
     if found is None:
         raise SystemExit(f"{module}: not the name of a native module")
-    return f"cp{found[1]}"
+    return f"cp{found[1] or found[2]}"
 
 
 def read_wheel(path: Path) -> dict[str, bytes]:
@@ -67,7 +67,7 @@ def main(wheel: Path, folder: Path, platform: str, modules: list[Path]) -> None:
     """Write all wheels."""
     files = read_wheel(wheel)
     folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("*.whl"):
+    for old in folder.glob(f"*-{platform}.whl"):
         old.unlink()
     name = "-".join(wheel.name.split("-")[:2])
     for module in modules:

@@ -44,7 +44,7 @@ def report_text(context: bpy.types.Context) -> str:
 
 def versions() -> list[str]:
     """STIV, Blender, Python and the system."""
-    manifest = tomllib.loads(MANIFEST.read_text())
+    manifest = tomllib.loads(MANIFEST.read_text(encoding="utf-8"))
     return [
         f"STIV {manifest['version']}; {native_module.problem() or 'the native module is loaded'}",
         f"Blender {bpy.app.version_string}, {bpy.app.build_hash.decode()}, {bpy.app.build_platform.decode()}",

@@ -15,7 +15,7 @@ from .decision import UndoStep
 
 # A line of the list as Blender prints it, the only access to it:
 # "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
-_ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'$", re.MULTILINE)
+_ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'\r?$", re.MULTILINE)
 
 
 def active_step() -> UndoStep | None:

@@ -16,6 +16,7 @@ VectorTarget best_vector_target() {
 #if defined(__x86_64__)
   // The compiler's own detection, which also asks whether the operating system saves the registers.
   static const VectorTarget best = [] {
+    __builtin_cpu_init();  // on Windows no constructor does it
     if (!__builtin_cpu_supports("avx2")) return VectorTarget::baseline;
     const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&

@@ -16,7 +16,8 @@ FIXTURES = Path(__file__).resolve().parents[2] / "blend_fixtures"
 
 def run_tests(folder: Path, body: str) -> tuple[int, str]:
     """Exit code and output of a session with one test of this body."""
-    (folder / "test_assets.py").write_text(f"def test_asset(assert_free_of_intersections):\n    {body}\n")
+    test = f"def test_asset(assert_free_of_intersections):\n    {body}\n"
+    (folder / "test_assets.py").write_text(test, encoding="utf-8")
     installed = any(entry.name == "stiv" for entry in metadata.entry_points(group="pytest11"))
     plugin = [] if installed else ["-p", "stiv.pytest_plugin"]
     environment = {**os.environ, "PYTHONPATH": str(Path(stiv.__file__).parents[1])}

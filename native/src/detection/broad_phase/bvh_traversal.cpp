@@ -11,7 +11,7 @@
 namespace stiv {
 
 /// For each set of eight lanes, its lanes in ascending order, then zeros.
-constexpr std::array<std::array<std::uint8_t, 8>, 256> lanes_of_bits = [] {
+[[maybe_unused]] constexpr std::array<std::array<std::uint8_t, 8>, 256> lanes_of_bits = [] {
   std::array<std::array<std::uint8_t, 8>, 256> table{};
   for (unsigned bits = 0; bits < table.size(); ++bits)
     for (unsigned lane = 0, count = 0; lane < 8; ++lane)
