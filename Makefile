@@ -26,7 +26,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test wheels test-windows test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test wheels test-windows test-windows-native test-windows-blender test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -91,11 +91,24 @@ fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, the static te
 	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
 	build/venv/bin/python -W ignore tests/long/file_fuzzing.py --seconds $(FUZZ_SECONDS) --findings build/fuzz
 
-test-arm64: build/debian $(OPENSUBDIV) ## Compile the core and its own tests for arm64, and run them in an emulator (minutes)
+test-arm64: build/debian build/venv/ready $(OPENSUBDIV) ## Compile the core, its own tests and the Python module for arm64, and run them and the Python tests in an emulator (minutes)
 	tools/install_debian_packages.sh tools/debian_packages_arm64.txt
-	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
-	cmake --build --preset arm64 --target stiv_tests
+	tools/python_headers.sh 3.11 bookworm build/portable/headers
+	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV)) \
+		-DSTIV_PYTHON_HEADERS=3.11=$(abspath build/portable/headers/3.11) -Dpybind11_DIR=$$(build/venv/bin/python -m pybind11 --cmakedir)
+	cmake --build --preset arm64 --target stiv_tests stiv_portable_modules
 	ctest --preset arm64 --output-on-failure --parallel 2
+	tools/arm64_python.sh build/venv/bin/python build/arm64-python -r tools/requirements/foreign.txt
+	tools/test_arm64.sh build/arm64-python build/arm64/native/bindings/_native.cpython-311-aarch64-linux-gnu.so
+
+test-windows: $(WHEEL) build/venv/portable ## Compile for Windows, and run the self-test and the Python tests of the core under Wine
+	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV)
+
+test-windows-native: build/venv/portable $(OPENSUBDIV) ## Run the core's own tests under Wine (half an hour to compile)
+	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV) --native
+
+test-windows-blender: $(WHEEL) build/venv/portable ## Run tests on the official Windows module of Blender under Wine
+	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV) --blender $(DEMO_BLENDER)
 
 coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection, acceptance and penetration need 95 %
 	tools/install_debian_packages.sh tools/debian_packages_coverage.txt

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Source this file: `open_archive deb|deb-src SUITE` defines an apt() that reads Debian's archive into $work, a separate
-# folder that is removed at the end. Needs no privileges, and leaves the system's lists unchanged.
+# folder that is removed at the end. Needs no privileges, and leaves the system's lists unchanged. $apt_options are passed
+# to every call.
 
 work=
 fail() { echo "$(basename "$0"): $1" >&2; exit 1; }
@@ -20,5 +21,5 @@ open_archive() {
 apt() {
     apt-get -o Dir::Etc::sourcelist="$work/sources.list" -o Dir::Etc::sourceparts=/dev/null \
         -o Dir::State::lists="$work/lists" -o Dir::Cache="$work/cache" -o APT::Sandbox::User="$(id -un)" \
-        -o Acquire::Retries=5 -o Acquire::Languages=none "$@" >"$work/log" 2>&1
+        -o Acquire::Retries=5 -o Acquire::Languages=none ${apt_options:-} "$@" >"$work/log" 2>&1
 }

@@ -20,4 +20,12 @@ dpkg -x "$work/$package"_*.deb "$work/unpacked"
 mkdir -p "$destination"
 rm -rf "$destination/$version" "$destination/$version.partial"
 cp -R "$work/unpacked/usr/include" "$destination/$version.partial"
+# Debian's choice of a configuration knows its own processors only. All our systems are 64-bit, and differ in little else.
+configuration=$(cd "$destination/$version.partial" && echo *-linux-gnu*/python"$version"/pyconfig.h)
+cat >"$destination/$version.partial/python$version/pyconfig.h" <<END
+#include <$configuration>
+#ifdef __APPLE__
+#undef HAVE_CRYPT_H
+#endif
+END
 mv "$destination/$version.partial" "$destination/$version"
