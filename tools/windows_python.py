@@ -3,8 +3,8 @@
 
 Usage: windows_python.py VERSION FOLDER [PIP_ARGUMENT...]   such as 3.11 build/windows/3.11 numpy pytest
 
-The Python is python.org's, with the signed files of its installer, from a source archive of PyPI with a known hash. None of that archive's code
-runs: pip's finder only downloads it.
+The Python is python.org's, with the signed files of its installer, from a source archive of PyPI with a known hash.
+None of that archive's code runs: pip's finder only downloads it.
 """
 
 import hashlib

@@ -43,7 +43,13 @@ def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
     scene = str(tmp_path / "a.blend")
     assert [entry.arguments for entry in read.entries] == [
         ("check", scene),
-        ("replay", scene, str(tmp_path / "e.json"), f"--output={tmp_path / 'b.blend'}", f"--report={tmp_path / 'b.json'}"),
+        (
+            "replay",
+            scene,
+            str(tmp_path / "e.json"),
+            f"--output={tmp_path / 'b.blend'}",
+            f"--report={tmp_path / 'b.json'}",
+        ),
         ("resolve", scene, f"--output={tmp_path / 'c.blend'}", "--frames=1:9", "--guard=both", "--hold=-x"),
         ("repair", scene, f"--output={tmp_path / 'd.blend'}", "--guard=viewport"),
         ("check", scene, "--scene=B", "--guard=render", "--hidden"),

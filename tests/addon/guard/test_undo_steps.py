@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("bpy")
 
-from stiv_addon.guard import undo_steps  # noqa: E402
+from stiv_addon.guard import undo_steps
 
 
 @pytest.mark.parametrize(("platform", "library"), [("win32", "ucrtbase"), ("linux", None), ("darwin", None)])
