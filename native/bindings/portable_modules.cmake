@@ -13,6 +13,10 @@ if(WIN32)
   set(python_name cp)
 endif()
 
+if(APPLE)
+  set(CMAKE_SHARED_MODULE_CREATE_CXX_FLAGS -shared)  # Zig's linker makes no bundles; Python loads a library just as well
+endif()
+
 add_custom_target(stiv_portable_modules)
 foreach(entry IN LISTS STIV_PYTHON_HEADERS)
   string(REGEX MATCH "^3\\.([0-9]+)=(.+)$" matched "${entry}")
@@ -31,6 +35,13 @@ foreach(entry IN LISTS STIV_PYTHON_HEADERS)
     PREFIX "" IMPORT_PREFIX "" OUTPUT_NAME "_native.${python_name}3${minor}-${STIV_MODULE_SUFFIX}" SUFFIX "")
   # Without debug information, nine tenths of the file.
   target_link_options(_native_cp3${minor} PRIVATE -s)
+  if(WIN32 OR APPLE)  # elsewhere, the list of exports hides them
+    target_compile_definitions(_native_cp3${minor} PRIVATE PYBIND11_EXPORT_EXCEPTION=)
+  endif()
+  if(APPLE)
+    target_sources(_native_cp3${minor} PRIVATE ${stiv_portable_mac_bindings})
+    target_compile_options(_native_cp3${minor} PRIVATE -fvisibility-global-new-delete=force-hidden)
+  endif()
   if(WIN32)  # elsewhere, the process that loads the module provides the symbols
     target_link_libraries(_native_cp3${minor} PRIVATE "${folder}/libpython3${minor}.a")
   endif()

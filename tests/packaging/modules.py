@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inspection of compiled modules with binutils."""
+"""Inspection of compiled modules for any system, with binutils and LIEF."""
 
 import re
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 
 
@@ -13,7 +14,8 @@ def lines_of(*command: str | Path) -> list[str]:
 
 def exported_names(module: str | Path) -> set[str]:
     """Symbols that other libraries can bind to."""
-    return {line.split()[-1].split("@")[0] for line in lines_of("nm", "-D", "--defined-only", module)}
+    rows = [line.split() for line in lines_of("readelf", "--dyn-syms", "--wide", module)]
+    return {row[7].split("@")[0] for row in rows if len(row) > 7 and row[4] in {"GLOBAL", "WEAK"} and row[6] != "UND"}
 
 
 def needed_libraries(module: str | Path) -> set[str]:
@@ -25,3 +27,38 @@ def newest_glibc(module: str | Path) -> tuple[int, ...]:
     """The version of the C library that the module needs."""
     found = re.findall(r"GLIBC_(\d+)\.(\d+)", "\n".join(lines_of("readelf", "-V", module)))
     return max((int(major), int(minor)) for major, minor in found)
+
+
+def windows_interface(module: Path) -> tuple[set[str], set[str]]:
+    """Exported names of a Windows module, and the libraries that it needs."""
+    import lief
+
+    parsed = lief.PE.parse(str(module))
+    return {entry.name for entry in parsed.get_export().entries}, {entry.name for entry in parsed.imports}
+
+
+@dataclass(frozen=True)
+class MacModule:
+    """What the loader of macOS reads of a module."""
+
+    processor: str
+    exported: set[str]
+    libraries: set[str]
+    oldest: tuple[int, ...]  # the version of macOS
+    signed: bool
+
+
+def mac_module(module: Path) -> MacModule:
+    """Inspect a macOS module."""
+    import lief
+
+    file = lief.MachO.parse(str(module))  # owns what it contains
+    parsed = file.at(0)
+    names = {str(symbol.name) for symbol in parsed.exported_symbols}
+    return MacModule(
+        parsed.header.cpu_type.name,
+        names - {"__mh_dylib_header", "__mh_bundle_header", "___dso_handle"},  # the linker's own
+        {library.name for library in parsed.libraries if library.command == lief.MachO.LoadCommand.TYPE.LOAD_DYLIB},
+        tuple(parsed.build_version.minos),
+        parsed.has_code_signature,
+    )

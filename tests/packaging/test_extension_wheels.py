@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wheels in the extension's zip: portable, complete, and with the same bits as the tested core."""
+"""The wheels in the extension's zips: portable, complete, and with the same bits as the tested core."""
 
 import csv
 import hashlib
@@ -10,25 +10,33 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from modules import exported_names, needed_libraries, newest_glibc
+from modules import exported_names, mac_module, needed_libraries, newest_glibc, windows_interface
 
 from tools import portable_wheels
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMED = ROOT / "build/extension-all"  # written by `make extension`
-C_LIBRARY = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "ld-linux-x86-64.so.2"}
+C_LIBRARY = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2"}
+LOADERS = {"ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 OLDEST = (2, 17)
 
 
 @pytest.fixture(scope="module")
-def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The unpacked wheels of the zip."""
+def all_wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The unpacked wheels of all zips, each in a folder named after its zip."""
     if not NAMED.is_file():
         pytest.skip("the extension was not built for all Pythons (make extension)")
-    folder = tmp_path_factory.mktemp("zip")
-    with zipfile.ZipFile(ROOT / NAMED.read_text().strip()) as archive:
-        archive.extractall(folder)
-    return sorted((folder / "wheels").glob("*.whl"))
+    folder = tmp_path_factory.mktemp("zips")
+    for name in NAMED.read_text().split():
+        with zipfile.ZipFile(ROOT / name) as archive:
+            archive.extractall(folder / Path(name).stem)
+    return sorted(folder.glob("*/wheels/*.whl"))
+
+
+@pytest.fixture
+def wheels(all_wheels: list[Path]) -> list[Path]:
+    """Those for this system."""
+    return [wheel for wheel in all_wheels if wheel.stem.endswith("manylinux_2_17_x86_64")]
 
 
 def unpacked(wheel: Path, folder: Path) -> Path:
@@ -41,20 +49,52 @@ def test_there_is_a_wheel_for_this_python_and_each_matches_its_module(wheels: li
     tags = {wheel.name.split("-")[2] for wheel in wheels}
     assert f"cp{sys.version_info.major}{sys.version_info.minor}" in tags
     for wheel in wheels:
-        (module,) = unpacked(wheel, tmp_path / wheel.name).glob("stiv/_native*.so")
+        module = module_of(wheel, tmp_path)
         assert portable_wheels.python_tag(module) == wheel.name.split("-")[2]
 
 
-def test_modules_need_only_an_old_c_library(wheels: list[Path], tmp_path: Path) -> None:
-    for wheel in wheels:
-        (module,) = unpacked(wheel, tmp_path / wheel.name).glob("stiv/_native*.so")
+def module_of(wheel: Path, folder: Path) -> Path:
+    (module,) = unpacked(wheel, folder / wheel.name).glob("stiv/_native.*")
+    return module
+
+
+def test_modules_need_only_an_old_c_library(all_wheels: list[Path], tmp_path: Path) -> None:
+    for wheel in [wheel for wheel in all_wheels if "manylinux_2_17" in wheel.name]:
+        module = module_of(wheel, tmp_path)
         assert exported_names(module) == {"PyInit__native"}
-        assert needed_libraries(module) <= C_LIBRARY
+        assert needed_libraries(module) <= C_LIBRARY | LOADERS
         assert newest_glibc(module) <= OLDEST
 
 
-def test_the_list_of_files_of_each_wheel_is_right(wheels: list[Path]) -> None:
-    for wheel in wheels:
+def test_windows_modules_export_only_their_entry_and_need_windows_10(all_wheels: list[Path], tmp_path: Path) -> None:
+    for wheel in [wheel for wheel in all_wheels if wheel.stem.endswith("win_amd64")]:
+        exported, libraries = windows_interface(module_of(wheel, tmp_path))
+        assert exported == {"PyInit__native"}
+        python = f"python{wheel.name.split('-')[2].removeprefix('cp')}.dll"
+        own = {name for name in libraries if not name.startswith("api-ms-win-crt-")}  # the universal C runtime
+        assert own == {python, "KERNEL32.dll"}
+
+
+def test_macos_modules_export_only_their_entry_and_need_macos_11(all_wheels: list[Path], tmp_path: Path) -> None:
+    for wheel in [wheel for wheel in all_wheels if "macosx_11_0" in wheel.name]:
+        module = mac_module(module_of(wheel, tmp_path))
+        assert module.processor == ("ARM64" if wheel.stem.endswith("arm64") else "X86_64")
+        assert module.exported == {"_PyInit__native"}
+        assert module.libraries == {"/usr/lib/libSystem.B.dylib"}
+        assert module.oldest[:2] == (11, 0)
+        assert module.signed or module.processor == "X86_64"  # arm64 loads only signed modules
+
+
+def test_each_zip_has_the_wheels_of_its_platform_only(all_wheels: list[Path]) -> None:
+    rows = [line.split() for line in (ROOT / "tools/platforms.txt").read_text().splitlines() if line[:1].isalpha()]
+    expected = {row[0].replace("-", "_"): {f"cp{v.replace('.', '')}-{row[5]}" for v in row[6:]} for row in rows}
+    for folder in {wheel.parents[1] for wheel in all_wheels}:
+        tags = {wheel.stem.split("-", 3)[3] for wheel in all_wheels if wheel.parents[1] == folder}
+        assert tags == expected[folder.name.split("-")[-1]]
+
+
+def test_the_list_of_files_of_each_wheel_is_right(all_wheels: list[Path]) -> None:
+    for wheel in all_wheels:
         with zipfile.ZipFile(wheel) as archive:
             (record,) = [name for name in archive.namelist() if name.endswith(".dist-info/RECORD")]
             listed = {row[0]: row[1] for row in csv.reader(archive.read(record).decode().splitlines())}
