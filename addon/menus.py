@@ -12,7 +12,7 @@ from .operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclu
 from .operators.repair.guard_revert import STIV_OT_guard_revert
 from .operators.repair.repair import STIV_OT_repair
 
-# Object > Transform; Mesh > Transform and Lattice > Transform are one menu.
+# Object > Transform; the menus Transform of all edit modes are one menu.
 MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
 # Blender's search (F3) finds an operator only through a menu.
 TOOL_MENUS = (
@@ -21,6 +21,9 @@ TOOL_MENUS = (
     "VIEW3D_MT_edit_mesh",
     "VIEW3D_MT_edit_mesh_context_menu",
     "VIEW3D_MT_edit_lattice",
+    "VIEW3D_MT_edit_curve",
+    "VIEW3D_MT_edit_curve_context_menu",
+    "VIEW3D_MT_edit_surface",
 )
 TOOLS = (
     *TRANSFORMS,

@@ -30,7 +30,7 @@ ROLES = (
 )
 DEFORMATIONS = (
     ("auto", "Automatic", "Follows the scene's Response; moves vertices or points in Edit Mode"),
-    ("vertices", "Vertices", "Moves the vertices of the cage, or the points of a lattice"),
+    ("vertices", "Vertices", "Moves the vertices of the cage, or the points of a lattice or curve"),
     ("laplacian", "Soft: Laplacian", "Moves handles; the rest follows smoothly and preserves its details"),
     ("arap", "As-Rigid-As-Possible", "Moves handles; the rest follows as rigidly as possible and rotates with them"),
     ("lattice", "Lattice", "Moves the points of the lattice that deforms the object"),

@@ -13,6 +13,7 @@ from ..scene.edit_settings import refined_object
 from ..translations import translate
 from .base import SubPanel
 
+EDITABLE = frozenset({"MESH", "LATTICE", "CURVE", "SURFACE"})
 MAX_OBJECTS = 10  # rows of the panel of roles
 
 
@@ -24,7 +25,7 @@ class STIV_PT_roles(SubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """A row for each object."""
-        selected = [obj for obj in context.selected_objects if obj.type in {"MESH", "LATTICE"}]
+        selected = [obj for obj in context.selected_objects if obj.type in EDITABLE]
         for obj in selected[:MAX_OBJECTS]:
             row = self.layout.row()
             row.label(text=obj.name, translate=False, icon=f"OUTLINER_OB_{obj.type}")
@@ -43,8 +44,8 @@ class STIV_PT_deformation(SubPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """For an active mesh or lattice."""
-        return super().poll(context) and getattr(context.active_object, "type", "") in {"MESH", "LATTICE"}
+        """For an active object with vertices or points."""
+        return super().poll(context) and getattr(context.active_object, "type", "") in EDITABLE
 
     def draw(self, context: bpy.types.Context) -> None:
         """The deformation, its handles and the weights."""
@@ -53,6 +54,8 @@ class STIV_PT_deformation(SubPanel, bpy.types.Panel):
         self.layout.prop(obj.stiv, "deformation")
         if obj.stiv.deformation in {"laplacian", "arap"} and obj.type == "MESH":
             _draw_handles(self.layout, obj)
+        if obj.type not in {"MESH", "LATTICE"}:  # others have no vertex groups
+            return
         row = self.layout.row(align=True)
         row.prop_search(obj.stiv, "weight_group", obj, "vertex_groups")
         row.prop(obj.stiv, "weight_invert", text="", icon="ARROW_LEFTRIGHT")

@@ -14,6 +14,7 @@ KEYMAPS = (
     "Object Mode",
     "Mesh",
     "Lattice",
+    "Curve",
     "3D View",
     "3D View Tool: Move",
     "3D View Tool: Rotate",

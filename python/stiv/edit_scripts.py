@@ -35,7 +35,7 @@ class EditStep:
     """One operator call on a selection.
 
     operator  one of TRANSFORMS or RESHAPES
-    points    in Edit Mode, the indices of cage vertices or lattice points; None: all
+    points    in Edit Mode, the indices of cage vertices or of points; None: all
     values    the operator's properties, in world units and radians
     settings  the add-on's settings for this step by name
     """

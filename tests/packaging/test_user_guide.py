@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs/user_guide.md").read_text(encoding="utf-8")
 BLENDERS = {
     "Add-ons", "Adjust Last Operation", "Affect Only", "Align Rotation to Target", "Alt Navigation", "Closest",
-    "Cursor", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
+    "Cursor", "Curve", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
     "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
     "Shape Key Edit Mode", "Topology Mirror", "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",

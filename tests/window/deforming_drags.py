@@ -61,8 +61,26 @@ def lattice_in_object_mode(window: Window) -> Steps:
     expect_free(window)
 
 
+def curve_in_edit_mode(window: Window) -> Steps:
+    """Points of a bevelled curve pushed into the wall: its tube bends along it."""
+    yield from prepared(window, scenes.add_curve, "Curve", "EDIT")
+    bpy.ops.curve.select_all(action="SELECT")
+    before = scenes.evaluated_extent("Curve")
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Curve"), WALL_FACE, 0.1, "the curve at the wall while dragging")
+    window.picture("curve_in_edit_mode")
+    yield from click(window)
+    assert bpy.context.mode == "EDIT_CURVE"
+    assert scenes.evaluated_extent("Curve") < WALL_FACE
+    expect_free(window)
+    yield from window.undo()
+    assert scenes.evaluated_extent("Curve") == before
+
+
 _ALL = (
     cage_in_edit_mode,
+    curve_in_edit_mode,
     lattice_in_edit_mode,
     lattice_in_object_mode,
 )

@@ -129,6 +129,20 @@ def add_ball_in_lattice() -> tuple[Any, Any]:
     return ball, lattice
 
 
+def add_curve() -> Any:
+    """A bevelled Bezier curve that stands upright."""
+    data = bpy.data.curves.new("Curve", "CURVE")
+    data.dimensions, data.bevel_depth = "3D", 0.1
+    spline = data.splines.new("BEZIER")
+    spline.bezier_points.add(2)
+    for place, point in zip((-1, 0, 1), spline.bezier_points, strict=True):
+        point.co = (0.3 * place * place, 0, HALF * place)
+        point.handle_left_type = point.handle_right_type = "AUTO"
+    curve = bpy.data.objects.new("Curve", data)
+    bpy.context.collection.objects.link(curve)
+    return curve
+
+
 def select_only(obj: Any) -> None:
     """Select one object and make it active."""
     bpy.context.view_layer.update()  # it lists removed objects as None until then

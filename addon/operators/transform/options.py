@@ -34,7 +34,7 @@ INTERFERENCE = (
 OBJECT_RESPONSES = (  # with the numbers that files of version 0.1.0 contain
     ("slide", "Slide", "Objects slide along surfaces and keep their rotation", 0),
     ("slide_and_turn", "Slide and Turn", "Objects slide along surfaces and rotate where contact turns them", 2),
-    ("deform", "Deform", "Vertices of selected meshes and points of lattices yield; all else slides", 1),
+    ("deform", "Deform", "Vertices of meshes and points of lattices and curves yield; all else slides", 1),
 )
 RESPONSES = (
     ("SCENE", "Scene Setting", "Use the setting of the scene"),

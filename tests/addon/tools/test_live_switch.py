@@ -97,7 +97,7 @@ def test_the_switch_takes_over_the_users_keys_and_puts_them_back(addon: None) ->
     assert bpy.context.scene.stiv.live_guard
     bpy.context.window_manager.keyconfigs.update()  # in a window, Blender does so
     user = bpy.context.window_manager.keyconfigs.user.keymaps
-    for name, key in (("Object Mode", "G"), ("Mesh", "W"), ("Lattice", "G")):
+    for name, key in (("Object Mode", "G"), ("Mesh", "W"), ("Lattice", "G"), ("Curve", "G")):
         first = next(item for item in user[name].keymap_items if item.type == key and not item.shift)
         assert (first.idname, first.properties.kind) == (live_keys.OPERATOR, "move")
     taken = {(item.type, item.properties.kind) for item in user["Lattice"].keymap_items if is_ours(item)}

@@ -9,7 +9,9 @@ import pytest
 from building import add, add_grid, add_modifier, edit_mode, evaluated, moved, select, shift, turn
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene
+from stiv.blender import AcceptedScene, BlenderEdit, EditSettings, check_scene, guard_result
+from stiv.blender.scripts.selection import select as select_step
+from stiv.edit_scripts import EditStep
 
 DEFORM = EditSettings(object_response="deform")
 
@@ -150,3 +152,43 @@ def refused(message: str) -> None:
     assert len(message) <= 80
     with pytest.raises(stiv.InputError, match=message):
         begin()
+
+
+@pytest.mark.parametrize("made", ["aligned", "auto", "surface"])
+def test_the_live_guard_corrects_what_blender_moved(made: str) -> None:
+    ob = MAKERS[made]()
+    add_grid("Floor", 2, 4.0)
+    edit_mode(ob)
+    choose(ob, 2)
+    accepted, start = AcceptedScene.read(bpy.context), points(ob)
+    bpy.ops.transform.translate(value=(0.1, 0, -3))
+    assert check_scene(bpy.context).pairs
+    assert guard_result(bpy.context, EditSettings(), accepted).corrected == [ob.name]
+    assert check_scene(bpy.context).pairs == ()
+    assert np.abs(np.ravel(points(ob)) - np.ravel(start)).max() > 0.5
+
+
+def test_the_live_guard_reports_a_curve_with_other_points() -> None:
+    ob = add_bezier("ALIGNED")
+    add_grid("Floor", 2, 4.0)
+    edit_mode(ob)
+    accepted = AcceptedScene.read(bpy.context)
+    ob.data.splines[0].bezier_points.add(1)
+    ob.data.splines[0].bezier_points[4].co.z = -5
+    bpy.context.view_layer.update()
+    result = guard_result(bpy.context, EditSettings(), accepted)
+    assert result.reason == "Wäve has another structure"
+    assert result.pairs
+
+
+def test_edit_scripts_select_points_and_handles() -> None:
+    ob = add_bezier("FREE")
+    select_step(EditStep("move", "EDIT", (ob.name,), {}, points=(0, 1, 2, 5)))
+    first, second, third, last = (
+        (each.select_left_handle, each.select_control_point, each.select_right_handle)
+        for each in ob.data.splines[0].bezier_points
+    )
+    assert (first, second, third, last) == ((True,) * 3, (False, False, True), (False,) * 3, (False,) * 3)
+    surface = add_nurbs("surface")
+    select_step(EditStep("move", "EDIT", (surface.name,), {}, points=(3,)))
+    assert [number for number, point in enumerate(surface.data.splines[0].points) if point.select] == [3]

@@ -5,15 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils.kdtree import KDTree
 
 import stiv
 from stiv import InputError
 from stiv.blender.controls.points import to_stored
-from stiv.blender.scene.arrays import Floats, Singles, transform_points
-from stiv.blender.scene.curve_reading import write_curve_points
+from stiv.blender.scene.arrays import Floats, Indices, Singles, transform_points
+from stiv.blender.scene.curve_reading import spline_starts, write_curve_points
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import StackTwin
 
@@ -21,6 +23,7 @@ TRIALS = (1e-3, 0.1, 1.0)  # random moves of the points, in sizes of the curve
 ROUNDING = 3e-6  # of the size: difference between two linear results in single precision
 PROBE = np.array([0.36, 0.48, 0.8])  # direction of the moves that measure weights
 STEPS = {"linear": 4.0, "observed": 1e-2}  # of these moves, in sizes
+DISTANT = 24  # points along a spline, handles included: no vertex follows two that are so far apart
 LEAST = {"linear": 1e-6, "observed": 1e-3}  # weights below are noise
 
 
@@ -46,10 +49,10 @@ def curve_surface(
         trials = [observer.evaluate_in(twins, move) for move in moves]
         if trials[0] is None:
             raise InputError(f"{ob.name}: its fill changes its faces; convert it to a mesh")
-        weights = observer.measure(twins, "linear")
+        weights = observer.linear_weights(twins)
         if all(observer.agrees(trial, weights, move) for trial, move in zip(trials, moves, strict=True)):
             return observer.linear(weights)
-        return stiv.observed(observer.evaluate, observer.measure(twins, "observed"))
+        return stiv.observed(observer.evaluate, observer.mean_weights(twins))
 
 
 class _CurveObserver:
@@ -60,6 +63,7 @@ class _CurveObserver:
     ) -> None:
         self._reference, self._scene, self._evaluations = ObjectReference.of(ob), scene.name, tuple(evaluations)
         self._frame, self._local = frame, local
+        self._starts = spline_starts(ob.data) if ob.type == "CURVE" else np.arange(len(local) + 1, dtype=np.int32)
         self.size = float(np.ptp(local, axis=0).max(initial=0.0)) or 1.0
         with self.open() as twins:
             self._start = [twin.evaluate(local) for twin in twins]
@@ -90,30 +94,90 @@ class _CurveObserver:
             return None
         return np.concatenate([each.positions for each in shown]).astype(np.float64)
 
-    def measure(self, twins: Sequence[_CurveTwin], kind: str) -> stiv.Weights:
-        """Weights of the points, (n, m), from one move of each."""
-        start = np.concatenate([each.positions for each in self._start]).astype(np.float64)
-        step = STEPS[kind] * self.size
+    def linear_weights(self, twins: Sequence[_CurveTwin]) -> stiv.Weights:
+        """Weights of the points, (n, m), if the surface is linear: each evaluation moves three, along one axis each."""
         columns = []
-        for number in range(len(self._local)):
-            move = np.zeros(self._local.shape)
-            move[number] = step * PROBE
-            moved = self.evaluate_in(twins, move)
-            columns.append(np.zeros(len(start)) if moved is None else (moved - start) @ PROBE / step)
-        whole = np.stack(columns, axis=1)
-        whole[np.abs(whole) < LEAST[kind]] = 0
-        rows, places = np.nonzero(whole)
-        starts = np.cumsum([0, *np.bincount(rows, minlength=len(whole))]).astype(np.int32)
-        return stiv.Weights(starts, places.astype(np.int32), whole[rows, places], (len(whole), len(self._local)))
+        for first in range(0, len(self._local), 3):
+            chosen = np.arange(first, min(first + 3, len(self._local)), dtype=np.int32)
+            change = self._change(twins, chosen, np.eye(3)[: len(chosen)] * STEPS["linear"] * self.size)
+            columns += [
+                _Column.of(change[:, axis] / (STEPS["linear"] * self.size), LEAST["linear"])
+                for axis in range(len(chosen))
+            ]
+        return _weights_of(columns, len(self.start()))
+
+    def mean_weights(self, twins: Sequence[_CurveTwin]) -> stiv.Weights:
+        """Weights of the points, (n, m), near the start, from small moves of points that are far apart."""
+        step, anchors = STEPS["observed"] * self.size, self._anchors()
+        columns = [_Column.of(np.empty(0), 0.0)] * len(self._local)
+        for group in _distant_points(self._starts):
+            change = self._change(twins, group, step * PROBE) @ PROBE / step
+            nearest = group[np.abs(anchors[:, None] - group).argmin(axis=1)]
+            for number in group:
+                columns[number] = _Column.of(np.where(nearest == number, change, 0.0), LEAST["observed"])
+        return _weights_of(columns, len(anchors))
+
+    def _anchors(self) -> Indices:
+        """The point that is closest to each vertex at the start, (n,)."""
+        tree = KDTree(len(self._local))
+        for number, point in enumerate(self._local.tolist()):
+            tree.insert(point, number)
+        tree.balance()
+        return np.array([tree.find(point)[1] for point in self.start().tolist()], np.int32)
+
+    def _change(self, twins: Sequence[_CurveTwin], chosen: Indices, moves: Floats) -> Floats:
+        """Change of the surface, (n, 3), by moves of some points; none where the faces differ."""
+        move = np.zeros(self._local.shape)
+        move[chosen] = moves
+        start = self.start()
+        moved = self.evaluate_in(twins, move)
+        return np.zeros_like(start) if moved is None else moved - start
+
+    def start(self) -> Floats:
+        """Local positions at the start, (n, 3)."""
+        return np.concatenate([each.positions for each in self._start]).astype(np.float64)
 
     def linear(self, weights: stiv.Weights) -> stiv.Deformation:
+        """The surface by weights, from world positions of the points."""
         controls = transform_points(self._frame, self._local)
-        start = np.concatenate([transform_points(self._frame, each.positions) for each in self._start])
+        start = transform_points(self._frame, self.start())
         return stiv.linear(weights, start - stiv.linear(weights).surface(controls))
 
     def agrees(self, shown: Floats | None, weights: stiv.Weights, move: Floats) -> bool:
         """Do the weights predict the positions after a move?"""
         if shown is None:
             return False
-        start = np.concatenate([each.positions for each in self._start])
-        return bool(np.abs(start + stiv.linear(weights).surface(move) - shown).max(initial=0.0) <= ROUNDING * self.size)
+        return bool(
+            np.abs(self.start() + stiv.linear(weights).surface(move) - shown).max(initial=0.0) <= ROUNDING * self.size
+        )
+
+
+def _distant_points(starts: Indices) -> list[Indices]:
+    """Groups of points that are far apart along their spline, from the first points of all splines, (s + 1,)."""
+    points = np.arange(starts[-1])
+    place = points - starts[np.searchsorted(starts, points, side="right") - 1]
+    return [points[place % DISTANT == first] for first in range(min(DISTANT, np.diff(starts).max(initial=0)))]
+
+
+@dataclass(frozen=True)
+class _Column:
+    """The weights of one point: rows, (k,), and values, (k,)."""
+
+    rows: Indices
+    values: Floats
+
+    @classmethod
+    def of(cls, weights: Floats, least: float) -> _Column:
+        """From the weights of all rows, (n,); those below `least` are left out."""
+        rows = np.flatnonzero(np.abs(weights) >= least).astype(np.int32)
+        return cls(rows, weights[rows])
+
+
+def _weights_of(columns: Sequence[_Column], count: int) -> stiv.Weights:
+    """Weights, (count, m), from their columns."""
+    rows = np.concatenate([each.rows for each in columns])
+    values = np.concatenate([each.values for each in columns])
+    points = np.repeat(np.arange(len(columns), dtype=np.int32), [len(each.rows) for each in columns])
+    order = np.argsort(rows, kind="stable")
+    starts = np.cumsum([0, *np.bincount(rows, minlength=count)]).astype(np.int32)
+    return stiv.Weights(starts, points[order], values[order], (count, len(columns)))

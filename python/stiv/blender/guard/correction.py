@@ -12,7 +12,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.directions import ALL_FREE, NONE_FREE
 from stiv.blender.controls.joined_seams import seam_message
 from stiv.blender.controls.motion import Motion
-from stiv.blender.controls.participants import make_participant, may_have_surface, merge_participants
+from stiv.blender.controls.participants import EDITABLE_TYPES, make_participant, may_have_surface, merge_participants
 from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.blender_edit import BlenderEdit
@@ -241,8 +241,8 @@ def _participants(context: bpy.types.Context, settings: EditSettings, changes: d
         if change is None:
             participant = make_participant(ob, False, settings) if ob.mode == "OBJECT" else None
         else:
-            points = "cage" if ob.type == "MESH" else "lattice"
-            participant = Participant(ObjectReference.of(ob), "rigid" if change.points is None else points, True)
+            role = "rigid" if change.points is None else EDITABLE_TYPES[ob.type]
+            participant = Participant(ObjectReference.of(ob), role, True)
         participants += [] if participant is None else [participant]
     return merge_participants(participants)
 

@@ -174,7 +174,7 @@ def _guard_new_geometry(
     created = {each.name: each for each in changes.added if each.session_uid not in accepted.objects}
     try:
         for reference in changes.rebuilt:
-            if reference.name in names:
+            if reference.name in names and reference.find().type == "MESH":
                 yield from _guard_rebuilt(context, settings, accepted, changes, reference, result)
         if touches_others(fresh, created):
             entering = [created[name].session_uid for name in sorted(names & created.keys())]

@@ -10,10 +10,12 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.cage import CageWriter
+from stiv.blender.controls.curve_points import CurveWriter
 from stiv.blender.controls.key_editing import KeyEditing
 from stiv.blender.controls.lattice_points import LatticeWriter
 from stiv.blender.controls.object_transform import ROTATION_PROPERTIES
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix
+from stiv.blender.scene.curve_reading import read_curve_points
 from stiv.blender.scene.evaluations import is_edited, is_visible
 from stiv.blender.scene.lattice_reading import read_lattice_points
 from stiv.blender.scene.mesh_reading import read_cage
@@ -56,7 +58,7 @@ class ObjectState:
         rotation_property: name of the property with its rotation.
         location, rotation, scale: its own properties.
         world: world matrix, (4, 4).
-        points: local positions of cage vertices as shown, or of lattice points, (m, 3); None for other types.
+        points: local positions of cage vertices as shown, or of a lattice's or curve's points, (m, 3); otherwise None.
         keys: the active shape key and those that follow it; None without.
         connectivity: checksum of its faces and edges; 0 for other types than meshes.
         pose: pose and shape key values.
@@ -100,14 +102,15 @@ class ObjectState:
         ob.scale = self.scale
 
     def restore_points(self) -> None:
-        """Restore vertices or lattice points, if there are any. Raises SceneChangedError."""
+        """Restore vertices or points, if there are any. Raises SceneChangedError."""
         if self.points is None:
             return
         ob = self.reference.find()
         if ob.type == "MESH":
             CageWriter(self.reference, ob.mode, self.world, self.points, keys=self.keys).restore()
         else:
-            LatticeWriter(self.reference, ob.mode, self.world, self.points).restore()
+            make_writer = LatticeWriter if ob.type == "LATTICE" else CurveWriter
+            make_writer(self.reference, ob.mode, self.world, self.points).restore()
 
 
 SceneState = Mapping[int, ObjectState]
@@ -136,7 +139,9 @@ def read_object(ob: bpy.types.Object) -> ObjectState:
 def _points(ob: bpy.types.Object) -> Singles | None:
     if ob.type == "MESH":
         return read_cage(ob)
-    return read_lattice_points(ob.data) if ob.type == "LATTICE" else None
+    if ob.type == "LATTICE":
+        return read_lattice_points(ob.data)
+    return read_curve_points(ob.data) if ob.type in ("CURVE", "SURFACE") else None
 
 
 def _connectivity(ob: bpy.types.Object) -> int:

@@ -6,9 +6,10 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from stiv.blender.scene.arrays import Flags, Singles, read_collection
+from stiv.blender.scene.arrays import Flags, Indices, Singles, read_collection
 
 HANDLES = ("handle_left", "co", "handle_right")
+SELECTED = ("select_left_handle", "select_control_point", "select_right_handle")
 CONTROLLED = frozenset({"FREE", "ALIGNED"})  # Blender computes all other handles from the points
 
 
@@ -24,17 +25,33 @@ def read_curve_points(curve: bpy.types.Curve) -> Singles:
     return np.concatenate(found)
 
 
+def spline_starts(curve: bpy.types.Curve) -> Indices:
+    """The first point of each spline, and the number of all points, (s + 1,)."""
+    sizes = [3 * len(each.bezier_points) if each.type == "BEZIER" else len(each.points) for each in curve.splines]
+    return np.cumsum([0, *sizes]).astype(np.int32)
+
+
 def selected_curve_points(curve: bpy.types.Curve) -> Flags:
     """Flags of the selected points, (m,). A selected Bezier point moves its handles too."""
     found = [np.empty(0, np.bool_)]
     for spline in curve.splines:
         if spline.type == "BEZIER":
-            names = ("select_left_handle", "select_control_point", "select_right_handle")
-            left, middle, right = (read_collection(spline.bezier_points, name, 1, np.bool_) for name in names)
+            left, middle, right = (read_collection(spline.bezier_points, name, 1, np.bool_) for name in SELECTED)
             found.append(np.stack([left | middle, middle, right | middle], axis=1).ravel())
         else:
             found.append(read_collection(spline.points, "select", 1, np.bool_))
     return np.concatenate(found)
+
+
+def select_curve_points(curve: bpy.types.Curve, chosen: Flags) -> None:
+    """Select exactly the points with a flag, (m,)."""
+    starts = spline_starts(curve)
+    for spline, first, end in zip(curve.splines, starts[:-1], starts[1:], strict=True):
+        if spline.type == "BEZIER":
+            for place, name in enumerate(SELECTED):
+                spline.bezier_points.foreach_set(name, np.ascontiguousarray(chosen[first + place : end : 3]))
+        else:
+            spline.points.foreach_set("select", chosen[first:end])
 
 
 def movable_curve_points(curve: bpy.types.Curve) -> Flags:

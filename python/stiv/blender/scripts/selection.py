@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import bmesh
 import bpy
@@ -12,7 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv import InputError
+from stiv.blender.scene.curve_reading import read_curve_points, select_curve_points
 from stiv.edit_scripts import EditStep
+
+POINT_COUNTS: dict[str, Callable[[Any], int]] = {
+    "MESH": lambda mesh: len(mesh.vertices),
+    "LATTICE": lambda lattice: len(lattice.points),
+    "CURVE": lambda curve: len(read_curve_points(curve)),
+    "SURFACE": lambda surface: len(read_curve_points(surface)),
+}
 
 
 def select(step: EditStep) -> None:
@@ -26,10 +35,10 @@ def select(step: EditStep) -> None:
 
 
 def _select_points(obj: bpy.types.Object, step: EditStep) -> None:
-    count = {"MESH": lambda: len(obj.data.vertices), "LATTICE": lambda: len(obj.data.points)}.get(obj.type)
+    count = POINT_COUNTS.get(obj.type)
     if count is None:
-        raise InputError(f"{obj.name}: has no points to select; choose a mesh or a lattice")
-    chosen = np.zeros(count(), bool)
+        raise InputError(f"{obj.name}: has no points to select; choose a mesh, lattice or curve")
+    chosen = np.zeros(count(obj.data), np.bool_)
     indices = np.arange(len(chosen)) if step.points is None else np.array(step.points, np.int64)
     if len(indices) and indices.max() >= len(chosen):
         raise InputError(f"{obj.name}: has {len(chosen)} points; there is no point {indices.max()}")
@@ -37,6 +46,8 @@ def _select_points(obj: bpy.types.Object, step: EditStep) -> None:
     bpy.ops.object.mode_set(mode="EDIT")
     if obj.type == "LATTICE":
         obj.data.points.foreach_set("select", chosen)
+    elif obj.type != "MESH":
+        select_curve_points(obj.data, chosen)
     else:
         _select_vertices(obj.data, chosen)
 
