@@ -438,6 +438,7 @@ MESSAGES = {
     "snap": "吸附",
     "still solving": "仍在求解",
     "stopped": "已停止",
+    "stopped after {} seconds, short of the goal": "{} 秒后已停止，未到达目标",
     "stopped, back to the state before": "已停止，恢复到之前的状态",
     "strand {}": "发丝 {}",
     "the mode changed during the drag": "拖动期间模式已改变",

@@ -438,6 +438,7 @@ MESSAGES = {
     "snap": "einrasten",
     "still solving": "rechnet noch",
     "stopped": "angehalten",
+    "stopped after {} seconds, short of the goal": "nach {} Sekunden angehalten, vor dem Ziel",
     "stopped, back to the state before": "angehalten, zurück zum Zustand davor",
     "strand {}": "Strang {}",
     "the mode changed during the drag": "der Modus änderte sich beim Ziehen",

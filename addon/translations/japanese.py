@@ -438,6 +438,7 @@ MESSAGES = {
     "snap": "スナップ",
     "still solving": "計算中",
     "stopped": "停止しました",
+    "stopped after {} seconds, short of the goal": "{} 秒で停止しました。目標には達していません",
     "stopped, back to the state before": "停止しました。直前の状態に戻しました",
     "strand {}": "ストランド {}",
     "the mode changed during the drag": "ドラッグ中にモードが変わりました",

@@ -438,6 +438,7 @@ MESSAGES = {
     "snap": "스냅",
     "still solving": "아직 계산 중",
     "stopped": "중지됨",
+    "stopped after {} seconds, short of the goal": "{}초 후 중지됨, 목표에 도달하지 못함",
     "stopped, back to the state before": "중지됨, 이전 상태로 되돌림",
     "strand {}": "가닥 {}",
     "the mode changed during the drag": "드래그 중에 모드가 바뀜",

@@ -17,7 +17,7 @@ from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
 from ...transform.view import Vector
-from ...translations import translate_error
+from ...translations import translate, translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
 from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
@@ -25,6 +25,7 @@ from ..task_operator import TaskOperator
 from . import drag_results
 from .constraint import Constraint, free_directions
 from .options import TransformOptions
+from .redo_limit import LIMIT, is_redo, run_within
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
 
@@ -66,11 +67,12 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         edit = None
         try:
             transform, frame = self.requested(), read_frame(context)
-            edit = stiv_blender.run_steps(begin_edit(context, self.request(context.scene)))
+            edit = self._run(context, begin_edit(context, self.request(context.scene)))
             report_start(self, context, edit)
             same = dragged if dragged is not None and dragged.values == self._values() else None
             motion = self._motion(transform, frame)
-            result, report = _reused(edit, same, motion) or _applied(edit, motion, transform, frame)
+            reused = _reused(edit, same, motion)
+            result, report = reused or self._applied(context, edit, _solve_values(edit, motion, transform, frame))
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
         return self.finish_task(context, (result, report))
@@ -111,6 +113,25 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
     def _motion(self, transform: Transform, frame: Frame) -> stiv_blender.Motion:
         return make_motion(transform, frame, self.influence(), self.constraint())
 
+    def _applied(
+        self,
+        context: bpy.types.Context,
+        edit: stiv_blender.BlenderEdit,
+        steps: stiv_blender.Steps[stiv_blender.EditResult],
+    ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
+        result = self._run(context, steps)
+        report = edit.write()
+        return report.result or result, report
+
+    def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
+        """Make all calls of the steps at once; the redo panel does not wait without limit."""
+        if not is_redo(self):
+            return stiv_blender.run_steps(steps)
+        result, was_stopped = run_within(context, steps)
+        if was_stopped:
+            self.report({"WARNING"}, translate("stopped after {} seconds, short of the goal").format(LIMIT))
+        return result
+
     def _steps(
         self, context: bpy.types.Context
     ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
@@ -126,14 +147,6 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
 
     def _values(self) -> tuple[object, ...]:
         return (*self.own_values(), *self.option_values())
-
-
-def _applied(
-    edit: stiv_blender.BlenderEdit, motion: stiv_blender.Motion, transform: Transform, frame: Frame
-) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
-    result = stiv_blender.run_steps(_solve_values(edit, motion, transform, frame))
-    report = edit.write()
-    return report.result or result, report
 
 
 def _reused(
