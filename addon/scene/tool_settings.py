@@ -37,6 +37,7 @@ def read_snap(context: bpy.types.Context) -> Snap:
         whole=tools.use_snap_peel_object,
         nearest_steps=max(tools.snap_face_nearest_steps, 1),
         same_object=tools.use_snap_to_same_target,
+        align=tools.use_snap_align_rotation and context.mode == "OBJECT",
         search=lambda elements: _search(context, elements, selected=False),
         search_base=lambda elements: _search(context, elements, selected=True),
     )
@@ -186,6 +187,6 @@ def unsupported_settings(context: bpy.types.Context) -> list[str]:
             notes.append(translate("projected proportional editing is not supported; using distance in space"))
         if tools.transform_pivot_point == "INDIVIDUAL_ORIGINS":
             notes.append(translate("Individual Origins are not supported with proportional editing; using the median"))
-    if tools.use_snap and tools.use_snap_align_rotation:
+    if context.mode != "OBJECT" and tools.use_snap and tools.use_snap_align_rotation:
         notes.append(translate("aligning rotation to the snap target is not supported"))
     return notes

@@ -50,6 +50,7 @@ class Snap:
         whole: "VOLUME" is the middle of the whole object, not of its first layer.
         nearest_steps: number of steps in which "FACE_NEAREST" follows the surface.
         same_object: "FACE_NEAREST" stays on the object that is nearest at the start.
+        align: a move turns objects onto the normal of the target.
         search: begins a search for elements among the targets; called once.
         search_base: the same with the selection as targets, for the snap base.
 
@@ -65,6 +66,7 @@ class Snap:
     whole: bool = False
     nearest_steps: int = 1
     same_object: bool = False
+    align: bool = False
     search: Callable[[frozenset[str]], SnapSearch] = _no_search
     search_base: Callable[[frozenset[str]], SnapSearch] = _no_search
 
@@ -80,6 +82,13 @@ class Snap:
         if state.axis_lock.axis is None:
             return np.round(vector / step) * step
         return np.asarray(axes @ (np.round(axes.T @ vector / step) * step))
+
+    def alignment(self, state: State, frame: Frame, from_pivot: Vector) -> tuple[Vector, Vector] | None:
+        """The direction onto which a move turns objects, and the point about which; None without a target."""
+        snapped = self.match(state, frame, from_pivot) if self.align else None
+        if snapped is None or snapped[2] is None or not snapped[2].direction.any():
+            return None
+        return snapped[2].direction, snapped[1]
 
     def angle(self, angle: float, axis: Vector, state: State, frame: Frame) -> float:
         """An angle about a unit axis, (3,), snapped."""

@@ -24,9 +24,13 @@ HORIZON = 100.0  # a motion longer than this many motions in the view plane is b
 
 @dataclass(frozen=True)
 class Translation:
-    """A translation by `vector`, (3,) in world units."""
+    """A translation by `vector`, (3,) in world units.
+
+    `alignment`: unit direction onto which objects turn first, and the point about which, (3,) each; None for no turn.
+    """
 
     vector: Vector
+    alignment: tuple[Vector, Vector] | None = None
 
     def matrix(self, frame: Frame) -> Vector:
         """(4, 4) world matrix."""
@@ -38,7 +42,7 @@ class Translation:
 
     def fraction(self, fraction: float) -> Translation:
         """The translation at a fraction of the way, 0 to 1."""
-        return Translation(fraction * self.vector)
+        return Translation(fraction * self.vector, self.alignment)
 
     def text(
         self, state: State, frame: Frame, translate: Translate = str, length: Callable[[float], str] = fixed_text
@@ -68,7 +72,8 @@ def requested_translation(state: State, frame: Frame, read: Read = float, snap: 
     vector = _dragged(state.pointer, state.axis_lock, frame, frame.view)
     if snap is not None and state.snapping:
         from_pivot = Pointer.at(frame.view.project(frame.pivot) or state.pointer.last).moved(state.pointer.last)
-        vector = snap.translation(vector, _dragged(from_pivot, state.axis_lock, frame, frame.view), state, frame)
+        shift = _dragged(from_pivot, state.axis_lock, frame, frame.view)
+        return Translation(snap.translation(vector, shift, state, frame), snap.alignment(state, frame, shift))
     return Translation(vector)
 
 

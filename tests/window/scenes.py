@@ -28,6 +28,7 @@ def clear() -> None:
         scene.stiv.property_unset(name)
     tools = scene.tool_settings
     tools.transform_pivot_point, tools.snap_target, tools.snap_elements = "MEDIAN_POINT", "CLOSEST", {"INCREMENT"}
+    tools.use_snap_align_rotation = False
     tools.use_snap = tools.use_proportional_edit = tools.use_proportional_connected = False
     tools.proportional_edit_falloff, tools.proportional_size = "SMOOTH", 1.0
     scene.transform_orientation_slots[0].type = "GLOBAL"

@@ -199,6 +199,8 @@ class DragOperator(Mixin):
         """The motion of whole objects to the goal, (4, 4); None if each has its own, or only parts of them move."""
         if self._drag.transform is None or self._frame.individual or self._mode != "OBJECT":
             return None
+        if getattr(self._drag.transform, "alignment", None) is not None:
+            return None
         return self._drag.transform.matrix(self._frame)
 
     def _end(self, context: bpy.types.Context) -> set[str]:

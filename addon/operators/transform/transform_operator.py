@@ -172,7 +172,9 @@ def make_motion(
     """The motion that an edit takes for a transform in its frame; `place` puts each point where it ends."""
     matrix = transform.matrix(frame)
     free = free_directions(transform, constraint)
-    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free, place)
+    aligned = getattr(transform, "alignment", None)
+    align = None if aligned is None else stiv_blender.Alignment(*aligned)
+    return stiv_blender.Motion(matrix, frame.pivot, frame.individual, influence, transform.rotation, free, place, align)
 
 
 def apply_values(

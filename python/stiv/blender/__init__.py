@@ -3,7 +3,7 @@
 
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
-from stiv.blender.controls.motion import Influence, Motion
+from stiv.blender.controls.motion import Alignment, Influence, Motion
 from stiv.blender.controls.participants import may_have_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
@@ -52,6 +52,7 @@ follow = correct_after_tool  #: the name of `correct_after_tool` in version 0.1.
 
 __all__ = [
     "AcceptedScene",
+    "Alignment",
     "BlenderContraction",
     "BlenderEdit",
     "BlenderExpansion",

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 class Motion(SimpleNamespace):
     """Replaces that of `stiv.blender`."""
 
-    NAMES = ("matrix", "pivot", "individual", "influence", "rotation", "free", "place")
+    NAMES = ("matrix", "pivot", "individual", "influence", "rotation", "free", "place", "align")
 
     def __init__(self, *given: Any) -> None:
         super().__init__(**dict(zip(self.NAMES, given, strict=True)))

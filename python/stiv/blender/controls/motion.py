@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv import InputError
 from stiv.blender.controls.directions import FreeDirections
-from stiv.blender.controls.rotations import fixed_point, is_rotation, rotation_vector
+from stiv.blender.controls.rotations import fixed_point, is_rotation, rotation_between, rotation_vector
 from stiv.blender.scene.arrays import Floats, transform_points
 
 ROUNDING = 1e-9  # relative error of the matrix of a motion
@@ -52,6 +52,27 @@ class Influence:
 
 
 @dataclass(frozen=True)
+class Alignment:
+    """Turns the Z axis of each object onto a direction, as Align Rotation to Target does.
+
+    Attributes:
+        normal: (3,) unit direction.
+        source: (3,) point of the selection that stays in place while it turns.
+    """
+
+    normal: Floats
+    source: Floats
+
+    def turn(self, up: Floats) -> Floats:
+        """The rotation, (3, 3), of an object with this Z axis, (3,)."""
+        return rotation_between(up, self.normal)
+
+    def turned(self, points: Floats, turn: Floats) -> Floats:
+        """Points, (k, 3), rotated about the source."""
+        return np.asarray(self.source + (points - self.source) @ turn.T, np.float64)
+
+
+@dataclass(frozen=True)
 class Motion:
     """An absolute motion of the selection since the start of an edit.
 
@@ -62,6 +83,7 @@ class Motion:
         influence: proportional editing; None for none.
         rotation: (3,) rotation vector of the matrix if it exceeds half a turn; otherwise None.
         free: directions in which an axis lock lets points and objects move; None without one.
+        align: rotation of whole objects before the matrix moves them; None without.
         place: where points end, (k, 3), from where they start and where the matrix takes them, (k, 3) each; for
             instance on faces. Objects follow their origins. None: where the matrix takes them.
     """
@@ -73,6 +95,7 @@ class Motion:
     rotation: Floats | None = None
     free: FreeDirections | None = None
     place: Callable[[Floats, Floats], Floats] | None = None
+    align: Alignment | None = None
 
     @staticmethod
     def of(max_weights: "Motion | ArrayLike") -> "Motion":

@@ -32,12 +32,14 @@ class PlacementGoal:
         turns: whether the group may rotate.
         origin: (3,) that of the first root, the pivot for individual origins.
         free: directions that location locks leave free, None for all.
+        up: (3,) unit Z axis of the first root, which alignment turns; None if the group cannot be rotated.
     """
 
     selected: bool
     turns: bool
     origin: Floats
     free: FreeDirections | None = None
+    up: Floats | None = None
 
     @property
     def moves(self) -> bool:
@@ -50,11 +52,23 @@ class PlacementGoal:
             return controls
         # Where the origin is placed, the centre follows.
         points, moved = np.stack([controls[0], self.origin]), replace(motion, place=None)
+        if motion.align is not None and self.up is not None:
+            return self._aligned(points, last, motion, motion.align.turn(self.up))
         centre, origin = moved.about(points, self.origin) if motion.individual else moved.whole(points)
         centre = centre + motion.placed(points[1:], origin[None])[0] - origin
         for free in (self.free, motion.free):
             centre = centre if free is None else controls[0] + free.along(centre - controls[0])
         return np.array([centre, self.second_goal(controls, last, motion)])
+
+    def _aligned(self, points: Floats, last: Floats, motion: Motion, turn: Floats) -> Floats:
+        """Goal of a group that turns before it moves; a lock holds for its origin. `points`: centre and origin."""
+        assert motion.align is not None
+        centre, origin = points
+        goal = motion.whole(motion.align.turned(points, turn))[1]
+        if motion.free is not None:
+            goal = origin + motion.free.along(goal - origin)
+        vector = nearest_equivalent(rotation_vector(nearest_rotation(motion.linear) @ turn), last[1])
+        return np.array([goal + motion.linear @ turn @ (centre - origin), vector])
 
     def second_goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the rotation vector, (3,)."""

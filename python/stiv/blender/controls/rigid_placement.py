@@ -32,7 +32,8 @@ def make_rigid_set(
     free = None if scales else find_free_directions(objects, starts)
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
     turns = turns and free is None  # rotation about the centre would move the origin along locked axes
-    rule = PlacementGoal(selected, turns, starts[0].world[:3, 3], free)
+    can_align = kind == "move" and free is None and _can_turn(group, starts)
+    rule = PlacementGoal(selected, turns, starts[0].world[:3, 3], free, _up(starts[0]) if can_align else None)
     if axes is not None:
         rule = ScaleGoal(**vars(rule), axes=axes)
     elif selected and kind == "rotate":
@@ -67,6 +68,19 @@ def _may_turn(group: RigidGroup, starts: Sequence[ObjectTransform], kind: str, s
                 raise InputError(f"{root.reference.name}: its parent is scaled unevenly; apply the parent's scale")
             return False
     return True
+
+
+def _can_turn(group: RigidGroup, starts: Sequence[ObjectTransform]) -> bool:
+    """Can all roots be rotated? Not below an unevenly scaled parent, or with locks."""
+    unlocked = all(can_rotate(root.reference.find()) for root in group.roots)
+    return unlocked and all(start.can_hold_rotations() for start in starts)
+
+
+def _up(start: ObjectTransform) -> Floats | None:
+    """The unit Z axis of an object; None if its scale is 0."""
+    axis = start.world[:3, 2]
+    length = float(np.linalg.norm(axis))
+    return np.asarray(axis / length) if length > 0 else None
 
 
 def _axes(group: RigidGroup, starts: Sequence[ObjectTransform]) -> Floats:

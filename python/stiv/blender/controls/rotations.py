@@ -6,6 +6,7 @@ import numpy as np
 from stiv.blender.scene.arrays import Floats
 
 SINGLE = 2.0**-23  # spacing of single-precision numbers at 1
+OPPOSITE = 1e-7  # sine of the angle below which unit vectors are parallel or opposite
 
 
 def rotation_matrix(vector: Floats) -> Floats:
@@ -59,6 +60,17 @@ def euler_angles(matrix: Floats, order: str, near: Floats) -> Floats:
         signed[[i, j, k]] = np.array(angles) * parity
         found.append(signed + 2 * np.pi * np.round((near - signed) / (2 * np.pi)))
     return min(found, key=lambda each: float(np.abs(each - near).sum()))
+
+
+def rotation_between(start: Floats, end: Floats) -> Floats:
+    """The least rotation, (3, 3), that takes a unit vector, (3,), to another one; any half turn for opposite ones."""
+    axis, cosine = np.cross(start, end), float(start @ end)
+    sine = float(np.linalg.norm(axis))
+    if sine < OPPOSITE:
+        if cosine > 0:
+            return np.eye(3)
+        axis, sine = np.cross(start, np.eye(3)[int(np.argmin(np.abs(start)))]), 0.0
+    return rotation_matrix(axis / np.linalg.norm(axis) * np.arctan2(sine, cosine))
 
 
 def nearest_rotation(matrix: Floats) -> Floats:
