@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from stiv import CancelledError as CancelledError
+    from stiv import CancelToken as CancelToken
     from stiv import EditResult as EditResult
     from stiv import InputError as InputError
     from stiv import LeastDistance as LeastDistance
