@@ -65,11 +65,22 @@ def test_an_override_stops_at_the_wall_and_the_file_keeps_it(linked_set: Any, tm
     assert bpy.ops.stiv.rotate(angle=0.0) == {"FINISHED"}
     assert bpy.ops.stiv.move(value=(4, 0, 0)) == {"FINISHED"}
     prop = in_saved_file(tmp_path / "dressed.blend")
-    assert prop.location.x == pytest.approx(CONTACT, abs=0.02)
+    assert CONTACT - 0.02 < prop.location.x < CONTACT
     assert check_scene(bpy.context).pairs == ()
     only(prop)
     assert bpy.ops.stiv.scale(value=(1, 2, 1)) == {"FINISHED"}
     assert in_saved_file(tmp_path / "dressed.blend").scale.y == pytest.approx(2.0)
+
+
+def test_an_instance_of_a_linked_collection_stops_at_the_wall(linked_set: Any) -> None:
+    bpy.context.scene.collection.children.unlink(linked_set)
+    shown = bpy.data.objects.new("Shown", None)
+    shown.instance_type, shown.instance_collection = "COLLECTION", linked_set
+    bpy.context.collection.objects.link(shown)
+    only(shown)
+    assert bpy.ops.stiv.move(value=(4, 0, 0)) == {"FINISHED"}
+    assert CONTACT - 0.02 < shown.location.x < CONTACT
+    assert tuple(linked_set.objects[0].location) == (0.0, 0.0, 0.0)
 
 
 def test_an_override_yields_to_an_object_pushed_into_it(linked_set: Any) -> None:

@@ -64,7 +64,6 @@ def lattice_in_object_mode(window: Window) -> Steps:
 def curve_in_edit_mode(window: Window) -> Steps:
     """Points of a bevelled curve pushed into the wall: its tube bends along it."""
     yield from prepared(window, scenes.add_curve, "Curve", "EDIT")
-    bpy.ops.curve.select_all(action="SELECT")
     before = scenes.evaluated_extent("Curve")
     yield from start(window)
     yield from window.glide(window.pixel(INTO_WALL))

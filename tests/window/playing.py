@@ -32,7 +32,7 @@ def prepared(window: Window, build: object, active: str, mode: str = "OBJECT") -
 
 
 def select_right_half() -> None:
-    """In Edit Mode: the vertices at x > 0."""
+    """In Edit Mode: the vertices at x > 0; all points of a curve."""
     data = bpy.context.object.data
     if bpy.context.object.type == "MESH":
         content = bmesh.from_edit_mesh(data)
@@ -40,6 +40,9 @@ def select_right_half() -> None:
             vertex.select_set(vertex.co.x > 0.1)
         content.select_flush_mode()
         bmesh.update_edit_mesh(data)
+    elif bpy.context.object.type == "CURVE":
+        for point in data.splines[0].bezier_points:
+            point.select_control_point = point.select_left_handle = point.select_right_handle = True
     else:
         for point in data.points:
             point.select = point.co_deform.x > 0.1  # `co` is nonsense in Edit Mode

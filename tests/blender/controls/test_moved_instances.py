@@ -1,84 +1,215 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that show instances, moved as a whole: the instances move along and stay free."""
+"""Objects that show instances, and surfaces that Blender makes itself: moved as a whole, and as obstacles."""
 
 from typing import Any
 
 import bpy
+import numpy as np
 import pytest
 from building import add, add_cube, add_grid, add_modifier, evaluated, select, shift
+from mathutils import Vector
+from oracles import rational
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene
+from stiv.blender import BlenderEdit, EditSettings
+
+SHOWN_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
-def add_nodes(ob: Any, source: Any, space: str = "ORIGINAL") -> None:
-    """Geometry Nodes that show an object on each vertex, or a small cube."""
+def add_nodes(ob: Any, make: Any) -> None:
+    """Geometry Nodes that show an instance on each vertex, and the mesh; `make` gives its socket."""
     tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
     for direction in ("INPUT", "OUTPUT"):
         tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
     start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-    scatter = tree.nodes.new("GeometryNodeInstanceOnPoints")
-    if source is None:
-        shown = tree.nodes.new("GeometryNodeMeshCube")
-        shown.inputs["Size"].default_value = (0.4, 0.4, 0.4)
-    else:
-        shown = tree.nodes.new("GeometryNodeObjectInfo")
-        shown.inputs["Object"].default_value = source
-        shown.transform_space = space
+    scatter, both = tree.nodes.new("GeometryNodeInstanceOnPoints"), tree.nodes.new("GeometryNodeJoinGeometry")
     tree.links.new(start.outputs[0], scatter.inputs["Points"])
-    tree.links.new(shown.outputs["Mesh" if source is None else "Geometry"], scatter.inputs["Instance"])
-    tree.links.new(scatter.outputs[0], end.inputs[0])
+    tree.links.new(make(tree), scatter.inputs["Instance"])
+    for output in (scatter.outputs[0], start.outputs[0]):
+        tree.links.new(output, both.inputs[0])
+    tree.links.new(both.outputs[0], end.inputs[0])
     add_modifier(ob, "NODES", "Scatter").node_group = tree
     bpy.context.view_layer.update()
 
 
-def collection_instance() -> Any:
+def small_cube(tree: Any) -> Any:
+    node = tree.nodes.new("GeometryNodeMeshCube")
+    node.inputs["Size"].default_value = (0.4, 0.4, 0.4)
+    return node.outputs["Mesh"]
+
+
+def other_object(tree: Any, space: str = "ORIGINAL") -> Any:
+    node = tree.nodes.new("GeometryNodeObjectInfo")
+    node.inputs["Object"].default_value = add_cube("Source", (30, 0, 0), 0.2)
+    node.transform_space = space
+    return node.outputs["Geometry"]
+
+
+def other_collection(tree: Any) -> Any:
+    node = tree.nodes.new("GeometryNodeCollectionInfo")
+    node.inputs["Collection"].default_value = collection_of_props()
+    return node.outputs[0]
+
+
+def collection_of_props() -> Any:
     collection = bpy.data.collections.new("Props")
     source = bpy.data.objects.new("Prop", add_cube("Model", (50, 0, 0), 0.2).data)
+    source.rotation_euler = (0.3, 0.4, 0.5)
     collection.objects.link(source)
-    return add("Instancer", None, (0, 0, 3), instance_type="COLLECTION", instance_collection=collection)
+    return collection
 
 
-def nodes_alone() -> Any:
-    grid = add_grid("Grid", 2, 1.0, (0, 0, 3))
-    add_nodes(grid, None)
-    return grid
+def show(collection: Any) -> Any:
+    return add("Piece", None, (0, 0, 2), instance_type="COLLECTION", instance_collection=collection)
 
 
-def nodes_with_an_object() -> Any:
-    grid = add_grid("Grid", 2, 1.0, (0, 0, 3))
-    add_nodes(grid, add_cube("Source", (30, 0, 0), 0.2))
-    return grid
+def nested_collection() -> Any:
+    outer = bpy.data.collections.new("Outer")
+    inner = bpy.data.objects.new("Inner", None)
+    inner.instance_type, inner.instance_collection, inner.location = "COLLECTION", collection_of_props(), (0.2, 0, 0)
+    outer.objects.link(inner)
+    return show(outer)
 
 
-def faces_of_a_parent() -> Any:
-    parent = add_grid("Parent", 2, 1.0, (0, 0, 3))
-    add_cube("Child", (0, 0, 0), 0.2, parent=parent)
-    parent.instance_type = "FACES"
-    parent.show_instancer_for_viewport = parent.show_instancer_for_render = False
+def sheet() -> Any:
+    return add_grid("Piece", 2, 1.0, (0, 0, 2))
+
+
+def scattered(make: Any) -> Any:
+    piece = sheet()
+    add_nodes(piece, make)
+    return piece
+
+
+def parent(kind: str) -> Any:
+    piece = sheet()
+    add_cube("Child", (0, 0, 0), 0.2, parent=piece)
+    piece.instance_type = kind
     bpy.context.view_layer.update()
-    return parent
+    return piece
 
 
-@pytest.mark.parametrize("make", [collection_instance, nodes_alone, nodes_with_an_object, faces_of_a_parent])
-def test_what_shows_instances_moves_as_a_whole(make: Any) -> None:
-    """The instances end above the floor, and not a minimum distance of their size above it."""
-    add_grid("Floor", 3, 9.0)
-    ob = make()
+def particles() -> Any:
+    piece, source = sheet(), add_cube("Source", (30, 0, 0), 0.3)
+    piece.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = piece.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 10, "OBJECT", source
+    bpy.context.view_layer.update()
+    return piece
+
+
+def text() -> Any:
+    data = bpy.data.curves.new("Text", "FONT")
+    data.body, data.extrude, data.size = "a", 0.1, 3
+    return add("Piece", data, (-0.6, -0.6, 2))
+
+
+def metaball() -> Any:
+    data = bpy.data.metaballs.new("Piece")
+    data.resolution, data.render_resolution = 0.3, 0.2
+    data.elements.new()
+    return add("Piece", data, (0, 0, 3))
+
+
+def multires() -> Any:
+    """Two levels, of which the viewport shows one."""
+    piece = sheet()
+    modifier = add_modifier(piece, "MULTIRES")
+    select(piece)
+    for _ in range(2):
+        bpy.ops.object.multires_subdivide(modifier=modifier.name)
+    modifier.levels = 1
+    bpy.context.view_layer.update()
+    return piece
+
+
+MOVERS = {
+    "collection": lambda: show(collection_of_props()),
+    "nested collection": nested_collection,
+    "nodes alone": lambda: scattered(small_cube),
+    "nodes with an object": lambda: scattered(other_object),
+    "nodes with a collection": lambda: scattered(other_collection),
+    "vertices": lambda: parent("VERTS"),
+    "faces": lambda: parent("FACES"),
+    "particles": particles,
+    "text": text,
+    "multires": multires,
+}
+
+
+def shown() -> dict[str, Any]:
+    """World positions of all triangles that each object shows, instances included, (t, 3, 3)."""
+    found: dict[str, list[Any]] = {}
+    for each in bpy.context.evaluated_depsgraph_get().object_instances:
+        if each.object.type in SHOWN_TYPES and (each.is_instance or each.show_self):
+            owner = (each.parent if each.is_instance else each.object).original.name
+            mesh = each.object.to_mesh()
+            if mesh is not None:
+                mesh.calc_loop_triangles()
+                points = np.array([each.matrix_world @ vertex.co for vertex in mesh.vertices]).reshape(-1, 3)
+                corners = np.array([list(t.vertices) for t in mesh.loop_triangles], int).reshape(-1, 3)
+                found.setdefault(owner, []).append(points[corners])
+                each.object.to_mesh_clear()
+    return {name: np.concatenate(each) for name, each in found.items()}
+
+
+def meet(first: str, second: str) -> bool:
+    """Do any of their triangles meet, in exact arithmetic?"""
+    bpy.context.view_layer.update()
+    surfaces = shown()
+    one, two = surfaces[first], surfaces[second]
+    low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
+    near = np.argwhere((low <= high).all(axis=2))
+    return any(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
+
+
+def add_body() -> Any:
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, location=(0.2, 0.1, -0.3))
+    bpy.context.object.name = "Body"
+    return bpy.context.object
+
+
+@pytest.mark.parametrize(("kind", "moved"), [*((kind, "Piece") for kind in MOVERS), *((k, "Body") for k in MOVERS)])
+def test_it_moves_as_a_whole_and_is_an_obstacle(kind: str, moved: str) -> None:
+    body, piece = add_body(), MOVERS[kind]()
+    slide_against(body if moved == "Body" else piece, -1 if moved == "Piece" else 1)
+
+
+def test_metaballs_are_obstacles() -> None:
+    body = add_body()
+    metaball()
+    slide_against(body, 1)
+
+
+def slide_against(ob: Any, direction: int) -> None:
+    """Move an object past the other one: it keeps its shape and slides along. Without the edit, they would meet."""
     select(ob)
+    start, scenes, way = (
+        shown()[ob.name],
+        bpy.data.scenes.keys(),
+        [(0.1 * k, 0.05 * k, direction * k) for k in (1, 2, 3)],
+    )
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
-    edit.apply(shift(0.1, 0, -5))
-    assert edit.write().passed
-    assert 0.2 < ob.location.z < 0.22
-    assert check_scene(bpy.context).pairs == ()
-    ob.location.z -= 0.05
-    bpy.context.view_layer.update()
-    assert check_scene(bpy.context).pairs
+    for step in way:
+        edit.drag(shift(*step))
+        assert edit.write().passed
+        assert not meet("Piece", "Body")
+    change = shown()[ob.name] - start
+    assert np.ptp(change, axis=(0, 1)).max() < 1e-4
+    assert np.abs(change[..., 2]).max() > 0.3
+    assert bpy.data.scenes.keys() == scenes
+    edit.restore()
+    place = ob.location.copy()
+    found = []
+    for step in way:
+        ob.location = place + Vector(step)
+        found.append(meet("Piece", "Body"))
+    assert any(found)
 
 
 def test_nodes_that_do_not_move_along_are_refused_by_name() -> None:
     grid = add_grid("Grid", 2)
-    add_nodes(grid, add_cube("Source", (30, 0, 0), 0.2), "RELATIVE")
+    add_nodes(grid, lambda tree: other_object(tree, "RELATIVE"))
     select(grid)
     start = evaluated(grid)
     with pytest.raises(stiv.InputError, match='Grid: modifier "Scatter" depends on "Source"; select both'):
