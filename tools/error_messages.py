@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "python/stiv/blender"
 ELSEWHERE = ("scripts", "animation", "settings.py", "motion.py", "frame_check.py")  # of scripts and commands
-ERRORS = {"InputError", "SceneChangedError", "StartIntersectsError", "add_note", "WriteReport"}
+ERRORS = {"InputError", "UnsupportedStackError", "SceneChangedError", "StartIntersectsError", "add_note", "WriteReport"}
 RETURNING = ("note", "message", "failure", "text")
 LETTERS = 5  # a template with fewer only joins parts
 

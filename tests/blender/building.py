@@ -6,6 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 from mathutils import Vector
+from oracles import rational
 
 CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -182,3 +183,23 @@ def as_rendered() -> None:
             if modifier.type == "SUBSURF":
                 modifier.levels = modifier.render_levels
     bpy.context.view_layer.update()
+
+
+def shown_triangles(name: str) -> np.ndarray:
+    """World positions of the triangles that Blender shows of an object, (t, 3, 3)."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    shown = bpy.data.objects[name].evaluated_get(graph)
+    mesh = shown.to_mesh()
+    mesh.calc_loop_triangles()
+    points = np.array([shown.matrix_world @ vertex.co for vertex in mesh.vertices], float).reshape(-1, 3)
+    corners = points[np.array([list(t.vertices) for t in mesh.loop_triangles], int).reshape(-1, 3)]
+    shown.to_mesh_clear()
+    return corners
+
+
+def meet(first: str, second: str) -> int:
+    """How many pairs of their triangles meet; pairs with boxes apart are not looked at."""
+    one, two = shown_triangles(first), shown_triangles(second)
+    low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
+    near = np.argwhere((low <= high).all(axis=2))
+    return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)

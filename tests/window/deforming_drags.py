@@ -77,10 +77,37 @@ def curve_in_edit_mode(window: Window) -> Steps:
     assert scenes.evaluated_extent("Curve") == before
 
 
+def piece_with_modifiers(window: Window) -> Steps:
+    """A mirrored, bevelled piece with smooth shading by angle, pushed with its vertices against a body."""
+    yield from prepared(window, scenes.add_mirrored_piece, "Piece", "EDIT")
+    bpy.context.scene.stiv.guard = "both"
+    before = scenes.evaluated_extent("Piece")
+    with window.override():
+        scenes.look_from_corner(window.area)
+    yield from window.settle()
+    yield from start(window)
+    window.key("X")
+    yield from window.glide(window.pixel(INTO_WALL))
+    assert scenes.evaluated_extent("Piece") > before + 0.2, "the piece at the body while dragging"
+    assert len(bpy.data.scenes) == 2, "the copy that Blender evaluates stays during a drag"
+    window.picture("piece_with_modifiers")
+    yield from click(window)
+    assert len(bpy.data.scenes) == 1
+    expect_free(window)
+    yield from window.undo()
+    expect_near(scenes.evaluated_extent("Piece"), before, 1e-6, "the surface after undo")
+    assert len(bpy.data.scenes) == 1
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    yield from click(window, "ESC")
+    assert scenes.evaluated_extent("Piece") == before and len(bpy.data.scenes) == 1
+
+
 _ALL = (
     cage_in_edit_mode,
     curve_in_edit_mode,
     lattice_in_edit_mode,
     lattice_in_object_mode,
+    piece_with_modifiers,
 )
 DEFORMING_DRAGS = {scenario.__name__: scenario for scenario in _ALL}

@@ -144,6 +144,45 @@ def add_curve() -> Any:
     return curve
 
 
+def add_mirrored_piece() -> Any:
+    """A plate like that of an armour, mirrored at y = 0, thick, bevelled and smoothly shaded, before a round body."""
+
+    def build_plate(content: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_grid(content, x_segments=4, y_segments=4, size=1.0)
+        for vertex in content.verts:
+            x, y = vertex.co.x, (vertex.co.y + 1) / 2
+            vertex.co = (0.5 + 0.3 * y * y, 1.2 * y, 0.7 * x)
+
+    def build_body(content: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_icosphere(content, subdivisions=4, radius=0.7)
+
+    add_mesh("Body", build_body, (1.7, 0.2, 0.1))
+    piece = add_mesh("Piece", build_plate)
+    piece.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+    piece.modifiers.new("Solidify", "SOLIDIFY").thickness = 0.15
+    bevel = piece.modifiers.new("Bevel", "BEVEL")
+    bevel.width, bevel.segments, bevel.limit_method = 0.03, 2, "NONE"
+    piece.modifiers.new("Smooth by Angle", "NODES").node_group = smooth_by_angle()
+    return piece
+
+
+def smooth_by_angle() -> Any:
+    """A node group that shades edges of less than half a radian smooth, as Blender's own asset does."""
+    tree = bpy.data.node_groups.new("Smooth by Angle", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    source, result = (tree.nodes.new(f"NodeGroup{way}") for way in ("Input", "Output"))
+    angle, is_less = tree.nodes.new("GeometryNodeInputMeshEdgeAngle"), tree.nodes.new("FunctionNodeCompare")
+    smooth = tree.nodes.new("GeometryNodeSetShadeSmooth")
+    smooth.domain, is_less.operation = "EDGE", "LESS_EQUAL"
+    is_less.inputs[1].default_value = 0.5
+    tree.links.new(source.outputs[0], smooth.inputs[0])
+    tree.links.new(angle.outputs[0], is_less.inputs[0])
+    tree.links.new(is_less.outputs[0], smooth.inputs[2])
+    tree.links.new(smooth.outputs[0], result.inputs[0])
+    return tree
+
+
 def select_only(obj: Any) -> None:
     """Select one object and make it active."""
     bpy.context.view_layer.update()  # it lists removed objects as None until then

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import replace
 
 import bpy
@@ -119,7 +120,10 @@ class DragOperator(Mixin):
             lambda transform, state: self._apply_values(context, transform, state),
             stiv_blender.Task,
         )
-        self._drag = DragLoop(calls, state)
+        with ExitStack() as twins:  # removed before an undo step is stored
+            twins.enter_context(stiv_blender.kept_twins())
+            self._drag = DragLoop(calls, state)
+            self._twins = twins.pop_all()
         self._waits, self._percent = False, -1
         self._show_waiting(context)
         self._timer = window_io.start_timer(context, TICK)
@@ -235,6 +239,7 @@ class DragOperator(Mixin):
 
     def _leave(self, context: bpy.types.Context) -> None:
         running.end()
+        self._twins.close()
         if self._waits:
             window_io.show_wait_cursor(context, False)
         window_io.stop_timer(context, self._timer)

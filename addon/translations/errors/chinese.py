@@ -16,7 +16,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "已恢复到最后的无相交状态：{}",
     "bodies that may overlap would overlap more than at the start": "已排除的物体会比开始时重叠更多",
     "cannot be welded in Edit Mode; use Merge by Distance": "编辑模式中无法焊接；请使用“按距离合并”",
-    "changes the topology; apply it": "会改变拓扑；请应用它",
+    "changes topology; apply it": "会改变拓扑；请应用它",
     "collisions stay off: {}": "碰撞保持关闭：{}",
     'constraint "{}" determines its transform; disable it': "约束“{}”决定其变换；请禁用它",
     "control {} is too large for single precision": "点 {} 超出单精度范围",

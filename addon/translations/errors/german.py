@@ -16,7 +16,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "zurück zum letzten Zustand ohne Überschneidungen: {}",
     "bodies that may overlap would overlap more than at the start": "ausgenommene Objekte würden sich mehr überlappen als am Anfang",
     "cannot be welded in Edit Mode; use Merge by Distance": "kann im Bearbeitungsmodus nicht verschweißt werden; Nach Abstand zusammenführen",
-    "changes the topology; apply it": "ändert die Topologie; anwenden",
+    "changes topology; apply it": "ändert die Topologie; anwenden",
     "collisions stay off: {}": "Kollisionen bleiben aus: {}",
     'constraint "{}" determines its transform; disable it': 'Constraint "{}" bestimmt die Transformation; deaktivieren',
     "control {} is too large for single precision": "Punkt {} ist zu groß für einfache Genauigkeit",

@@ -16,7 +16,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "最後の交差のない状態に戻しました: {}",
     "bodies that may overlap would overlap more than at the start": "除外したオブジェクトの重なりが開始時より深くなります",
     "cannot be welded in Edit Mode; use Merge by Distance": "編集モードでは結合できません。「距離でマージ」を使ってください",
-    "changes the topology; apply it": "がトポロジーを変えます。適用してください",
+    "changes topology; apply it": "がトポロジーを変えます。適用してください",
     "collisions stay off: {}": "コリジョンはオフのままです: {}",
     'constraint "{}" determines its transform; disable it': "コンストレイント「{}」がトランスフォームを決めています。無効にしてください",
     "control {} is too large for single precision": "点 {} は単精度には大きすぎます",

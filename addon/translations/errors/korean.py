@@ -16,7 +16,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "교차 없는 마지막 상태로 복원함: {}",
     "bodies that may overlap would overlap more than at the start": "제외된 오브젝트가 시작할 때보다 더 겹치게 됨",
     "cannot be welded in Edit Mode; use Merge by Distance": "에디트 모드에서는 용접할 수 없음; 거리로 병합을 사용하세요",
-    "changes the topology; apply it": "이(가) 토폴로지를 바꿈; 적용하세요",
+    "changes topology; apply it": "이(가) 토폴로지를 바꿈; 적용하세요",
     "collisions stay off: {}": "충돌이 꺼진 상태로 유지됨: {}",
     'constraint "{}" determines its transform; disable it': '컨스트레인트 "{}"이(가) 변환을 결정함; 비활성화하세요',
     "control {} is too large for single precision": "점 {}이(가) 단정밀도에 비해 너무 큼",

@@ -40,6 +40,7 @@ from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
+from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scripts.enabling import enable
 from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
@@ -124,6 +125,7 @@ __all__ = [
     "guard_result",
     "guard_result_steps",
     "intersection_text",
+    "kept_twins",
     "may_have_surface",
     "nearest_pair",
     "object_pair",

@@ -3,6 +3,7 @@
 
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any
 
@@ -96,7 +97,9 @@ def edit() -> FakeEdit:
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> Iterator[tuple[Probe, Context]]:
-    monkeypatch.setitem(sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError, Task=Task))
+    monkeypatch.setitem(
+        sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError, Task=Task, kept_twins=nullcontext)
+    )
     monkeypatch.setattr(
         drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)
     )

@@ -25,6 +25,7 @@ from stiv.blender import BlenderEdit, EditSettings, Handles, check_scene, compar
 DEFORM = EditSettings(object_response="deform")
 PLACES = {
     "moved": {"location": (4, 0, 1.0), "scale": (1.5, 1.5, 1.5)},
+    "turned": {"location": (4, 0, 1.0), "rotation_euler": (0.5, 0, 0.3)},
 }
 
 
@@ -91,14 +92,6 @@ def test_both_users_selected_are_one_participant() -> None:
     assert edit.write().passed
 
 
-def test_a_turned_user_is_refused() -> None:
-    first, other = add_twins("moved")
-    other.rotation_euler.x = 0.5
-    select(first)
-    with pytest.raises(stiv.InputError, match='First: its mesh is shared with "Öther"; make it single user'):
-        begin()
-
-
 def test_a_user_that_moves_rigidly_is_refused() -> None:
     first, other = add_twins("moved")
     select(first, other)
@@ -106,8 +99,9 @@ def test_a_user_that_moves_rigidly_is_refused() -> None:
         begin(EditSettings(object_response="deform", roles={"Öther": "rigid"}))
 
 
-def test_handles_move_users_that_are_not_turned() -> None:
-    first, other = add_twins("moved")
+@pytest.mark.parametrize("place", PLACES)
+def test_handles_move_all_users(place: str) -> None:
+    first, _ = add_twins(place)
     group = first.vertex_groups.new(name="Handle")
     group.add([0, 1, 2, 3], 1.0, "REPLACE")
     select(first)
@@ -116,10 +110,6 @@ def test_handles_move_users_that_are_not_turned() -> None:
     edit.apply(shift(z=-4))
     assert edit.write().passed
     assert check_scene(bpy.context, settings).pairs == ()
-    edit.restore()
-    other.rotation_euler.x = 0.5
-    with pytest.raises(stiv.InputError, match='First: its mesh is shared with "Öther"; make it single user'):
-        begin(settings)
 
 
 def test_the_live_guard_corrects_a_shared_mesh() -> None:

@@ -256,7 +256,7 @@ def test_the_weld_of_a_failed_repair_is_undone() -> None:
 
 
 def test_errors_name_the_object_and_change_nothing() -> None:
-    ball, lattice = add_ball("Ball"), add("Bars", bpy.data.lattices.new("Bars"))
+    ball, lattice, far = add_ball("Ball"), add("Bars", bpy.data.lattices.new("Bars")), add_cube("Far", (0, 0, -9))
     select(ball, lattice)
     before = snapshot()
     with pytest.raises(stiv.InputError, match="Bars: only meshes"):
@@ -267,8 +267,8 @@ def test_errors_name_the_object_and_change_nothing() -> None:
         expand_scene(bpy.context)
     with pytest.raises(stiv.InputError, match="Nobody: is not a mesh of this file"):
         expand_scene(bpy.context, ExpansionSettings(target="Nobody"))
-    add_modifier(ball, "SOLIDIFY", "Thick")
-    with pytest.raises(stiv.InputError, match='Ball: Solidify "Thick" is not supported'):
+    add_modifier(ball, "SHRINKWRAP", "Wrap", target=far)
+    with pytest.raises(stiv.InputError, match='Ball: Shrinkwrap "Wrap" projects onto "Far"; edit that'):
         repair_scene(bpy.context)
     ball.modifiers.clear()
     edit_mode(ball)

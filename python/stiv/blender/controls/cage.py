@@ -2,27 +2,24 @@
 """The vertices of a mesh as controls: the cage below its modifiers."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import bmesh
 import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.affine_images import uniform_factor
+from stiv.blender.controls.cage_surface import read_surface
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
-from stiv.blender.controls.editable import check_data, shared_data_error
+from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.key_editing import KeyEditing, check_keys
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.controls.points import PointGoal, to_stored
-from stiv.blender.controls.shared_meshes import in_frames, sharing_note
-from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
+from stiv.blender.controls.shared_meshes import sharing_note
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
-from stiv.blender.scene.evaluations import SHOWN, is_edited
-from stiv.blender.scene.lattice_reading import is_undeformed
+from stiv.blender.scene.evaluations import is_edited
 from stiv.blender.scene.mesh_reading import read_cage, read_edges
-from stiv.blender.scene.modifier_stack import LatticeStage, SubdivisionStage, modifier_error, read_stack
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
 
@@ -36,22 +33,23 @@ def make_cage_set(
 ) -> ControlSet:
     """Control set of a mesh's cage; `shown` says where its `surfaces` were read.
 
-    Raises InputError if the mesh cannot be edited, or has unsupported modifiers.
+    Raises InputError if the mesh cannot be edited, or has modifiers that no edit can follow.
     """
     ob = participant.reference.find()
     frame, local = open_cage(ob)
     found = control_weights(ob, settings)
     max_weights = found.max_weights
     writer = cage_writer(participant.reference, ob, frame, local, settings)
-    deformation = subdivision_in(ob, scene, writer, shown) or stiv.identity(len(local))
+    surface = read_surface(ob, scene, writer, shown)
     selected = selected_vertices(ob, participant.selected) & found.movable
     controls = transform_points(frame, local)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return ControlSet(
-        (ob.name,), "cage", surfaces, deformation, controls,
+        (ob.name,), "cage", surfaces, surface.deformation or stiv.identity(len(local)), controls,
         response_weights(participant, selected, max_weights, settings), max_weights, frame,
         PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
-        writer, note=sharing_note(ob), weight_axes=axes_of_weights(max_weights, found.directions),
+        surface.limited(writer), note=sharing_note(ob), weight_axes=axes_of_weights(max_weights, found.directions),
+        observed=surface.observed,
     )  # fmt: skip
 
 
@@ -62,58 +60,6 @@ def open_cage(ob: bpy.types.Object) -> tuple[Floats, Singles]:
         ob.update_from_editmode()
     check_keys(ob)
     return as_matrix(ob.matrix_world), read_cage(ob)
-
-
-def subdivision_in(
-    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", shown: Sequence[ShownAs]
-) -> stiv.Deformation | None:
-    """Deformation from the cage to all surfaces that show it, stacked; None if it is the identity.
-
-    Raises InputError for unsupported modifiers.
-    """
-    users = [bpy.data.objects[each.owner] for each in shown] if len(shown) > 1 else [ob]
-    users = [user if user.data == ob.data else ob for user in users]  # another mesh shows a Loop subdivision
-    evaluations = [each.evaluation for each in shown] or [SHOWN]
-    rows = list(zip(users, evaluations, strict=True))
-    found = [_subdivision_of(user, scene, _seen_from(writer, user, ob), each) for user, each in rows]
-    if len(found) == 1:
-        return found[0]
-    count = _vertex_count(ob)
-    if all(user == ob for user in users):
-        return stack_deformations([identity_deformation(count) if each is None else each for each in found])
-    inverse = np.linalg.inv(writer.frame).astype(np.float64)
-    maps = [as_matrix(user.matrix_world) @ inverse for user in users]
-    if any(uniform_factor(each) is None for each in maps):
-        raise shared_data_error(ob, users[-1])
-    return in_frames(found, maps, count)
-
-
-def _seen_from(writer: "CageWriter", user: bpy.types.Object, ob: bpy.types.Object) -> "CageWriter":
-    return writer if user == ob else replace(writer, frame=as_matrix(user.matrix_world))
-
-
-def _subdivision_of(
-    ob: bpy.types.Object, scene: bpy.types.Scene, writer: "CageWriter", evaluation: str
-) -> stiv.Deformation | None:
-    """Deformation from the cage to its mesh: Loop subdivision, that of its modifiers, or None for no subdivision.
-
-    Raises InputError for unsupported modifiers.
-    """
-    cage = None if writer.keys is None else writer.keys.deformation(ob, writer.frame, evaluation)
-    if writer.refined is not None:
-        return _of_cage(writer.refined.refinement.deformation, cage)
-    result = None
-    for stage in read_stack(ob, scene, evaluation):
-        if isinstance(stage, LatticeStage) and not is_undeformed(stage.lattice.find().data):
-            raise modifier_error(ob, stage.modifier, "deformed lattice", stage.lattice.name)
-        if isinstance(stage, SubdivisionStage):
-            result = subdivide(ob.data, stage)
-    return _of_cage(result, cage)
-
-
-def _of_cage(subdivision: stiv.Deformation | None, cage: stiv.Deformation | None) -> stiv.Deformation | None:
-    """The subdivision of a cage that follows the controls; None for the identity, each."""
-    return subdivision if cage is None else cage if subdivision is None else stiv.compose(subdivision, cage)
 
 
 def selected_vertices(ob: bpy.types.Object, selected: bool) -> Flags:

@@ -24,9 +24,11 @@ from stiv.blender.controls.rigid_groups import (
 )
 from stiv.blender.controls.rigid_placement import make_rigid_set
 from stiv.blender.controls.shared_meshes import other_users
+from stiv.blender.controls.stack_refusals import SIMULATIONS
 from stiv.blender.controls.subdivision import stack_deformations
 from stiv.blender.controls.transform_locks import drop_locked
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.dependencies import dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh, evaluation_tolerance
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
 from stiv.blender.scene.modifier_stack import modifier_error
@@ -69,6 +71,7 @@ def make_control_sets(
             control_sets.append(_lattice(context, participant, by_lattice[participant.reference], meshes, settings))
     for control_set in control_sets:
         _check_surface(control_set, meshes)
+        _check_references(control_set, {name for each in control_sets for name in each.names})
     return [join_seams(each, meshes) for each in control_sets if each.surfaces], groups
 
 
@@ -205,6 +208,18 @@ def evaluations_of(meshes: Sequence[VisibleMesh]) -> frozenset[str]:
     return frozenset({VIEWPORT}).union(*(mesh.shown_in for mesh in meshes))
 
 
+def _check_references(control_set: ControlSet, moving: set[str]) -> None:
+    """Refuse modifiers that are evaluated during the edit and refer to other objects that move."""
+    for name in control_set.names if control_set.observed is not None else ():
+        for dependency in dependencies(bpy.data.objects[name]):
+            if dependency.used in moving:
+                raise InputError(f'{name}: {dependency.through} uses "{dependency.used}"; deselect one')
+
+
 def _refuse_difference(control_set: ControlSet, mesh: VisibleMesh | None, how: str) -> None:
     name = control_set.names[0] if mesh is None else mesh.owner.name
+    ob = bpy.data.objects[name]
+    for modifier in ob.modifiers:
+        if modifier.type in SIMULATIONS and is_active(modifier, ob, VIEWPORT):
+            raise modifier_error(ob, modifier.name, "simulated")
     raise InputError(f"{name}: STIV and Blender disagree ({how}); apply its modifiers")

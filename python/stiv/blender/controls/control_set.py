@@ -2,7 +2,7 @@
 """Data of an edit: its participants, and their controls with deformation, goal and writer."""
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from numpy.typing import NDArray
 
@@ -11,6 +11,9 @@ from stiv.blender.controls.motion import Motion
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.references import ObjectReference
 from stiv.seams import Seams
+
+if TYPE_CHECKING:
+    from stiv.blender.controls.observed_stack import ObservedStack
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,7 @@ class ControlSet:
         note: message for the user; may be "".
         weight_axes: axes of (m, 3) weights as columns of rotations, (m, 3, 3); None for the world axes.
         kept: controls that are left of mirrored groups, by their former numbers, (m,); None without mirrored editing.
+        observed: the stack of modifiers that Blender evaluates during the edit; None if all are known.
     """
 
     names: tuple[str, ...]
@@ -106,6 +110,7 @@ class ControlSet:
     note: str = ""
     weight_axes: Floats | None = None
     kept: Indices | None = None
+    observed: "ObservedStack | None" = None
 
     def values_at_controls(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values at the controls, (m, ...), from values at all vertices of the object, (n, ...)."""

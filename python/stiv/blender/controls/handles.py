@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 import stiv
 from stiv import InputError
-from stiv.blender.controls.cage import cage_writer, open_cage, selected_vertices, subdivision_in
+from stiv.blender.controls.cage import cage_writer, open_cage, selected_vertices
+from stiv.blender.controls.cage_surface import read_surface
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs, Writer
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, pinned_directions, response_weights
-from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.joined_seams import SeamWriter, copy_to_seams, join_notes, join_rows, seam_message
 from stiv.blender.controls.points import PointGoal
-from stiv.blender.controls.shared_meshes import other_users, sharing_note
-from stiv.blender.controls.subdivision import is_linear
+from stiv.blender.controls.shared_meshes import sharing_note
 from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.mesh_reading import read_triangles
@@ -56,20 +55,19 @@ def make_handle_sets(
     mesh = make(rest, join_rows(triangles, control_seams), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
     writer = cage_writer(participant.reference, ob, frame, local, settings)
-    subdivision = subdivision_in(ob, scene, writer, shown_as)
-    if subdivision is not None and not is_linear(subdivision) and (users := other_users(ob)):
-        raise shared_data_error(ob, users[0])
+    surface = read_surface(ob, scene, writer, shown_as)
     shown = cage if control_seams is None else copy_to_seams(cage, control_seams)
+    whole = surface.of_vertices(shown)
+    limited = surface.limited(writer)
     max_weights, controls = found.max_weights, rest[found.vertices]
     weights = response_weights(participant, found.moving, max_weights, settings)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     return [ControlSet(
-        (ob.name,), "soft", surfaces, shown if subdivision is None else stiv.compose(subdivision, shown),
-        controls, weights, max_weights, frame,
+        (ob.name,), "soft", surfaces, whole, controls, weights, max_weights, frame,
         PointGoal(found.moving, controls, None, origin, None, pinned_directions(max_weights, limits.directions)),
-        HandleWriter(cage, writer if control_seams is None else SeamWriter(writer, control_seams)), 
+        HandleWriter(cage, limited if control_seams is None else SeamWriter(limited, control_seams)),
         note=join_notes(sharing_note(ob), found.note),
-        weight_axes=axes_of_weights(max_weights, limits.directions),
+        weight_axes=axes_of_weights(max_weights, limits.directions), observed=surface.observed,
     )]  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 """Keeps seams of deforming meshes closed: coincident vertices share a control, and are one vertex of the surface."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import bpy
@@ -19,6 +20,7 @@ from stiv.blender.scene.mesh_reading import read_cage, read_triangles
 from stiv.seams import Seams
 
 DRIFT = 1e-6  # of the controls' motion: maximum distance between copies that follow the same controls
+OBSERVED_DRIFT = 1e-4  # the same for positions in single precision
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ def join_seams(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> Contro
         return control_set  # a rigid mesh is not tested against itself
     shown = [meshes[index] for index in control_set.surfaces]
     found = [mesh_seams(mesh.local, mesh.triangles) for mesh in shown]
-    if all(each is None for each in found):
+    if all(each is None for each in found) and not _is_welded(control_set):
         return control_set
     if control_set.role == "cage":
         control_set = _merge_controls(control_set, _seam_flags(found, shown))
@@ -89,6 +91,11 @@ def selection_weights(index: Indices, count: int) -> stiv.Weights:
     return stiv.Weights(np.arange(len(index) + 1, dtype=np.int32), index, np.ones(len(index)), (len(index), count))
 
 
+def _is_welded(control_set: ControlSet) -> bool:
+    """Does a modifier merge vertices of the mesh?"""
+    return control_set.observed is not None and control_set.observed.leaders is not None
+
+
 def _seam_flags(found: Sequence[Seams | None], shown: Sequence[VisibleMesh]) -> Flags:
     """Flags of the vertices of all meshes, stacked, that are on a seam."""
     flags = []
@@ -104,7 +111,7 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
     """The cage's control set with one control for the coincident vertices that a seam of its meshes follows."""
     rule = control_set.rule
     assert isinstance(rule, PointGoal)
-    weights = _weights(control_set.deformation)
+    weights = _weights(control_set)
     control_seams = _find_control_seams(control_set, weights, on_seam)
     if control_seams is None:
         return control_set
@@ -115,7 +122,7 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
     np.maximum.at(response, control_seams.index, control_set.weights)
     return replace(
         control_set,
-        deformation=stiv.linear(_merge_columns(weights, control_seams), _offset(control_set.deformation)),
+        deformation=_merged_deformation(control_set, weights, control_seams),
         controls=control_set.controls[control_seams.first],
         weights=np.where(max_weights > 0, response, 0.0),
         max_weights=max_weights,
@@ -128,7 +135,9 @@ def _merge_controls(control_set: ControlSet, on_seam: Flags) -> ControlSet:
 
 
 def _find_control_seams(control_set: ControlSet, weights: stiv.Weights, on_seam: Flags) -> Seams | None:
-    """The coincident vertices of a cage that a seam of its meshes follows."""
+    """The coincident vertices of a cage that a seam of its meshes follows, or those that a modifier merges."""
+    if control_set.observed is not None and control_set.observed.leaders is not None:
+        return Seams.of(control_set.observed.leaders)
     ob = bpy.data.objects[control_set.names[0]]
     candidates = mesh_seams(read_cage(ob), read_triangles(ob.data)[0])
     if candidates is None:
@@ -155,25 +164,44 @@ def _closed_seams(
     """
     size = float(np.ptp(control_set.controls, axis=0).max(initial=0.0)) or 1.0
     random = np.random.default_rng(0).uniform(-1, 1, control_set.controls.shape) * 0.01 * size
-    moved = control_set.deformation.surface(control_set.controls + random) - control_set.deformation.surface(
-        control_set.controls
-    )
+    moved = _motion(control_set, random)
+    drift = DRIFT if control_set.observed is None else OBSERVED_DRIFT
     closed: list[Seams | None] = []
     for seams, motion in zip(found, np.split(moved, np.cumsum(counts)[:-1]), strict=True):
         if seams is None:
             closed.append(None)
             continue
         apart = np.abs(motion - motion[seams.leaders]).max(axis=1)
-        closed.append(seams.limited_to(apart <= DRIFT * np.abs(moved).max(initial=0.0)))
+        closed.append(seams.limited_to(apart <= drift * np.abs(moved).max(initial=0.0)))
     return tuple(closed)
 
 
-def _weights(deformation: stiv.Deformation) -> stiv.Weights:
-    """Weights of a linear deformation, including the identity."""
+def _motion(control_set: ControlSet, move: Floats) -> Floats:
+    """Motion of the surface, (n, 3), for one of the controls, (m, 3); for a shorter one where the topology changes."""
+    start = control_set.deformation.surface(control_set.controls)
+    for fraction in (1.0, 0.1, 0.01):
+        with suppress(stiv.InfeasibleError):
+            return np.asarray(control_set.deformation.surface(control_set.controls + fraction * move) - start)
+    return np.zeros_like(start)
+
+
+def _weights(control_set: ControlSet) -> stiv.Weights:
+    """Weights of a linear deformation, including the identity; for observed stacks the controls that they follow."""
+    if control_set.observed is not None:
+        return control_set.observed.followed
+    deformation = control_set.deformation
     try:
         return stiv.linear_weights(deformation)[0]
     except InputError:
         return selection_weights(np.arange(deformation.vertex_count, dtype=np.int32), deformation.control_count)
+
+
+def _merged_deformation(control_set: ControlSet, weights: stiv.Weights, control_seams: Seams) -> stiv.Deformation:
+    """The deformation of a cage by its merged controls."""
+    if control_set.observed is not None:
+        merged = selection_weights(control_seams.index, len(control_seams.first))
+        return control_set.observed.deformation_of(stiv.linear(merged))
+    return stiv.linear(_merge_columns(weights, control_seams), _offset(control_set.deformation))
 
 
 def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
@@ -184,7 +212,7 @@ def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
 def _restrict(control_set: ControlSet, rows: Indices) -> stiv.Deformation:
     """The deformation restricted to some vertices; the identity if each of them is a control."""
     chosen = selection_weights(rows, control_set.deformation.vertex_count)
-    if control_set.role == "soft":
+    if control_set.role == "soft" or control_set.observed is not None:
         return stiv.compose(chosen, control_set.deformation)
     try:
         limited = stiv.compose(chosen, control_set.deformation)

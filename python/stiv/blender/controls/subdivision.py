@@ -27,8 +27,19 @@ def subdivide(mesh: bpy.types.Mesh, stage: SubdivisionStage) -> stiv.Deformation
 
 def identity_deformation(count: int) -> stiv.Deformation:
     """The identity as a linear deformation, for stacking."""
+    return stiv.linear(identity_weights(count))
+
+
+def identity_weights(count: int) -> stiv.Weights:
+    """Weights of the identity."""
     rows = np.arange(count + 1, dtype=np.int32)
-    return stiv.linear(stiv.Weights(rows, rows[:-1], np.ones(count), (count, count)))
+    return stiv.Weights(rows, rows[:-1], np.ones(count), (count, count))
+
+
+def moved_columns(weights: stiv.Weights, first: int, count: int) -> stiv.Weights:
+    """The weights of controls that are some of `count` controls, from the one with number `first`."""
+    shape = (weights.shape[0], count)
+    return stiv.Weights(weights.indptr, weights.indices + np.int32(first), weights.data, shape)
 
 
 def is_linear(deformation: stiv.Deformation) -> bool:

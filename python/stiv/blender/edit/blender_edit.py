@@ -27,6 +27,7 @@ from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.culling import CullingBox
 from stiv.blender.scene.exclusions import intersection_notes
+from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
@@ -97,8 +98,9 @@ class BlenderEdit:
         culling: CullingBox | None = None,
     ) -> Steps[BlenderEdit]:
         """Steps of `begin_with`."""
-        edit = cls(take_snapshot(context, settings, kind, participants, adapt, culling))
-        yield from edit._solver.start()
+        with kept_twins():
+            edit = cls(take_snapshot(context, settings, kind, participants, adapt, culling))
+            yield from edit._solver.start()
         return edit
 
     @cached_property
@@ -143,8 +145,12 @@ class BlenderEdit:
         return self._solver.session.surface
 
     def surface_of(self, controls: Floats) -> Floats:
-        """Surface, (N, 3), of any controls, (m, 3), accepted or not."""
-        return self._solver.deformation.surface(controls)
+        """Surface, (N, 3), of any controls, (m, 3), accepted or not; the accepted one if their topology differs."""
+        with kept_twins():
+            try:
+                return self._solver.deformation.surface(controls)
+            except stiv.InfeasibleError:
+                return self.surface
 
     def least_distance(self) -> stiv.LeastDistance | None:
         """Least distance between objects in the accepted state, without culled obstacles; None without a session."""
@@ -198,11 +204,12 @@ class BlenderEdit:
         if self._unguarded is not None:
             self._unguarded = accepted
             return True
-        try:
-            self._solver.restart_from(accepted, accepted)
-        except stiv.StartIntersectsError:
-            self._solver.restart_from(self._start, self._start)
-            return False
+        with kept_twins():
+            try:
+                self._solver.restart_from(accepted, accepted)
+            except (stiv.InfeasibleError, stiv.StartIntersectsError):
+                self._solver.restart_from(self._start, self._start)
+                return False
         return True
 
     @property
@@ -254,7 +261,8 @@ class BlenderEdit:
         if self._unguarded is not None:
             self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
-        return (yield from self._solver.solve(self._goal, time_budget=time_budget))
+        with kept_twins():
+            return (yield from self._solver.solve(self._goal, time_budget=time_budget))
 
     def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
         """Solve for a goal of all controls, (m, 3)."""
@@ -263,7 +271,8 @@ class BlenderEdit:
     def drag_to_steps(self, goal: Floats) -> Steps[stiv.EditResult]:
         """Steps of `drag_to`."""
         self._goal = goal
-        return (yield from self._solver.solve(goal))
+        with kept_twins():
+            return (yield from self._solver.solve(goal))
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
@@ -274,15 +283,19 @@ class BlenderEdit:
 
     def apply_steps(self, motion: Motion | ArrayLike, path: Path | None = None) -> Steps[stiv.EditResult]:
         """Steps of `apply`. If they are cancelled, the increments so far remain."""
+        with kept_twins():
+            return (yield from self._apply_increments(self._motion_of(motion), path))
+
+    def _apply_increments(self, motion: Motion, path: Path | None) -> Steps[stiv.EditResult]:
         results: list[stiv.EditResult] = []
-        increments = [*split_motion(self._motion_of(motion), path, self.assembly.positions[self._moving_vertices])]
+        increments = [*split_motion(motion, path, self.assembly.positions[self._moving_vertices])]
         for number, increment in enumerate(increments):
             yield number / len(increments)
             results.append((yield from self.drag_steps(increment)))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
             if _only_goes_deeper(results[-1]):
-                self._goal = self._goal_of(self._motion_of(motion))
+                self._goal = self._goal_of(motion)
                 return merge_results(results)
         return merge_results([*results, (yield from self.settle_steps())])
 
@@ -294,7 +307,8 @@ class BlenderEdit:
         """Steps of `settle`."""
         if self._unguarded is not None:
             return unguarded_result(self._solver.deformation, self._unguarded)
-        return (yield from self._solver.solve(None))
+        with kept_twins():
+            return (yield from self._solver.solve(None))
 
     def write(self) -> WriteReport:
         """Write the accepted controls, read Blender's evaluation back and test it (see `StateWriter`).
@@ -304,7 +318,8 @@ class BlenderEdit:
         if self._unguarded is not None:
             self._writer.write(self._unguarded)
             return WriteReport(True)
-        return self._writer.write_accepted(self._goal)
+        with kept_twins():
+            return self._writer.write_accepted(self._goal)
 
     def is_shown(self) -> bool:
         """Does Blender's present evaluation pass the test against the accepted state? Writes nothing."""

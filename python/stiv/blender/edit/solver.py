@@ -31,6 +31,7 @@ class EditSolver:
         self._settings = settings
         self.excluded = settings.excluded
         self._session: stiv.EditSession | None = None
+        self._blocked = False
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)
         self.trail = Trail(controls, controls)
@@ -55,13 +56,24 @@ class EditSolver:
     def solve(self, goal: Floats | None, **limits: Any) -> Steps[stiv.EditResult]:
         """Steps that drag to a goal, (m, 3), or settle (None); `time_budget` as in stiv.EditSession.drag."""
         session = self.session
+        self._renew_jacobians()
         if goal is None:
             result: stiv.EditResult = yield Call(session.settle, session.start_settle)
         else:
             result = yield Call(session.drag, session.start_drag, goal, **limits)
         if result.status != "cancelled":  # its goal is no longer wanted
             self.trail.add(goal, result)
+        self._blocked = result.status == "blocked"
         return result
+
+    def _renew_jacobians(self) -> None:
+        """Renew the Jacobians of observed stacks that are due, at the accepted state."""
+        stacks = [each.observed for each in self.control_sets if each.observed is not None]
+        due = [each for each in stacks if each.is_jacobian_due(self._blocked)]
+        if due:
+            self.deformation.surface(self.session.controls)
+        for each in due:
+            each.renew_jacobian()
 
     def discard_session(self) -> None:
         """Close the session: no state is known to be free of intersections."""

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import CageWriter
+from stiv.blender.controls.cage_surface import HoldingWriter
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.joined_seams import SeamWriter, join_rows
@@ -187,7 +188,9 @@ def take_reshape_snapshot(
 
 
 def _cage_writer_of(control_set: ControlSet) -> CageWriter:
-    writer = control_set.writer.writer if isinstance(control_set.writer, SeamWriter) else control_set.writer
+    writer = control_set.writer
+    while isinstance(writer, SeamWriter | HoldingWriter):
+        writer = writer.writer
     assert isinstance(writer, CageWriter)
     return writer
 

@@ -24,6 +24,11 @@ def transform_points(matrix: Floats, points: NDArray[Any]) -> Floats:
     return np.asarray(points, np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
+def to_local(matrix: Floats, points: NDArray[Any]) -> Floats:
+    """Local coordinates of world positions, (n, 3), in a frame, (4, 4)."""
+    return transform_points(np.linalg.inv(matrix).astype(np.float64), points)
+
+
 def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:
     """Read an attribute of every item of a Blender collection, (n, width), or (n,) for width 1."""
     values: NDArray[Any] = np.empty(len(collection) * width, dtype)

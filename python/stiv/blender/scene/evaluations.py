@@ -57,14 +57,15 @@ def rendered_objects(view_layer: bpy.types.ViewLayer) -> frozenset[int]:
 def signature(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> tuple[Any, ...]:
     """All settings on which an evaluation of the object alone depends, for comparison."""
     return (
-        *(_modifier_signature(modifier, ob, scene, evaluation) for modifier in ob.modifiers),
+        *(modifier_signature(modifier, ob, scene, evaluation) for modifier in ob.modifiers),
         *_data_signature(ob, evaluation),
     )
 
 
-def _modifier_signature(
+def modifier_signature(
     modifier: Any, ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str
 ) -> tuple[Any, ...] | None:
+    """Settings of a modifier on which an evaluation depends; None if it has no effect there."""
     if modifier.type in WITHOUT_EFFECT or not is_active(modifier, ob, evaluation):
         return None
     rendered = evaluation == RENDER

@@ -20,10 +20,14 @@ KNOWN = POSITION_PRESERVING | {"SUBSURF", "LATTICE"}
 MODIFIER_REASONS = {
     "after moving lattice": "follows the moving lattice; apply it",
     "before subdivision": "precedes a subdivision; apply it",
+    "changes topology": "changes topology; apply it",
     "deformed lattice": 'deforms it; select "{other}" instead',
+    "ignores vertices": "hides edits; disable it",
     "of lattice": "deforms the lattice; apply it",
+    "projects": 'projects onto "{other}"; edit that',
     "same lattice": 'uses "{other}" again; apply it',
     "second subdivision": "is the second; apply the first",
+    "simulated": "simulates it; go to its start frame",
     "unsupported": "is not supported; apply it",
 }
 
@@ -55,6 +59,14 @@ class LatticeStage:
 Stage = SubdivisionStage | LatticeStage
 
 
+@dataclass(frozen=True)
+class StackEnd:
+    """The exact end of a stack: its last subdivision, and the modifiers from there on; those leave positions alone."""
+
+    subdivision: SubdivisionStage | None = None
+    modifiers: tuple[str, ...] = ()
+
+
 def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = SHOWN) -> list[Stage]:
     """Read the stages of an evaluation in order; modifiers that leave positions and topology alone are skipped.
 
@@ -78,11 +90,31 @@ def read_stack(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str = S
     return stages
 
 
+def read_end(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> StackEnd:
+    """Read the end of any stack in an evaluation."""
+    active = [each for each in ob.modifiers if is_active(each, ob, evaluation)]
+    stages = [_stage(ob, each, scene, evaluation) for each in active]
+    places = [place for place, stage in enumerate(stages) if isinstance(stage, SubdivisionStage)]
+    if not places:
+        return StackEnd()
+    subdivision = stages[places[-1]]
+    assert isinstance(subdivision, SubdivisionStage)
+    end = active[places[-1] :]
+    unknown = [each.name for each in end[1:] if each.type not in POSITION_PRESERVING]
+    if unknown and not keep_positions(ob, scene, evaluation, unknown):
+        return StackEnd()
+    return StackEnd(subdivision, tuple(each.name for each in end))
+
+
+class UnsupportedStackError(InputError):
+    """A modifier stack without a list of stages."""
+
+
 def modifier_error(ob: bpy.types.Object, modifier: str, reason: str, other: str = "") -> InputError:
     """The error for a modifier by its name; reason: a key of MODIFIER_REASONS, other: the object that it mentions."""
     found = ob.modifiers[modifier]
     kind = found.bl_rna.properties["type"].enum_items[found.type].name
-    return InputError(f'{ob.name}: {kind} "{modifier}" {MODIFIER_REASONS[reason].format(other=other)}')
+    return UnsupportedStackError(f'{ob.name}: {kind} "{modifier}" {MODIFIER_REASONS[reason].format(other=other)}')
 
 
 def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:
@@ -102,8 +134,8 @@ def _refusal(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
     """The error for a modifier that is not shown now; short enough for the status bar."""
     if evaluation == VIEWPORT:
-        return InputError(f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode')
-    return InputError(f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport')
+        return UnsupportedStackError(f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode')
+    return UnsupportedStackError(f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport')
 
 
 def _subdivision(

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from stiv.blender.scene.arrays import Indices, Singles
+from stiv.blender.scene.arrays import Indices, Singles, read_collection
 from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
 from stiv.blender.scene.evaluations import SHOWN, signature
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
-from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.references import ObjectReference, SceneChangedError
+
+ATTRIBUTE = "stiv_rest"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +49,13 @@ class StackTwin:
         reference = ObjectReference.of(ob)
         self._copies = EvaluationCopies(scene, evaluation, own_data=[ob])
         try:
-            self._copies.fill([ob, *_different_objects(ob, scene, evaluation)], lambda other: other == ob)
+            self._copies.fill([ob, *different_objects(ob, scene, evaluation)], lambda other: other == ob)
         except BaseException:
             self._copies.remove()
             raise
         self.ob = self._copies.copy_of(reference)
+        if self.ob.data.shape_keys is not None:  # positions are those that the keys show
+            self.ob.shape_key_clear()
 
     def remove(self) -> None:
         """Remove the copy and its scene."""
@@ -69,12 +73,30 @@ class StackTwin:
             return EvaluatedStack(read_positions(mesh), *read_corners(mesh))
 
     def write(self, local: Singles) -> None:
-        """Write local positions, (m, 3). Writing an attribute instead would leave normals and bounds unchanged."""
-        mesh, flat = self.ob.data, np.ascontiguousarray(local, np.float32).ravel()
-        mesh.vertices.foreach_set("co", flat)
-        if mesh.shape_keys is not None:
-            mesh.shape_keys.key_blocks[0].data.foreach_set("co", flat)
+        """Write local positions, (m, 3). Writing an attribute instead would leave normals and bounds unchanged.
+
+        Raises SceneChangedError if the mesh has another number of vertices.
+        """
+        mesh = self.ob.data
+        if len(mesh.vertices) != len(local):
+            raise SceneChangedError(f"{self._copies.owner(self.ob).name} changed its number of vertices")
+        mesh.vertices.foreach_set("co", np.ascontiguousarray(local, np.float32).ravel())
         mesh.update()
+
+    def carried(self, values: Singles) -> Singles | None:
+        """Values of the vertices, (m, 3), at the evaluated vertices, (n, 3); None if the modifiers drop attributes."""
+        mesh = self.ob.data
+        attribute = mesh.attributes.new(ATTRIBUTE, "FLOAT_VECTOR", "POINT")
+        name = attribute.name
+        attribute.data.foreach_set("vector", np.ascontiguousarray(values, np.float32).ravel())
+        mesh.update()
+        with self.evaluated() as shown:
+            found = shown.attributes.get(name)
+            has_points = found is not None and (found.domain, found.data_type) == ("POINT", "FLOAT_VECTOR")
+            result = read_collection(found.data, "vector", 3, np.float32) if has_points else None
+        mesh.attributes.remove(mesh.attributes[name])
+        mesh.update()
+        return result if result is not None and result.any() else None
 
     @contextmanager
     def evaluated(self) -> Iterator[bpy.types.Mesh]:
@@ -83,6 +105,40 @@ class StackTwin:
         graph.update()
         with evaluated_mesh(self.ob.evaluated_get(graph)) as mesh:
             yield mesh
+
+
+_kept: dict[object, StackTwin] = {}
+_holders = 0
+
+
+@contextmanager
+def kept_twins() -> Iterator[None]:
+    """Keep the twins of `kept_twin`; the outermost `with` statement removes them.
+
+    They must not be there when Blender stores an undo step or a file.
+    """
+    global _holders
+    _holders += 1
+    try:
+        yield
+    finally:
+        _holders -= 1
+        if _holders == 0:
+            _remove_kept()
+
+
+def kept_twin(owner: object, make: Callable[[], StackTwin]) -> StackTwin:
+    """The twin of an owner, made now unless it is kept. Only inside `kept_twins`."""
+    if owner not in _kept:
+        _kept[owner] = make()
+    return _kept[owner]
+
+
+def _remove_kept() -> None:
+    while _kept:
+        _, twin = _kept.popitem()
+        with suppress(ReferenceError):  # undo or another file has removed it
+            twin.remove()
 
 
 @contextmanager
@@ -95,7 +151,7 @@ def open_twin(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> 
         twin.remove()
 
 
-def _different_objects(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> list[bpy.types.Object]:
+def different_objects(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> list[bpy.types.Object]:
     """Objects to which the object refers, directly or indirectly, and which this evaluation shows differently."""
     if evaluation == SHOWN:
         return []

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Deformation of a mesh by any modifiers: the part that Blender evaluates, and an exact subdivision after it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv.blender.controls.held_vertices import find_held_vertices
+from stiv.blender.controls.stack_block import BlockSettings, StackBlock
+from stiv.blender.controls.stack_refusals import check_projections
+from stiv.blender.controls.subdivision import (
+    identity_deformation,
+    identity_weights,
+    moved_columns,
+    stack_deformations,
+)
+from stiv.blender.scene.arrays import Floats, Indices, to_local
+from stiv.blender.scene.stack_twin import kept_twins
+
+CALLS = 4  # of a session between two Jacobians
+
+
+@dataclass(frozen=True)
+class ShownStack:
+    """A surface that shows a mesh.
+
+    Attributes:
+        ob: the object that shows it; of a shared mesh, any user.
+        evaluation: where it was read.
+        cage: from the controls to the vertices, by shape keys; None for the identity.
+    """
+
+    ob: bpy.types.Object
+    evaluation: str
+    cage: stiv.Deformation | None
+
+
+class ObservedStack:
+    """All surfaces that show a mesh, from its controls, (m, 3) world positions.
+
+    Attributes:
+        deformation: infeasible where the topology differs from that at the start.
+    """
+
+    def __init__(self, scene: bpy.types.Scene, frame: Floats, controls: Floats, shown: Sequence[ShownStack]) -> None:
+        """Read the stacks of a mesh with a frame, (4, 4). Raises InputError if they cannot be followed."""
+        for each in shown:
+            check_projections(each.ob, each.evaluation)
+        self._calls, self._frame, self._start = 0, frame, controls
+        self._held = find_held_vertices([each.ob for each in shown], to_local(frame, controls))
+        with kept_twins():
+            settings = [BlockSettings.read(each.ob, scene, each.evaluation) for each in shown]
+            keys = [(each.shown_by, id(showing.cage)) for each, showing in zip(settings, shown, strict=True)]
+            order = list(dict.fromkeys(keys))
+            firsts = [keys.index(key) for key in order]
+            self._cages = [shown[first].cage for first in firsts]
+            self._blocks = _Blocks([
+                StackBlock(settings[first], frame, controls if cage is None else cage.surface(controls), self._held)
+                for first, cage in zip(firsts, self._cages, strict=True)
+            ])  # fmt: skip
+            self._observed = stiv.observed(self._blocks.evaluate, self._blocks.jacobian())
+            self._ends = self._find_ends([order.index(key) for key in keys], settings)
+        self.deformation = self.deformation_of(None)
+
+    def hold(self, controls: Floats) -> Floats:
+        """World positions, (m, 3), with vertices where Mirror and Weld modifiers need them."""
+        return self._held.hold(controls, self._start, self._frame)
+
+    @property
+    def leaders(self) -> Indices | None:
+        """The vertex with which each one moves because a modifier merges them, (m,); None if each moves alone."""
+        return self._held.leaders
+
+    @property
+    def followed(self) -> stiv.Weights:
+        """The controls that each vertex of the surfaces follows, (n, m), with equal weights."""
+        anchors = np.concatenate([block.anchors for block in self._blocks.blocks])
+        ends = identity_weights(len(anchors)) if self._ends is None else stiv.linear_weights(self._ends)[0]
+        columns = anchors[ends.indices]
+        return stiv.Weights(ends.indptr, columns, np.ones(len(columns)), (ends.shape[0], len(self._start)))
+
+    def deformation_of(self, vertices: stiv.Deformation | None) -> stiv.Deformation:
+        """The surfaces of controls that move the vertices by a deformation; None: of the vertices themselves."""
+        chain: list[stiv.Deformation] = [self._observed]
+        if self._cages != [None]:
+            count = len(self._start)
+            chain.append(stack_deformations([each or identity_deformation(count) for each in self._cages]))
+        chain += [] if vertices is None else [vertices]
+        return stiv.compose(*chain) if self._ends is None else stiv.compose(self._ends, *chain)
+
+    def is_jacobian_due(self, blocked: bool) -> bool:
+        """Is it time to renew the Jacobian? At times, and after a blocked call. Asked before each call of a session."""
+        self._calls += 1
+        return blocked or self._calls % CALLS == 0
+
+    def renew_jacobian(self) -> None:
+        """Measure the Jacobian at the last evaluation."""
+        self._observed.set_jacobian(self._blocks.jacobian())
+
+    def _find_ends(self, places: Sequence[int], settings: Sequence[BlockSettings]) -> stiv.Deformation | None:
+        """From the vertices of all blocks to those of all surfaces; None if these are the same."""
+        if len(places) == 1 and settings[0].end.subdivision is None:
+            return None
+        counts = [block.count for block in self._blocks.blocks]
+        rows = []
+        for place, each in zip(places, settings, strict=True):
+            block, subdivision = self._blocks.blocks[place], each.end.subdivision
+            weights = identity_weights(block.count) if subdivision is None else block.end_weights(subdivision)
+            rows.append(stiv.linear(moved_columns(weights, sum(counts[:place]), sum(counts))))
+        return stack_deformations(rows)
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """The distinct blocks of all surfaces.
+
+    Apart from `ObservedStack`: the core holds `evaluate`, and a reference back to the core's object would be a cycle.
+    """
+
+    blocks: list[StackBlock]
+
+    def evaluate(self, positions: Floats) -> Floats | None:
+        """World positions of all blocks, (n, 3), from the vertices' positions in each, stacked; None: infeasible."""
+        with kept_twins():
+            inputs = np.split(positions, len(self.blocks))
+            found = [block.evaluate(each) for block, each in zip(self.blocks, inputs, strict=True)]
+        feasible = [each for each in found if each is not None]
+        return np.concatenate(feasible) if len(feasible) == len(found) else None
+
+    def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]]:
+        """One frame for each vertex of all blocks, in rows."""
+        controls = self.blocks[0].controls
+        anchors = [block.anchors + place * controls for place, block in enumerate(self.blocks)]
+        count = sum(map(len, anchors))
+        with kept_twins():
+            frames = np.concatenate([block.frames() for block in self.blocks])
+        shape = count, controls * len(self.blocks)
+        return np.arange(count + 1, dtype=np.int32), np.concatenate(anchors).astype(np.int32), frames, shape

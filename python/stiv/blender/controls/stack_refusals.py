@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Refuses modifier stacks that an edit of their mesh cannot follow, with the modifier that is the cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from stiv.blender.scene.arrays import Singles
+from stiv.blender.scene.evaluations import is_active
+from stiv.blender.scene.modifier_stack import modifier_error
+from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin
+
+SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
+SMALL = (0.0, 0.001, 0.003)  # moves that may not change the topology, in sizes of the mesh
+NO_EFFECT = 1e-6  # greatest motion of a surface without controls, relative to that of all vertices
+
+
+def check_projections(ob: bpy.types.Object, evaluation: str) -> None:
+    """Refuse projections onto other objects: they leave no way out of a contact. Raises InputError."""
+    for modifier in ob.modifiers:
+        projects = isinstance(modifier, bpy.types.ShrinkwrapModifier) and modifier.target is not None
+        if projects and is_active(modifier, ob, evaluation):
+            raise modifier_error(ob, modifier.name, "projects", modifier.target.name)
+
+
+def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles]) -> None:
+    """Refuse a stack whose topology changes with small moves, or that ignores its vertices. Raises InputError.
+
+    twin: of the object. moves: local positions of the vertices, (m, 3), at the start and moved by `SMALL`.
+    """
+    if not _keeps_topology(found := [twin.evaluate(move) for move in moves]):
+        raise modifier_error(ob, _first(twin, moves, lambda each: not _keeps_topology(each)), "changes topology")
+    if not _has_effect(found, moves):
+        name = _first(twin, moves, lambda each: not _has_effect(each, moves))
+        raise modifier_error(ob, name, "simulated" if ob.modifiers[name].type in SIMULATIONS else "ignores vertices")
+
+
+def _keeps_topology(found: list[EvaluatedStack]) -> bool:
+    return all(each.has_topology_of(found[0]) for each in found)
+
+
+def _has_effect(found: list[EvaluatedStack], moves: list[Singles]) -> bool:
+    """Does the surface move with the vertices, as far as the topology stays?"""
+    moved = np.abs(moves[-1] - moves[0]).max(initial=0.0)
+    shown = found[-1].positions - found[0].positions if _keeps_topology(found) else moves[-1]
+    return bool(np.abs(shown).max(initial=0.0) > NO_EFFECT * moved)
+
+
+def _first(twin: StackTwin, moves: list[Singles], fails: Callable[[list[EvaluatedStack]], bool]) -> str:
+    """Name of the first modifier whose result, with those before it, fails."""
+    names: list[str] = [each.name for each in twin.ob.modifiers if each.show_viewport]
+    twin.show_modifiers(names, False)
+    for name in names:
+        twin.show_modifiers([name], True)
+        if fails([twin.evaluate(move) for move in moves]):
+            break
+    twin.show_modifiers(names, True)
+    return name

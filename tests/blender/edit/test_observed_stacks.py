@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edits of meshes under any modifiers, which Blender evaluates during the edit; what they cannot follow is refused."""
+
+import os
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from building import add_cube, add_modifier, as_rendered, edit_mode, evaluated, meet, select, shift, snapshot, turn
+from stacks import STACKS, add_block, add_body, add_sheet, mirrored, random_stack, skin
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene, kept_twins
+from stiv.blender.controls.held_vertices import find_held_vertices
+from stiv.blender.controls.stack_block import BlockSettings, StackBlock
+from stiv.blender.scene.arrays import as_matrix, transform_points
+from stiv.blender.scene.mesh_reading import read_cage
+
+DEFORM = EditSettings(object_response="deform", guard="both")
+
+
+def begin(settings: EditSettings = DEFORM) -> BlenderEdit:
+    return BlenderEdit.begin(bpy.context, settings, "move")
+
+
+def assert_clear() -> None:
+    """No intersections in Object Mode and in the render, by rational arithmetic between objects."""
+    assert meet("Piece", "Body") == 0
+    assert check_scene(bpy.context).pairs == ()
+    as_rendered()
+    assert meet("Piece", "Body") == 0
+
+
+def select_half(ob: Any) -> None:
+    """Edit Mode with the vertices of the lower half of y selected."""
+    edit_mode(ob)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    low = np.median([vertex.co.y for vertex in ob.data.vertices])
+    ob.data.vertices.foreach_set("select", [bool(vertex.co.y <= low) for vertex in ob.data.vertices])
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+@pytest.mark.parametrize("name", STACKS)
+def test_pieces_pushed_against_a_body(name: str, mode: str) -> None:
+    ob = STACKS[name]()
+    add_body()
+    (select_half if mode == "EDIT" else select)(ob)
+    before, start = snapshot(), evaluated(ob)
+    edit = begin()
+    assert snapshot() == before
+    random = np.random.default_rng(len(name))
+    for number in range(1, 4):
+        motion = shift(*random.uniform(-0.1, 0.1, 2), -0.25 * number) @ turn(0.1 * random.normal(), "XYZ"[number % 3])
+        edit.drag(motion)
+        assert edit.write().passed
+    assert edit.settle().status != "cancelled"
+    assert edit.write().passed
+    assert len(bpy.data.scenes) == 1
+    moved = evaluated(ob) - start
+    assert moved[:, 2].min() < -0.2, "it moves at least as far as to the first contact"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_clear()
+
+
+@pytest.mark.parametrize("seed", range(int(os.environ.get("STIV_STACKS", "12"))))
+def test_random_combinations_of_modifiers(seed: int) -> None:
+    """Followed without intersections, or refused in a sentence. STIV_STACKS=500 tries more."""
+    random = np.random.default_rng(seed)
+    ob = random_stack(random)
+    add_body()
+    (select_half if random.integers(2) else select)(ob)
+    names = [modifier.type for modifier in ob.modifiers]
+    before = snapshot()
+    try:
+        edit = begin()
+    except stiv.InputError as error:
+        print(seed, names, error)
+        assert snapshot() == before and 20 < len(str(error)) <= 80
+        return
+    except stiv.StartIntersectsError:
+        assert snapshot() == before
+        assert check_scene(bpy.context).pairs
+        return
+    for number in range(1, 4):
+        edit.drag(shift(*random.uniform(-0.1, 0.1, 2), -0.2 * number) @ turn(0.1 * random.normal(), "Z"))
+        report = edit.write()
+        assert report.passed, (seed, names, report.message)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_clear()
+
+
+def small_motion(points: np.ndarray) -> np.ndarray:
+    """A smooth motion of points, (n, 3), of a hundredth of their size: a turn, a stretch and a bend."""
+    x, y, z = points.T
+    return 0.01 * np.stack([0.3 * y + 0.2 * z**2, 0.4 * x - 0.2 * y, 0.5 * np.cos(x) + 0.3 * y * x], axis=1)
+
+
+LOOSE = {"Mirror, Solidify, Bevel, Smooth by Angle": 0.5, "Corrective Smooth": 0.5, "Multiresolution": 0.5}
+
+
+@pytest.mark.parametrize("name", STACKS)
+def test_the_jacobian_predicts_what_blender_evaluates(name: str) -> None:
+    """Against differences of the object's own evaluation, for a small smooth motion of its vertices."""
+    ob = STACKS[name]()
+    ob.location, ob.rotation_euler = (0.1, 0.2, 0.3), (0, 0.3, 0)
+    bpy.context.view_layer.update()
+    local, frame = read_cage(ob), as_matrix(ob.matrix_world)
+    world = transform_points(frame, local)
+    with kept_twins():
+        held = find_held_vertices([ob], local.astype(float))
+        block = StackBlock(BlockSettings.read(ob, bpy.context.scene, "shown"), frame, world, held)
+        frames = block.frames()
+    for modifier in ob.modifiers:
+        modifier.show_viewport &= modifier.name not in block.end_modifiers
+    goal = held.hold(world + small_motion(local), world, frame)
+    before = evaluated(ob)
+    ob.data.vertices.foreach_set("co", transform_points(np.linalg.inv(frame), goal).astype(np.float32).ravel())
+    ob.data.update()
+    moved = evaluated(ob) - before
+    predicted = np.einsum("nij,nj->ni", frames, (goal - world)[block.anchors])
+    error = np.sqrt(((predicted - moved) ** 2).sum() / (moved**2).sum())
+    assert error < LOOSE.get(name, 0.25)
+
+
+def shrinkwrapped() -> Any:
+    ob = add_sheet()
+    add_modifier(ob, "SHRINKWRAP", "Wrap", target=add_cube("Target", (0, 0, -4)))
+    return ob
+
+
+def simulated() -> Any:
+    ob = add_sheet()
+    add_modifier(ob, "CLOTH", "Fall")
+    for frame in range(1, 8):
+        bpy.context.scene.frame_set(frame)
+    return ob
+
+
+def with_modifier(kind: str, **settings: Any) -> Any:
+    ob = add_sheet(12)
+    add_modifier(ob, "MIRROR", "Both", use_axis=(False, True, False), use_mirror_merge=False)
+    add_modifier(ob, kind, "It", **settings)
+    return ob
+
+
+REFUSED = {
+    'Piece: Shrinkwrap "Wrap" projects onto "Target"; edit that': shrinkwrapped,
+    'Piece: Cloth "Fall" simulates it; go to its start frame': simulated,
+    'Piece: Decimate "It" changes topology; apply it': lambda: with_modifier("DECIMATE", ratio=0.5),
+    'Piece: Edge Split "It" changes topology; apply it': lambda: with_modifier("EDGE_SPLIT", split_angle=0.1),
+    'Piece: Ocean "It" hides edits; disable it': lambda: with_modifier("OCEAN", resolution=2),
+}
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+@pytest.mark.parametrize("message", REFUSED)
+def test_what_no_edit_can_follow_is_refused(message: str, mode: str) -> None:
+    ob = REFUSED[message]()
+    (select_half if mode == "EDIT" else select)(ob)
+    before = snapshot()
+    with pytest.raises(stiv.InputError) as raised:
+        begin()
+    assert str(raised.value) == message and len(message) <= 80
+    assert snapshot() == before
+    if mode == "OBJECT" and "projects" not in message:
+        BlenderEdit.begin(bpy.context, EditSettings(), "move")  # it moves as a whole
+
+
+def test_an_edit_stops_where_the_topology_changes() -> None:
+    ob = add_sheet()
+    add_modifier(ob, "WELD", merge_threshold=0.1)
+    select(ob)
+    edit = begin()
+    result = edit.drag(np.diag([0.1, 0.1, 1, 1]))
+    assert result.status == "blocked" and result.counters["infeasible"] > 0
+    assert edit.write().passed
+    assert len(evaluated(ob)) == len(ob.data.vertices)
+    assert min(np.linalg.norm(np.diff(evaluated(ob)[:7], axis=0), axis=1)) > 0.1
+
+
+def test_a_modifier_that_uses_another_moving_object_is_refused() -> None:
+    ob, other = mirrored(), add_block()
+    other.name = "Other"
+    ob.modifiers[0].mirror_object = other
+    select(ob, other)
+    with pytest.raises(stiv.InputError, match='Piece: modifier "Mirror" uses "Other"; deselect one'):
+        begin()
+
+
+def test_vertices_on_a_mirror_plane_stay_on_it() -> None:
+    ob = mirrored()
+    select(ob)
+    edit = begin()
+    edit.drag(shift(0.3, 0.2, 0.1))
+    assert edit.write().passed
+    cage = read_cage(ob).reshape(7, 7, 3)
+    assert (cage[:, 0, 0] == 0).all() and cage[:, 0, 1] == pytest.approx(np.linspace(-0.8, 1.2, 7))
+    assert len(evaluated(ob)) == 91
+
+
+def test_twins_are_removed_after_each_call_unless_they_are_kept() -> None:
+    ob = mirrored()
+    skin(ob)
+    select(ob)
+    with kept_twins():
+        edit = begin()
+        assert len(bpy.data.scenes) == 2
+        edit.drag(shift(0, 0.2, 0.1))
+        edit.write()
+        assert len(bpy.data.scenes) == 2
+    assert (len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)) == (1, 1, 1)
+    edit.drag(shift(0, 0.3, 0.1))
+    assert edit.write().passed
+    assert (len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)) == (1, 1, 1)

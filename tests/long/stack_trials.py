@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trials of edits under modifier stacks and of kinds of data, each in three ways, and of random combinations.
+
+    python tests/long/stack_trials.py [--edits 20] [--random 500] [--seed 1]
+
+Prints each trial that was not followed. The exit code is 1 if fewer than 78 of the 84 trials were followed, if
+anything met or was raised, or if the message of a refusal is too long. Needs Blender as a Python module.
+"""
+
+import argparse
+import os
+import sys
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS.parent), str(TESTS), str(TESTS / "blender")]
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+from stack_trials import WAYS, Outcome, run_trial  # noqa: E402
+from stacks import COMMON, KINDS, STACKS, random_stack  # noqa: E402
+
+LEAST_FOLLOWED = 78
+LONGEST = 80  # characters of a message in the status bar
+
+
+def judged(make: Callable[[], Any], way: str, seed: int, edits: int) -> Outcome:
+    """The outcome of a trial in a new file; "raised" with the last lines of a traceback."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    try:
+        return run_trial(make, way, seed, edits)
+    except Exception:
+        return Outcome("raised", "".join(traceback.format_exc()[-600:]))
+
+
+def random_trial(seed: int) -> Outcome:
+    """A trial of a random combination, with its modifiers in the text."""
+    random = np.random.default_rng(seed)
+    names: list[str] = []
+
+    def make() -> Any:
+        piece = random_stack(random)
+        names.extend(modifier.type for modifier in piece.modifiers)
+        return piece
+
+    outcome = judged(make, WAYS[1 + seed % 2], seed, 3)
+    return Outcome(outcome.verdict, f"{' '.join(names)}: {outcome.text}")
+
+
+def counted(title: str, outcomes: dict[str, Outcome]) -> Counter[str]:
+    """Prints all outcomes except the followed ones, and how many there are of each kind."""
+    for name, outcome in outcomes.items():
+        if outcome.verdict != "followed":
+            print(f"{name}: {outcome.verdict}: {outcome.text}", flush=True)
+    found = Counter(outcome.verdict for outcome in outcomes.values())
+    print(f"{title}: {dict(found)}", flush=True)
+    return found
+
+
+def is_bad(outcome: Outcome) -> bool:
+    """Does the outcome break a promise?"""
+    too_long = outcome.verdict == "refused" and len(outcome.text.rpartition(": Piece")[2]) > LONGEST
+    return outcome.verdict in ("met", "raised") or too_long
+
+
+def main() -> int:
+    """Run all trials."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--edits", type=int, default=20)
+    parser.add_argument("--random", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=1)
+    chosen = parser.parse_args()
+    trials = {
+        f"{name}, {way}": judged((STACKS | KINDS)[name], way, chosen.seed + number, chosen.edits)
+        for number, name in enumerate(COMMON)
+        for way in WAYS
+    }
+    found = counted("stacks and kinds of data", trials)
+    combinations = {f"seed {seed}": random_trial(seed) for seed in range(chosen.seed, chosen.seed + chosen.random)}
+    counted("random combinations", combinations)
+    bad = [name for name, outcome in (trials | combinations).items() if is_bad(outcome)]
+    return int(bool(bad) or found["followed"] < LEAST_FOLLOWED)
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    os._exit(code)  # Blender may hang when Python exits
