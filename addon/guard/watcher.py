@@ -195,7 +195,7 @@ def _continue(context: bpy.types.Context, window: bpy.types.Window, running: _Co
     waiting.end(context)
     _watch.correction = None
     if work.stopped:
-        work.task.abandon()
+        work.task.leave()  # `stop` restores
         outcome = correction.stop(context, running.accepted)
     else:
         outcome = work.task.result

@@ -5,12 +5,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator
+from contextlib import suppress
 from functools import partial
 from typing import Any, Generic, TypeVar
 
 from stiv.job import WAIT, Job, JobProgress
 
 Result = TypeVar("Result")
+
+
+class Left(BaseException):
+    """Ends steps whose effects the caller undoes itself; they restore nothing."""
 
 
 _abandoned: list[Job[Any]] = []  # a job without references would wait for its end
@@ -107,8 +112,16 @@ class Task(Generic[Result]):
 
     def abandon(self) -> None:
         """Cancel without waiting: the job ends when it next looks, and the steps end where they are."""
+        self._end_without_waiting(self._steps.close)
+
+    def leave(self) -> None:
+        """The same for steps whose effects the caller undoes itself: they end by the exception Left."""
+        self._end_without_waiting(partial(self._steps.throw, Left()))
+
+    def _end_without_waiting(self, end: Callable[[], object]) -> None:
         self.cancel()
-        self._steps.close()
+        with suppress(Left):
+            end()
         if self._job is not None:
             _abandoned.append(self._job)
         _abandoned[:] = [job for job in _abandoned if not job.poll().done]

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
+import numpy as np
 import pytest
 from building import add_cube, add_grid, evaluated, snapshot
 
-from stiv.blender import AcceptedScene, EditSettings, Task, check_scene, guard_result, guard_result_steps
+from stiv.blender import AcceptedScene, EditSettings, Task, check_scene, guard_result, guard_result_steps, revert
 
 WALL = 3.0  # where its face is, along x
 
@@ -77,6 +78,32 @@ def test_closed_steps_leave_the_tools_result_exactly(change: Callable[[Any], Non
         if any(task.advance(0.0005) for _ in range(turns)):
             break
         task.abandon()
+        bpy.context.view_layer.update()
+        assert snapshot() == changed
+    assert turns > 1
+
+
+def test_steps_that_are_left_write_nothing_more() -> None:
+    """The caller restores the accepted state, once: each state of a large mesh takes a while to write."""
+    accepted, _ = accepted_then_changed(stroke)
+    task = task_of(accepted)
+    task.advance(0.0)
+    shown = snapshot()
+    task.leave()
+    assert snapshot() == shown
+    revert(bpy.context, accepted.state)
+    assert evaluated(bpy.data.objects["Grid"])[:, 0].max() < WALL
+    grid = next(state for state in accepted.state.values() if state.reference.name == "Grid")
+    assert np.array_equal(evaluated(bpy.data.objects["Grid"]), grid.points)
+
+
+def test_a_new_object_stays_where_the_tool_put_it_if_steps_are_left() -> None:
+    accepted, changed = accepted_then_changed(duplicate)
+    for turns in range(1, 8):
+        task = task_of(accepted)
+        if any(task.advance(0.0005) for _ in range(turns)):
+            break
+        task.leave()
         bpy.context.view_layer.update()
         assert snapshot() == changed
     assert turns > 1

@@ -24,7 +24,7 @@ from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
-from stiv.task import Steps, run
+from stiv.task import Left, Steps, run
 
 STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
@@ -72,7 +72,7 @@ def correct_after_tool_steps(
     """Steps of `correct_after_tool`.
 
     Between steps, the scene shows the accepted state of the changed objects. Steps that are closed leave the tool's
-    result.
+    result; those ended by Left leave what the scene shows.
     """
     chosen = [change for change in changes.changes if _participates(change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
@@ -85,6 +85,8 @@ def correct_after_tool_steps(
         outcomes = yield from _passes(context, settings, wanted, names)
         if all(outcome.reached for outcome in outcomes) and _is_tool_result_free(context, wanted, chosen, outcomes):
             return ToolCorrection(False, names, deformers=deformers)
+    except Left:
+        raise
     except BaseException:
         _restore(context, wanted, chosen)
         raise

@@ -32,7 +32,7 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
-from stiv.task import Steps, run
+from stiv.task import Left, Steps, run
 
 
 @dataclass
@@ -78,14 +78,17 @@ def guard_result_steps(
 ) -> Steps[GuardedResult]:
     """Steps of `guard_result`.
 
-    Between steps, the scene may show the accepted state. Steps that are closed leave the tool's result.
+    Between steps, the scene may show the accepted state. Steps that are closed leave the tool's result. Those ended by
+    Left do so only if objects were added or changed their structure; `revert` restores all others.
     """
     present = read_state(context)
+    changes = compare(accepted.state, present)
     try:
-        return (yield from _guard(context, settings, accepted, compare(accepted.state, present)))
-    except GeneratorExit:
-        with suppress(InputError, SceneChangedError):
-            revert(context, present)
+        return (yield from _guard(context, settings, accepted, changes))
+    except (GeneratorExit, Left) as end:
+        if changes.unsupported or not isinstance(end, Left):
+            with suppress(InputError, SceneChangedError):
+                revert(context, present)
         raise
 
 
