@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, add_modifier, edit_mode, evaluated, shift, snapshot
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, meet, shift, snapshot
 from mathutils import Vector
 
 import stiv
@@ -94,6 +94,48 @@ def test_contact_on_one_side_deflects_both(axes: str) -> None:
     assert -0.6 < points[:, 2].min() < -0.1
     assert check_scene(bpy.context).pairs == ()
     bpy.ops.object.mode_set(mode="OBJECT")
+    assert check_scene(bpy.context).pairs == ()
+
+
+def add_twin(sheet: Any) -> None:
+    add("Twin", sheet.data, (8, 0, 0), rotation_euler=(0.4, 0.9, -0.3))
+
+
+def open_and_twist(sheet: Any) -> None:
+    """A modifier that Blender evaluates, and an open seam that it leaves closed."""
+    edited = bmesh.new()
+    edited.from_mesh(sheet.data)
+    bmesh.ops.split_edges(edited, edges=[edge for edge in edited.edges if all(abs(v.co.y) < 1e-3 for v in edge.verts)])
+    edited.to_mesh(sheet.data)
+    edited.free()
+    assert len(sheet.data.vertices) == 7 * 7 + 7
+    sheet.modifiers.clear()
+    add_modifier(sheet, "SIMPLE_DEFORM", deform_method="TWIST", angle=0.2)
+
+
+STACKS = {
+    "along normals": lambda sheet: add_modifier(sheet, "DISPLACE", strength=0.05),
+    "with a seam": open_and_twist,
+    "shared": add_twin,
+}
+
+
+@pytest.mark.parametrize("stack", STACKS)
+def test_modifiers_that_blender_evaluates_are_mirrored_too(stack: str) -> None:
+    sheet = add_sheet("X")
+    sheet.data.vertices[0].co.x -= 0.01
+    STACKS[stack](sheet)
+    add_floor(sheet)
+    edit_mode(sheet)
+    choose(sheet, "one side")
+    edit = begin()
+    edit.apply(shift(*np.array(sheet.matrix_world.to_3x3()) @ (0, 0, -0.9)))
+    assert edit.write().passed
+    points = local(sheet)
+    assert np.abs(points[:, None] - (points * (-1, 1, 1))[None]).sum(axis=2).min(axis=1).max() < 1e-5
+    assert -0.6 < points[:, 2].min() < -0.1
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert meet(sheet.name, "Floor") == 0
     assert check_scene(bpy.context).pairs == ()
 
 

@@ -52,12 +52,17 @@ def join_seams(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> Contro
     seams = _closed_seams(control_set, found, [len(mesh.local) for mesh in shown])
     if all(each is None for each in seams):
         return control_set
-    firsts, count = [], 0
-    for each, mesh in zip(seams, shown, strict=True):
-        first = np.arange(len(mesh.local), dtype=np.int32) if each is None else each.first
-        firsts.append(first + count)
-        count += len(mesh.local)
-    return replace(control_set, deformation=_restrict(control_set, np.concatenate(firsts)), seams=seams)
+    rows = first_copies(seams, [len(mesh.local) for mesh in shown])
+    return replace(control_set, deformation=_restrict(control_set, rows), seams=seams)
+
+
+def first_copies(seams: Sequence[Seams | None], counts: Sequence[int]) -> Indices:
+    """Numbers of the vertices that remain of meshes with these numbers of vertices, stacked, on closed seams."""
+    rows, first = [], 0
+    for each, count in zip(seams, counts, strict=True):
+        rows.append(first + (np.arange(count, dtype=np.int32) if each is None else each.first))
+        first += count
+    return np.concatenate(rows)
 
 
 def copy_to_seams(deformation: stiv.Deformation, control_seams: Seams) -> stiv.Deformation:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -13,8 +14,11 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet, Writer
+from stiv.blender.controls.joined_seams import copy_to_seams, first_copies, selection_weights
 from stiv.blender.controls.points import PointGoal
+from stiv.blender.controls.subdivision import is_linear
 from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 DISTANCE = 2e-5  # local units within which Blender finds a mirror image
 Signs = NDArray[np.int8]
@@ -36,7 +40,7 @@ class MirroredWriter:
         self.writer.restore()
 
 
-def mirror_controls(control_set: ControlSet) -> ControlSet:
+def mirror_controls(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> ControlSet:
     """The control set with one control for each group of vertices that Blender's mirror options connect.
 
     Unchanged outside Edit Mode, and without these options. Raises InputError for Topology Mirror.
@@ -59,7 +63,7 @@ def mirror_controls(control_set: ControlSet) -> ControlSet:
     images = _images(control_set.controls, leaders, kept, signs, frame)
     return replace(
         control_set,
-        deformation=_composed(control_set.deformation, images),
+        deformation=_composed(control_set, images, meshes),
         controls=control_set.controls[kept],
         weights=control_set.weights[kept],
         max_weights=control_set.max_weights[kept],
@@ -70,11 +74,17 @@ def mirror_controls(control_set: ControlSet) -> ControlSet:
     )
 
 
-def _composed(surface: stiv.Deformation, images: stiv.Deformation) -> stiv.Deformation:
-    try:
-        return stiv.compose(surface, images)
-    except InputError:  # the identity has no weights
-        return images
+def _composed(control_set: ControlSet, images: stiv.Deformation, meshes: Sequence[VisibleMesh]) -> stiv.Deformation:
+    if control_set.observed is None:
+        surface = control_set.deformation
+        return stiv.compose(surface, images) if is_linear(surface) else images  # the identity has no weights
+    seams = control_set.control_seams
+    vertices = images if seams is None else copy_to_seams(images, seams)
+    whole = control_set.observed.deformation_of(vertices)
+    if not control_set.seams:
+        return whole
+    rows = first_copies(control_set.seams, [len(meshes[index].local) for index in control_set.surfaces])
+    return stiv.compose(selection_weights(rows, whole.vertex_count), whole)
 
 
 def _find_leaders(local: Floats, selected: Flags, axes: Flags) -> tuple[Indices, Signs]:

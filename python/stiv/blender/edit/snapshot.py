@@ -70,7 +70,7 @@ def take_snapshot(
     )
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     found, groups = make_control_sets(context, participants, solid, settings, kind)
-    control_sets = tuple(adapt(mirror_controls(each)) for each in found)
+    control_sets = tuple(adapt(mirror_controls(each, solid)) for each in found)
     if not any(each.rule.moves for each in control_sets):
         raise _nothing_moves(participants, solid)
     moving = {each.reference.name for each in participants}.union(
