@@ -125,6 +125,10 @@ class BlockMetric final : public Metric {
     return std::all_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block->is_local(); });
   }
 
+  bool is_ready() const override {
+    return std::all_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block->is_ready(); });
+  }
+
  private:
   std::vector<std::unique_ptr<Metric>> blocks_;
   std::vector<Index> starts_;

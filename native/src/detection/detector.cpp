@@ -11,6 +11,12 @@ Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
+void Detector::prepare(const PositionsView& start, Execution& execution) {
+  const FloatingPointScope floating_point;
+  search_->surface().check_positions(start);
+  search_->prepare(start, execution);
+}
+
 Events Detector::find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution) {
   return *search_->find({start, end, proximity}, PairLimit::ignored, execution);
 }

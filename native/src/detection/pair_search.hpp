@@ -25,6 +25,8 @@ class PairSearch {
  public:
   PairSearch(std::shared_ptr<const Surface> surface, DetectorOptions options);
 
+  void prepare(const PositionsView& start, const Execution& execution) { source_->prepare(start, execution); }
+
   /// Nothing if the step exceeds a pair limit that is respected.
   /// @throws InputError for a step or a proximity that does not fit, as the others
   std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);

@@ -66,9 +66,11 @@ void CollisionQueries::check_start(const Positions& q, Execution& execution) {
   StaticPairs found = guard_->intersections.find_all(q, execution);
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
-  if (found.empty()) return;
-  const std::string message = describe(context_.surface(), found);
-  throw StartIntersectsError(message, std::move(found.faces));
+  if (!found.empty()) {
+    const std::string message = describe(context_.surface(), found);
+    throw StartIntersectsError(message, std::move(found.faces));
+  }
+  guard_->detector.prepare(context_.centred(q), execution);
 }
 
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.

@@ -23,7 +23,8 @@ class CollisionQueries {
   CollisionQueries(const CollisionQueries&) = delete;
   CollisionQueries& operator=(const CollisionQueries&) = delete;
 
-  /// The first surface that is checked is the start of the session.
+  /// The first surface that is checked is the start of the session. Builds the trees from it, so that the first edit
+  /// need not.
   /// @throws StartIntersectsError
   void check_start(const Positions& q, Execution& execution);
 

@@ -2,8 +2,10 @@
 #include "editing/round_loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
@@ -112,8 +114,17 @@ bool RoundLoop::constrain() {
   return true;
 }
 
+/// Large metrics are factored while the first motions are free.
+void RoundLoop::wait_for_metric() const {
+  while (!call_.context.metric().is_ready()) {
+    call_.execution.check();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 std::vector<ControlConstraint> RoundLoop::linearised(const std::vector<Stiv>& stivs) const {
   const ScopedTimer timer(call_.execution.timings.response);
+  wait_for_metric();
   return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, call_.context.metric(),
                              call_.accepted.controls, &call_.execution);
 }

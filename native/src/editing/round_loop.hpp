@@ -43,6 +43,7 @@ class RoundLoop {
   auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
+  void wait_for_metric() const;
   std::vector<ControlConstraint> linearised(const std::vector<Stiv>& stivs) const;
   void place_surface();
 

@@ -57,6 +57,16 @@ TEST_CASE("detector: both cuts of a flip face meet others, and never each other"
   }
 }
 
+TEST_CASE("detector: prepared trees find the same events, and refuse positions of another surface") {
+  const MovingScene scene = falling_vertex();
+  Execution execution(1);
+  Detector prepared(scene.surface);
+  prepared.prepare(scene.start, execution);
+  CHECK(prepared.find(scene.start, scene.end, {0.1, 0.5}, execution).size() ==
+        Detector(scene.surface).find(scene.start, scene.end, {0.1, 0.5}, execution).size());
+  CHECK_THROWS_AS(prepared.prepare(scene.start.topRows(3), execution), InputError);
+}
+
 TEST_CASE("detector: a loose vertex that falls through a face is one event") {
   const MovingScene scene = falling_vertex();
   for (const BroadPhase broad_phase : {BroadPhase::bvh, BroadPhase::hash_grid, BroadPhase::brute_force}) {

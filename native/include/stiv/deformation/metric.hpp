@@ -36,6 +36,9 @@ class Metric {
   /// coordinates of other controls are 0.
   virtual SparseField apply_inverse(const ControlsView& p, const SparseField& g) const = 0;
 
+  /// False while a thread prepares the inverse; until then, `apply_inverse` waits.
+  virtual bool is_ready() const { return true; }
+
   /// True if a step moves only the covector's controls, or those of the same body. Contacts can then be resolved one by
   /// one without stiffening the rest.
   virtual bool is_local() const { return false; }

@@ -42,6 +42,9 @@ class Detector {
   Detector(Detector&&) noexcept;
   Detector& operator=(Detector&&) noexcept;
 
+  /// Builds the trees now that the first step from `start`, (N, 3), would build. Results do not depend on it.
+  void prepare(const PositionsView& start, Execution& execution);
+
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
   Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 

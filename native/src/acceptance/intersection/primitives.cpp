@@ -62,7 +62,7 @@ void Primitives::update(const std::vector<PackedBox>& vertices, const Execution&
   if (!tree_) {
     std::vector<Bounds> boxes;
     for (const auto& corners : corners_) boxes.push_back(box_of(corners, vertices).bounds());
-    tree_.emplace(centres_of(boxes), bodies_);
+    tree_.emplace(centres_of(boxes), bodies_, CornerRows(), execution);
   }
   tree_->refit([&](Index primitive) { return box_of(corners(primitive), vertices); }, execution);
 }

@@ -2,11 +2,17 @@
 #include "deformation/linear/linear_metric.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <thread>
 #include <utility>
 
 #include "deformation/metric/axis_metric.hpp"
 #include "deformation/metric/gram_metric.hpp"
 #include "stiv/error.hpp"
+#include "stiv/execution.hpp"
 
 namespace stiv {
 
@@ -40,6 +46,26 @@ Eigen::MatrixXd dense_gram(const WeightColumns& matrix) {
   return gram.selfadjointView<Eigen::Lower>();
 }
 
+using Factor = Eigen::SimplicialLDLT<WeightColumns>;
+using FutureFactor = std::shared_future<std::shared_ptr<const Factor>>;
+
+constexpr const char* unusable_weights =
+    "the metric of the controls cannot be factored: check for very large or very small weights";
+
+/// Factors on a thread of its own: large cages take seconds, and nothing needs the factor before the first contact.
+/// The thread owns its matrix, and no one waits for its end if the factor is no longer wanted.
+FutureFactor factor_aside(WeightColumns damped) {
+  std::packaged_task<std::shared_ptr<const Factor>()> task([matrix = std::move(damped)] {
+    const FloatingPointScope floating_point;
+    auto factor = std::make_shared<Factor>(matrix);
+    if (factor->info() != Eigen::Success) throw InputError(unusable_weights);
+    return std::shared_ptr<const Factor>(std::move(factor));
+  });
+  FutureFactor factor = task.get_future();
+  std::thread(std::move(task)).detach();
+  return factor;
+}
+
 class SparseLinearMetric final : public Metric {
  public:
   SparseLinearMetric(const WeightColumns& matrix, double smoothness, ActiveControls active)
@@ -47,20 +73,21 @@ class SparseLinearMetric final : public Metric {
     WeightColumns damped = WeightColumns(matrix.transpose()) * matrix;
     const double damping = smoothness * damped.diagonal().mean();
     for (Index k = 0; k < damped.cols(); ++k) damped.coeffRef(k, k) += damping;
-    factor_.compute(damped);
-    if (factor_.info() != Eigen::Success)
-      throw InputError("the metric of the controls cannot be factored: check for very large or very small weights");
+    if (!std::isfinite(damped.sum())) throw InputError(unusable_weights);
+    factor_ = factor_aside(std::move(damped));
   }
+
+  bool is_ready() const override { return factor_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
   SparseField apply_inverse(const ControlsView&, const SparseField& g) const override {
     const ActiveVector right = restrict_to(active_, g);
     if (right.place.empty()) return {};
-    return extend_from(active_, factor_.solve(dense_columns(active_, right)));
+    return extend_from(active_, factor_.get()->solve(dense_columns(active_, right)));
   }
 
  private:
   ActiveControls active_;
-  Eigen::SimplicialLDLT<WeightColumns> factor_;
+  FutureFactor factor_;
 };
 
 std::unique_ptr<Metric> metric_of_active(const WeightColumns& matrix, double smoothness, ActiveControls active) {

@@ -86,6 +86,10 @@ class AxisMetric final : public Metric {
     return std::all_of(groups_.begin(), groups_.end(), [](const auto& group) { return group.metric->is_local(); });
   }
 
+  bool is_ready() const override {
+    return std::all_of(groups_.begin(), groups_.end(), [](const auto& group) { return group.metric->is_ready(); });
+  }
+
  private:
   const Eigen::Matrix3d& axes_of(const SparseField& field, std::size_t k) const { return axes_[at(field.index[k])]; }
 

@@ -77,16 +77,19 @@ std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
   return centres;
 }
 
-Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners)
-    : size_(static_cast<Index>(centres.size())), order_(block_order(centres, groups, width)), places_(centres.size()) {
+Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+         const Execution& execution)
+    : size_(static_cast<Index>(centres.size())),
+      order_(block_order(centres, groups, width, execution)),
+      places_(centres.size()) {
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
   reserve_levels(groups);
-  set_corners(corners, Execution(1));
+  set_corners(corners, execution);
 }
 
 Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
-    : Bvh(centres_of(boxes), groups, corners) {
+    : Bvh(centres_of(boxes), groups, corners, Execution(1)) {
   refit(boxes);
 }
 

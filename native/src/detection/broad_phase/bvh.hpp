@@ -61,8 +61,8 @@ class Bvh {
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
   /// Builds over finite points; the boxes come with the first refit.
-  explicit Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups = {},
-               const CornerRows& corners = {});
+  Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+      const Execution& execution);
 
   Index size() const { return size_; }
 

@@ -42,6 +42,12 @@ class BvhSource final : public CandidateSource {
     std::iota(numbers_.begin(), numbers_.end(), 0);
   }
 
+  void prepare(const PositionsView& start, const Execution& execution) override {
+    vertices_.prepare(start, execution);
+    edges_.prepare(start, execution);
+    faces_.prepare(start, execution);
+  }
+
   void update(const Step& step, const Execution& execution) override {
     separation_ = step.proximity.separation;
     // If this is cancelled, the next step starts from scratch.

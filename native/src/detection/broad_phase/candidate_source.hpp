@@ -28,6 +28,8 @@ class CandidateSource {
   using Sink = std::function<void(std::span<Candidate>)>;
 
   virtual ~CandidateSource() = default;
+  /// Does the part of the first update that depends on its start alone.
+  virtual void prepare(const PositionsView&, const Execution&) {}
   /// @throws InputError as Surface::check_positions, except for the shape
   virtual void update(const Step& step, const Execution& execution) = 0;
   /// The step of the last update, for vector code to load.

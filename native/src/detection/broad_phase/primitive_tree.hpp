@@ -24,13 +24,18 @@ class PrimitiveTree {
   /// Brings the boxes up to date after `change` of the vertices' boxes.
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
-    if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start);
+    if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
       tree_->refit(box_of, execution);
     } else if (change == SweptVertices::Change::some) {
       tree_->refit_some(incidence_->primitives_with(swept.changed()), box_of);
     }
+  }
+
+  /// Builds the tree that the first update from these positions would build.
+  void prepare(const PositionsView& start, const Execution& execution) {
+    if (!tree_) build(start, execution);
   }
 
   const Bvh& tree() const { return *tree_; }
@@ -45,17 +50,20 @@ class PrimitiveTree {
   }
 
   /// Sorted by the start of the step: its end may be anywhere.
-  void build(const PositionsView& start) {
+  void build(const PositionsView& start, const Execution& execution) {
+    constexpr Index chunk_size = 8192;
     std::vector<Eigen::Vector3f> centres(count_);
     std::vector<Index> bodies(count_);
-    for (Index primitive = 0; primitive < count_; ++primitive) {
-      Vector3 sum = Vector3::Zero();
-      for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
-      const Eigen::Vector3f centre = sum.cast<float>();
-      centres[primitive] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
-      bodies[primitive] = surface_.body_of(row(primitive)[0]);
-    }
-    tree_.emplace(centres, bodies, CornerRows{rows_, size});
+    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
+      for (Index primitive = begin; primitive < end; ++primitive) {
+        Vector3 sum = Vector3::Zero();
+        for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
+        const Eigen::Vector3f centre = sum.cast<float>();
+        centres[primitive] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
+        bodies[primitive] = surface_.body_of(row(primitive)[0]);
+      }
+    });
+    tree_.emplace(centres, bodies, CornerRows{rows_, size}, execution);
     // Needed only when few vertices move; built here so that memory does not grow late in a session.
     if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
     spread_ = spread(start);

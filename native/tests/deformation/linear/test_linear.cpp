@@ -88,6 +88,20 @@ TEST_CASE("linear: controls without vertices do not move") {
   CHECK(step.index == std::vector<Index>{0, 2});
 }
 
+TEST_CASE("linear: the inverse of a large metric is factored aside and waited for") {
+  constexpr Index m = 4000;  // sparse
+  const auto linear = make_linear(banded_weights(2 * m, m));
+  const auto metric = linear->metric({});
+  const Controls p = Controls::Zero(m, 3);
+  const SparseField g = random_field(m, 1, 3);
+  const Positions step = dense(metric->apply_inverse(p, g), m);
+  CHECK(metric->is_ready());
+  CHECK(dense(linear->metric({})->apply_inverse(p, g), m) == step);
+  linear->metric({});  // no one waits for its end
+  const auto huge = make_linear(WeightMatrix(banded_weights(2 * m, m) * 1e200));
+  CHECK_THROWS_WITH_AS(huge->metric({}), doctest::Contains("cannot be factored"), InputError);
+}
+
 TEST_CASE("linear: everything pinned") {
   MetricOptions options;
   options.weights = Eigen::VectorXd::Zero(5);

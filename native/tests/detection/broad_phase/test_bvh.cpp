@@ -95,6 +95,14 @@ TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
   for (const int threads : {2, 3}) CHECK(Bvh::overlapping_pairs(tree, Execution(threads)) == expected);
 }
 
+TEST_CASE("bvh: the tree does not depend on the number of threads") {
+  const std::vector<Eigen::Vector3f> centres = centres_of(random_boxes(20000, 0.05, 8));
+  std::vector<Index> groups;
+  for (Index k = 0; k < 20000; ++k) groups.push_back(k < 15000 ? 0 : 1);
+  const Bvh tree(centres, groups, {}, Execution(1));
+  for (const int threads : {2, 3}) CHECK(Bvh(centres, groups, {}, Execution(threads)).order() == tree.order());
+}
+
 TEST_CASE("bounds: single precision is rounded outward at all scales") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
