@@ -7,6 +7,7 @@ import bpy
 import mathutils
 import numpy as np
 
+from stiv.blender.controls.parent_space import ParentSpace, keep_locked, read_parent_space
 from stiv.blender.controls.rotations import euler_angles, is_rotation, nearest_rotation
 from stiv.blender.scene.arrays import Floats, as_matrix
 
@@ -23,6 +24,7 @@ class ObjectTransform:
         world: world matrix, (4, 4).
         above: matrix of the parent and its inverse, (4, 4), from `basis` to the world.
         basis: matrix of location, rotation and scale, including deltas, (4, 4).
+        space: how Blender rounds places below a parent; None without a parent, or where it is unknown.
     """
 
     location: tuple[float, ...]
@@ -32,6 +34,7 @@ class ObjectTransform:
     world: Floats
     parent_matrix: Floats
     basis: Floats
+    space: ParentSpace | None = None
 
     def can_hold_rotations(self) -> bool:
         """Can the object's own rotation express every rotation in the world?"""
@@ -52,8 +55,9 @@ def read_transform(ob: bpy.types.Object) -> ObjectTransform:
     name = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
     parent_matrix = np.eye(4) if np.array_equal(world, basis) else world @ np.linalg.inv(basis)
     return ObjectTransform(
-        tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis
-    )
+        tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis,
+        read_parent_space(ob),
+    )  # fmt: skip
 
 
 def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats, factors: Floats) -> None:
@@ -65,7 +69,11 @@ def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats
     shift = (inner @ start.basis)[:3, 3] - start.basis[:3, 3]
     size = max(float(np.abs(each[:3, 3]).max()) for each in (motion, start.basis, start.parent_matrix))
     shift[np.abs(shift) <= ROUNDING * size] = 0.0
-    ob.location = np.asarray(start.location) + shift
+    location = np.asarray(start.location) + shift
+    if start.space is not None and np.array_equal(motion[:3, :3], np.eye(3)):
+        place = start.world[:3, 3]
+        location = keep_locked(start.space, location, place, place + motion[:3, 3])
+    ob.location = location
     ob.scale = np.asarray(start.scale) * factors
     if np.array_equal(factors, np.ones(3)) and not np.array_equal(motion[:3, :3], np.eye(3)):
         _write_rotation(ob, start, nearest_rotation(inner[:3, :3]))
