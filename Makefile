@@ -121,13 +121,14 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, random events and snaps in a window, soak, memory, pip install from source
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, stacks of modifiers, random events and snaps in a window, soak, memory, pip install from source
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/random_sessions.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	build/venv-blender/bin/python tests/long/cancelling_in_blender.py --times 200
+	build/venv-blender/bin/python tests/long/stack_trials.py
 	build/venv/bin/python tests/window/run.py --sequences 500 --limit 7200 random_sequences
 	STIV_WINDOW_SNAPS=50 build/venv/bin/python tests/window/run.py snaps_as_blender
 	build/venv/bin/python tests/long/soak.py --drags 10000

@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 import numpy as np
 from building import as_rendered, edit_mode, evaluated, meet, select, shift, snapshot, turn
-from stacks import add_body
+from stacks import add_body, random_stack
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene
@@ -41,7 +41,7 @@ def run_trial(make: Callable[[], Any], way: str, seed: int, edits: int) -> Outco
     random = np.random.default_rng(seed)
     piece = make()
     add_body()
-    _open(piece, way)
+    open_piece(piece, way)
     before, start = snapshot(), evaluated(piece)
     try:
         edit = BlenderEdit.begin(bpy.context, settings_of(way), "move")
@@ -66,12 +66,25 @@ def run_trial(make: Callable[[], Any], way: str, seed: int, edits: int) -> Outco
     return Outcome("met", met) if met else Outcome("followed" if moved < -TO_CONTACT else "stuck", f"{moved:.2f}")
 
 
+def run_random_trial(seed: int) -> tuple[Outcome, list[str]]:
+    """A trial of a random combination of modifiers, deforming or in Edit Mode, and the types of these modifiers."""
+    random = np.random.default_rng(seed)
+    names: list[str] = []
+
+    def make() -> Any:
+        piece = random_stack(random)
+        names.extend(modifier.type for modifier in piece.modifiers)
+        return piece
+
+    return run_trial(make, WAYS[1 + seed % 2], seed, 3), names
+
+
 def settings_of(way: str) -> EditSettings:
     """The settings of a way to edit."""
     return EditSettings(object_response="slide" if way == "whole" else "deform", guard="both")
 
 
-def _open(piece: Any, way: str) -> None:
+def open_piece(piece: Any, way: str) -> None:
     """Select the piece; in Edit Mode, the half of its vertices with the lower y."""
     if way != "edit mode" or piece.type == "FONT":
         select(piece)

@@ -13,42 +13,33 @@ import sys
 import traceback
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS.parent), str(TESTS), str(TESTS / "blender")]
 
 import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-from stack_trials import WAYS, Outcome, run_trial  # noqa: E402
-from stacks import COMMON, KINDS, STACKS, random_stack  # noqa: E402
+from stack_trials import WAYS, Outcome, run_random_trial, run_trial  # noqa: E402
+from stacks import COMMON, KINDS, STACKS  # noqa: E402
 
 LEAST_FOLLOWED = 78
 LONGEST = 80  # characters of a message in the status bar
 
 
-def judged(make: Callable[[], Any], way: str, seed: int, edits: int) -> Outcome:
+def judged(trial: Callable[[], Outcome]) -> Outcome:
     """The outcome of a trial in a new file; "raised" with the last lines of a traceback."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     try:
-        return run_trial(make, way, seed, edits)
+        return trial()
     except Exception:
         return Outcome("raised", "".join(traceback.format_exc()[-600:]))
 
 
 def random_trial(seed: int) -> Outcome:
     """A trial of a random combination, with its modifiers in the text."""
-    random = np.random.default_rng(seed)
-    names: list[str] = []
-
-    def make() -> Any:
-        piece = random_stack(random)
-        names.extend(modifier.type for modifier in piece.modifiers)
-        return piece
-
-    outcome = judged(make, WAYS[1 + seed % 2], seed, 3)
-    return Outcome(outcome.verdict, f"{' '.join(names)}: {outcome.text}")
+    outcome, names = run_random_trial(seed)
+    return Outcome(outcome.verdict, f"{' '.join(names)}\n{outcome.text}")
 
 
 def counted(title: str, outcomes: dict[str, Outcome]) -> Counter[str]:
@@ -63,7 +54,7 @@ def counted(title: str, outcomes: dict[str, Outcome]) -> Counter[str]:
 
 def is_bad(outcome: Outcome) -> bool:
     """Does the outcome break a promise?"""
-    too_long = outcome.verdict == "refused" and len(outcome.text.rpartition(": Piece")[2]) > LONGEST
+    too_long = outcome.verdict == "refused" and len(outcome.text.rpartition("\n")[2]) > LONGEST
     return outcome.verdict in ("met", "raised") or too_long
 
 
@@ -75,12 +66,14 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     trials = {
-        f"{name}, {way}": judged((STACKS | KINDS)[name], way, chosen.seed + number, chosen.edits)
+        f"{name}, {way}": judged(partial(run_trial, (STACKS | KINDS)[name], way, chosen.seed + number, chosen.edits))
         for number, name in enumerate(COMMON)
         for way in WAYS
     }
     found = counted("stacks and kinds of data", trials)
-    combinations = {f"seed {seed}": random_trial(seed) for seed in range(chosen.seed, chosen.seed + chosen.random)}
+    combinations = {
+        f"seed {seed}": judged(partial(random_trial, seed)) for seed in range(chosen.seed, chosen.seed + chosen.random)
+    }
     counted("random combinations", combinations)
     bad = [name for name, outcome in (trials | combinations).items() if is_bad(outcome)]
     return int(bool(bad) or found["followed"] < LEAST_FOLLOWED)

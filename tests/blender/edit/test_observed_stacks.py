@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edits of meshes under any modifiers, which Blender evaluates during the edit; what they cannot follow is refused."""
 
-import os
 from typing import Any
 
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_modifier, as_rendered, edit_mode, evaluated, meet, select, shift, snapshot, turn
-from stacks import STACKS, add_block, add_body, add_sheet, mirrored, random_stack, skin
+from building import add_cube, add_modifier, evaluated, select, shift, snapshot
+from stack_trials import WAYS, open_piece, run_random_trial, run_trial
+from stacks import KINDS, STACKS, add_block, add_sheet, mirrored, skin
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene, kept_twins
+from stiv.blender import BlenderEdit, EditSettings, kept_twins
 from stiv.blender.controls.held_vertices import find_held_vertices
 from stiv.blender.controls.stack_block import BlockSettings, StackBlock
 from stiv.blender.scene.arrays import as_matrix, transform_points
@@ -24,72 +24,30 @@ def begin(settings: EditSettings = DEFORM) -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, settings, "move")
 
 
-def assert_clear() -> None:
-    """No intersections in Object Mode and in the render, by rational arithmetic between objects."""
-    assert meet("Piece", "Body") == 0
-    assert check_scene(bpy.context).pairs == ()
-    as_rendered()
-    assert meet("Piece", "Body") == 0
-
-
-def select_half(ob: Any) -> None:
-    """Edit Mode with the vertices of the lower half of y selected."""
-    edit_mode(ob)
-    bpy.ops.mesh.select_all(action="DESELECT")
-    bpy.ops.object.mode_set(mode="OBJECT")
-    low = np.median([vertex.co.y for vertex in ob.data.vertices])
-    ob.data.vertices.foreach_set("select", [bool(vertex.co.y <= low) for vertex in ob.data.vertices])
-    bpy.ops.object.mode_set(mode="EDIT")
-
-
-@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+@pytest.mark.parametrize("way", ["deforming", "edit mode"])
 @pytest.mark.parametrize("name", STACKS)
-def test_pieces_pushed_against_a_body(name: str, mode: str) -> None:
-    ob = STACKS[name]()
-    add_body()
-    (select_half if mode == "EDIT" else select)(ob)
-    before, start = snapshot(), evaluated(ob)
-    edit = begin()
-    assert snapshot() == before
-    random = np.random.default_rng(len(name))
-    for number in range(1, 4):
-        motion = shift(*random.uniform(-0.1, 0.1, 2), -0.25 * number) @ turn(0.1 * random.normal(), "XYZ"[number % 3])
-        edit.drag(motion)
-        assert edit.write().passed
-    assert edit.settle().status != "cancelled"
-    assert edit.write().passed
-    assert len(bpy.data.scenes) == 1
-    moved = evaluated(ob) - start
-    assert moved[:, 2].min() < -0.2, "it moves at least as far as to the first contact"
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert_clear()
+def test_pieces_pushed_against_a_body(name: str, way: str) -> None:
+    """Free in Object Mode and in the render; tests/long/stack_trials.py tries more edits."""
+    outcome = run_trial(STACKS[name], way, len(name), 3)
+    assert outcome.verdict == "followed", outcome.text
 
 
-@pytest.mark.parametrize("seed", range(int(os.environ.get("STIV_STACKS", "12"))))
+TRIALS = [(name, "whole") for name in ("Armature, Subdivision Surface", "Curve", "Hook", "Lattice", "Mesh Deform")]
+TRIALS += [(name, way) for name in KINDS for way in WAYS if (name, way) != ("Text object", "edit mode")]
+
+
+@pytest.mark.parametrize(("name", "way"), TRIALS)
+def test_objects_bent_by_others_and_kinds_of_data_are_followed(name: str, way: str) -> None:
+    outcome = run_trial((STACKS | KINDS)[name], way, 1, 3)
+    assert outcome.verdict == "followed", outcome.text
+
+
+@pytest.mark.parametrize("seed", range(12))
 def test_random_combinations_of_modifiers(seed: int) -> None:
-    """Followed without intersections, or refused in a sentence. STIV_STACKS=500 tries more."""
-    random = np.random.default_rng(seed)
-    ob = random_stack(random)
-    add_body()
-    (select_half if random.integers(2) else select)(ob)
-    names = [modifier.type for modifier in ob.modifiers]
-    before = snapshot()
-    try:
-        edit = begin()
-    except stiv.InputError as error:
-        print(seed, names, error)
-        assert snapshot() == before and 20 < len(str(error)) <= 80
-        return
-    except stiv.StartIntersectsError:
-        assert snapshot() == before
-        assert check_scene(bpy.context).pairs
-        return
-    for number in range(1, 4):
-        edit.drag(shift(*random.uniform(-0.1, 0.1, 2), -0.2 * number) @ turn(0.1 * random.normal(), "Z"))
-        report = edit.write()
-        assert report.passed, (seed, names, report.message)
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert_clear()
+    """Followed without intersections, or refused in a sentence; tests/long/stack_trials.py tries 500."""
+    outcome, names = run_random_trial(seed)
+    assert outcome.verdict != "met", (names, outcome.text)
+    assert outcome.verdict != "refused" or 20 < len(outcome.text) <= 80
 
 
 def small_motion(points: np.ndarray) -> np.ndarray:
@@ -159,7 +117,7 @@ REFUSED = {
 @pytest.mark.parametrize("message", REFUSED)
 def test_what_no_edit_can_follow_is_refused(message: str, mode: str) -> None:
     ob = REFUSED[message]()
-    (select_half if mode == "EDIT" else select)(ob)
+    open_piece(ob, "edit mode" if mode == "EDIT" else "deforming")
     before = snapshot()
     with pytest.raises(stiv.InputError) as raised:
         begin()

@@ -45,7 +45,7 @@ def make_control_sets(
 ) -> tuple[list[ControlSet], list[RigidGroup]]:
     """Make all control sets and rigid groups. Raises InputError for what cannot be moved, with nothing changed."""
     participants = drop_locked(participants, kind)
-    groups = find_rigid_groups(participants, evaluations_of(meshes))
+    groups = find_rigid_groups(participants, evaluations_of(meshes), kind)
     by_lattice = {
         participant.reference: _deformed_by(participant.reference, meshes)
         for participant in participants
@@ -77,8 +77,7 @@ def make_control_sets(
 
 def _rigid(group: RigidGroup, meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str) -> ControlSet:
     surfaces = _shown_by(group.members, meshes)
-    rest = np.concatenate([np.empty((0, 3)), *(meshes[index].world() for index in surfaces)])
-    return make_rigid_set(group, surfaces, rest, settings, kind)
+    return make_rigid_set(group, surfaces, [meshes[index] for index in surfaces], settings, kind)
 
 
 def _lattice(

@@ -14,6 +14,7 @@ from stiv.seams import Seams
 
 if TYPE_CHECKING:
     from stiv.blender.controls.observed_stack import ObservedStack
+    from stiv.blender.controls.placed_stack import PlacedStack
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,7 @@ class ControlSet:
         weight_axes: axes of (m, 3) weights as columns of rotations, (m, 3, 3); None for the world axes.
         kept: controls that are left of mirrored groups, by their former numbers, (m,); None without mirrored editing.
         observed: the stack of modifiers that Blender evaluates during the edit; None if all are known.
+        placed: the same for objects that move as a whole; None if they keep their shape.
     """
 
     names: tuple[str, ...]
@@ -111,6 +113,7 @@ class ControlSet:
     weight_axes: Floats | None = None
     kept: Indices | None = None
     observed: "ObservedStack | None" = None
+    placed: "PlacedStack | None" = None
 
     def values_at_controls(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values at the controls, (m, ...), from values at all vertices of the object, (n, ...)."""

@@ -22,8 +22,6 @@ from stiv.blender.controls.subdivision import (
 from stiv.blender.scene.arrays import Floats, Indices, to_local
 from stiv.blender.scene.stack_twin import kept_twins
 
-CALLS = 4  # of a session between two Jacobians
-
 
 @dataclass(frozen=True)
 class ShownStack:
@@ -51,7 +49,7 @@ class ObservedStack:
         """Read the stacks of a mesh with a frame, (4, 4). Raises InputError if they cannot be followed."""
         for each in shown:
             check_projections(each.ob, each.evaluation)
-        self._calls, self._frame, self._start = 0, frame, controls
+        self._frame, self._start = frame, controls
         self._held = find_held_vertices([each.ob for each in shown], to_local(frame, controls))
         with kept_twins():
             settings = [BlockSettings.read(each.ob, scene, each.evaluation) for each in shown]
@@ -92,11 +90,6 @@ class ObservedStack:
             chain.append(stack_deformations([each or identity_deformation(count) for each in self._cages]))
         chain += [] if vertices is None else [vertices]
         return stiv.compose(*chain) if self._ends is None else stiv.compose(self._ends, *chain)
-
-    def is_jacobian_due(self, blocked: bool) -> bool:
-        """Is it time to renew the Jacobian? At times, and after a blocked call. Asked before each call of a session."""
-        self._calls += 1
-        return blocked or self._calls % CALLS == 0
 
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation."""

@@ -2,7 +2,7 @@
 """Groups of objects that move together rigidly: selected objects, their children, and objects tied to them."""
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 
@@ -16,17 +16,22 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 @dataclass(frozen=True)
 class RigidGroup:
-    """`roots` are written; `members` (names, including the roots) move along."""
+    """`roots` are written; `members` (names, including the roots) move along.
+
+    bent: names of the members whose modifiers refer to objects that stay.
+    """
 
     roots: tuple[Participant, ...]
     members: frozenset[str]
+    bent: frozenset[str] = frozenset()
 
 
-def find_rigid_groups(participants: list[Participant], evaluations: Collection[str]) -> list[RigidGroup]:
+def find_rigid_groups(participants: list[Participant], evaluations: Collection[str], kind: str) -> list[RigidGroup]:
     """Groups of all rigid participants, in the order of their first roots, with their dependencies in these
     evaluations.
 
-    Raises InputError for objects that cannot be moved, or whose shape depends on objects that do not move along.
+    Raises InputError for objects that cannot be moved, or that turn or yield though their shape depends on objects that
+    do not move along.
     """
     groups = [
         _family(participant)
@@ -35,11 +40,25 @@ def find_rigid_groups(participants: list[Participant], evaluations: Collection[s
     for group in list(groups):
         for dependency in _outside_dependencies(group, evaluations):
             groups = _merge_groups(groups, dependency)
-    for group in groups:
-        for dependency in _outside_dependencies(group, evaluations):
-            if not moves_as_a_whole(bpy.data.objects[dependency.user]):
-                raise InputError(f'{dependency.user}: {dependency.through} depends on "{dependency.used}"; select both')
-    return groups
+    return [_with_bent(group, evaluations, kind) for group in groups]
+
+
+def _with_bent(group: RigidGroup, evaluations: Collection[str], kind: str) -> RigidGroup:
+    """The group with its bent members. Raises InputError for those that Blender cannot evaluate in another place."""
+    outside = _outside_dependencies(group, evaluations)
+    bent = [each for each in outside if not moves_as_a_whole(bpy.data.objects[each.user])]
+    for each in bent:
+        if kind != "move" or not group.roots[0].selected or not _may_bend(each):
+            raise InputError(f'{each.user}: {each.through} depends on "{each.used}"; select both')
+    return replace(group, bent=frozenset(each.user for each in bent))
+
+
+def _may_bend(dependency: Dependency) -> bool:
+    """Can a copy in another place show the shape that the user has there? Not with constraints or instances."""
+    ob = bpy.data.objects[dependency.user]
+    has_nodes = any(isinstance(modifier, bpy.types.NodesModifier) for modifier in ob.modifiers)
+    shows_itself = ob.type == "MESH" and ob.instance_type == "NONE" and not has_nodes
+    return shows_itself and not dependency.through.startswith("constraint")
 
 
 def add_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:
@@ -55,6 +74,7 @@ def add_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[Rig
     whole = RigidGroup(
         tuple(root for group in (first, *passengers) for root in group.roots),
         frozenset().union(*(group.members for group in (first, *passengers))),
+        frozenset().union(*(group.bent for group in (first, *passengers))),
     )
     return [whole if group is first else group for group in solid]
 

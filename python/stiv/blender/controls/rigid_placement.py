@@ -9,25 +9,29 @@ import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.object_transform import ObjectTransform, read_transform
+from stiv.blender.controls.placed_stack import PlacedStack
 from stiv.blender.controls.placement_goals import PivotDeformation, PlacementGoal, RotationGoal, ScaleGoal
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.controls.rigid_groups import RigidGroup
 from stiv.blender.controls.rotations import nearest_rotation
 from stiv.blender.controls.transform_locks import can_rotate, find_free_directions
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.settings import EditSettings
 
 
 def make_rigid_set(
-    group: RigidGroup, surfaces: tuple[int, ...], rest: Floats, settings: EditSettings, kind: str
+    group: RigidGroup, surfaces: tuple[int, ...], meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str
 ) -> ControlSet:
-    """Control set of a rigid group; `rest` are the world positions of its surfaces, (n, 3)."""
+    """Control set of a rigid group, with the meshes of its surfaces."""
+    rest = np.concatenate([np.empty((0, 3)), *(each.world() for each in meshes)])
     starts = [read_transform(root.reference.find()) for root in group.roots]
     selected = group.roots[0].selected
     scales = kind == "scale" and selected
     axes = _axes(group, starts) if scales else None
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
+    placed = PlacedStack(meshes, group.bent, controls) if group.bent else None
     objects = [root.reference.find() for root in group.roots]
     free = None if scales else find_free_directions(objects, starts)
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
@@ -42,10 +46,11 @@ def make_rigid_set(
     max_weights = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
     references = tuple(root.reference for root in group.roots)
     return ControlSet(
-        tuple(reference.name for reference in references), "rigid", surfaces, deformation, controls,
+        tuple(reference.name for reference in references), "rigid", surfaces,
+        deformation if placed is None else placed.deformation, controls,
         weight * max_weights, max_weights, None, rule,
         PlacementWriter(references, tuple(starts), controls[0], axes, controls[0]),
-        weight_axes=None if free is None else np.array([free.axes, np.eye(3)]),
+        weight_axes=None if free is None else np.array([free.axes, np.eye(3)]), placed=placed,
     )  # fmt: skip
 
 

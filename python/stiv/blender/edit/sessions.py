@@ -30,7 +30,7 @@ def assemble_with_controls(
     mobility, seams = ["fixed"] * len(meshes), list[Seams | None]([None] * len(meshes))
     for control_set in control_sets:
         for index in control_set.surfaces:
-            mobility[index] = "rigid" if control_set.role == "rigid" else "deformable"
+            mobility[index] = "rigid" if control_set.role == "rigid" and control_set.placed is None else "deformable"
         for index, each in zip(control_set.surfaces, control_set.seams, strict=False):
             seams[index] = each
     return assemble(meshes, mobility, together, settings.ignored_pairs, seams)

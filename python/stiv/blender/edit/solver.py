@@ -16,6 +16,8 @@ from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles,
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
 
+CALLS = 4  # of a session between two Jacobians of observed stacks
+
 
 class EditSolver:
     """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
@@ -31,7 +33,7 @@ class EditSolver:
         self._settings = settings
         self.excluded = settings.excluded
         self._session: stiv.EditSession | None = None
-        self._blocked = False
+        self._blocked, self._calls = False, 0
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)
         self.trail = Trail(controls, controls)
@@ -67,13 +69,14 @@ class EditSolver:
         return result
 
     def _renew_jacobians(self) -> None:
-        """Renew the Jacobians of observed stacks that are due, at the accepted state."""
-        stacks = [each.observed for each in self.control_sets if each.observed is not None]
-        due = [each for each in stacks if each.is_jacobian_due(self._blocked)]
-        if due:
+        """Renew the Jacobians of observed stacks sometimes, and after a blocked call, at the accepted state."""
+        self._calls += 1
+        observed = [each for control_set in self.control_sets for each in (control_set.observed, control_set.placed)]
+        stacks = [each for each in observed if each is not None]
+        if stacks and (self._blocked or self._calls % CALLS == 0):
             self.deformation.surface(self.session.controls)
-        for each in due:
-            each.renew_jacobian()
+            for each in stacks:
+                each.renew_jacobian()
 
     def discard_session(self) -> None:
         """Close the session: no state is known to be free of intersections."""

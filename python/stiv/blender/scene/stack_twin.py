@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from typing import Protocol, TypeVar, cast
 
 import bpy
 import numpy as np
@@ -107,7 +108,15 @@ class StackTwin:
             yield mesh
 
 
-_kept: dict[object, StackTwin] = {}
+class Twin(Protocol):
+    """A hidden copy that is removed at the end."""
+
+    def remove(self) -> None:
+        """Remove the copy and its scene."""
+
+
+T = TypeVar("T", bound=Twin)
+_kept: dict[object, Twin] = {}
 _holders = 0
 
 
@@ -127,11 +136,11 @@ def kept_twins() -> Iterator[None]:
             _remove_kept()
 
 
-def kept_twin(owner: object, make: Callable[[], StackTwin]) -> StackTwin:
+def kept_twin(owner: object, make: Callable[[], T]) -> T:
     """The twin of an owner, made now unless it is kept. Only inside `kept_twins`."""
     if owner not in _kept:
         _kept[owner] = make()
-    return _kept[owner]
+    return cast(T, _kept[owner])
 
 
 def _remove_kept() -> None:

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Deformation of objects that move as a whole below modifiers that refer to other objects, which stay.
+
+Blender evaluates these modifiers on hidden copies in other places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import bpy
+import mathutils
+import numpy as np
+
+import stiv
+from stiv.blender.controls.rotations import affine_about, rotation_matrix
+from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
+from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluation_copies import EvaluationCopies
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
+from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.stack_twin import EvaluatedStack, different_objects, kept_twin, kept_twins
+
+STEP = 1e-3  # of the differences for a Jacobian: in sizes of the surface, and in radians
+
+
+class PlacedStack:
+    """The surfaces of a rigid group from its centre and rotation vector, (2, 3).
+
+    Attributes:
+        deformation: infeasible where the topology of a mesh differs from that at the start.
+    """
+
+    def __init__(self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats) -> None:
+        """bent: names of the objects whose shape depends on their place. controls: at the start, (2, 3)."""
+        self._placements = _Placements(meshes, bent, controls)
+        self.deformation = stiv.observed(self._placements.evaluate, self._placements.jacobian())
+
+    def renew_jacobian(self) -> None:
+        """Measure the Jacobian at the last evaluation."""
+        self.deformation.set_jacobian(self._placements.jacobian())
+
+
+@dataclass(frozen=True, eq=False)
+class _PlacedMesh:
+    """A mesh with its copy elsewhere."""
+
+    reference: ObjectReference
+    evaluation: str
+    start: Floats  # world matrix, (4, 4)
+
+    def evaluate(self, motion: Floats) -> tuple[EvaluatedStack, Floats]:
+        """The evaluation after a motion, (4, 4), since the start, and its world matrix. Only inside `kept_twins`."""
+        twin = kept_twin(self, lambda: _PlacedTwin(self.reference, self.evaluation))
+        return twin.evaluate(motion @ self.start)
+
+
+class _Placements:
+    """The surfaces of a group. Apart from `PlacedStack`, as the core holds `evaluate`: no cycle of references."""
+
+    def __init__(self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats) -> None:
+        self._pivot, self._last = controls[0], controls
+        self._rest = [each.world() for each in meshes]
+        self._bent = [
+            _PlacedMesh(each.owner, each.read_from, each.matrix) if each.owner.name in bent else None for each in meshes
+        ]
+        with kept_twins():
+            self._start = [None if each is None else each.evaluate(np.eye(4))[0] for each in self._bent]
+        self._size = float(np.ptp(np.concatenate(self._rest), axis=0).max(initial=0.0)) or 1.0
+
+    def evaluate(self, controls: Floats) -> Floats | None:
+        """World positions, (n, 3), from centre and rotation vector; None if the topology of a mesh differs."""
+        motion = affine_about(self._pivot, rotation_matrix(controls[1]), controls[0])
+        found = []
+        with kept_twins():
+            for bent, start, rest in zip(self._bent, self._start, self._rest, strict=True):
+                if bent is None or start is None:
+                    found.append(transform_points(motion, rest))
+                    continue
+                shown, matrix = bent.evaluate(motion)
+                if not shown.has_topology_of(start) or not np.isfinite(shown.positions).all():
+                    return None
+                found.append(transform_points(matrix, shown.positions))
+        self._last = controls
+        return np.concatenate(found)
+
+    def jacobian(self) -> Floats:
+        """Central differences at the last evaluation, (n, 3, 2, 3); 0 along controls where the topology changes."""
+        last = self._last
+        result = np.zeros((sum(map(len, self._rest)), 3, 2, 3))
+        with kept_twins():
+            for row, step in enumerate((STEP * self._size, STEP)):
+                for axis in range(3):
+                    move = np.zeros((2, 3))
+                    move[row, axis] = step
+                    ends = [self.evaluate(last + sign * move) for sign in (1, -1)]
+                    if ends[0] is not None and ends[1] is not None:
+                        result[:, :, row, axis] = (ends[0] - ends[1]) / (2 * step)
+        self._last = last
+        return result
+
+
+class _PlacedTwin:
+    """A copy of an object, alone in a scene of its own."""
+
+    def __init__(self, reference: ObjectReference, evaluation: str) -> None:
+        ob, scene = reference.find(), bpy.context.scene
+        self._copies = EvaluationCopies(scene, evaluation)
+        try:
+            self._copies.fill([ob, *different_objects(ob, scene, evaluation)], lambda other: other == ob)
+        except BaseException:
+            self._copies.remove()
+            raise
+        self._ob = self._copies.copy_of(reference)
+
+    def evaluate(self, world: Floats) -> tuple[EvaluatedStack, Floats]:
+        """The evaluation in a place given by a world matrix, (4, 4), and the evaluated matrix."""
+        self._ob.matrix_world = mathutils.Matrix(world.tolist())
+        graph = self._copies.depsgraph
+        graph.update()
+        shown = self._ob.evaluated_get(graph)
+        with evaluated_mesh(shown) as mesh:
+            return EvaluatedStack(read_positions(mesh), *read_corners(mesh)), as_matrix(shown.matrix_world)
+
+    def remove(self) -> None:
+        """Remove the copy and its scene."""
+        self._copies.remove()
