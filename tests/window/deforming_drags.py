@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 import scenes
+from mathutils import Vector
 from playing import INTO_WALL, click, expect_free, expect_near, prepared, start
 from scenes import WALL_FACE
 from simulation import Steps, Window
@@ -61,6 +62,23 @@ def lattice_in_object_mode(window: Window) -> Steps:
     expect_free(window)
 
 
+def mirrored_cage_in_edit_mode(window: Window) -> Steps:
+    """With the mirror option, the wall deflects both sides, and the cage stays symmetric."""
+    yield from prepared(window, scenes.add_cage, "Cage", "EDIT")
+    mesh = bpy.data.meshes["Cage"]
+    mesh.use_mirror_x = True
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Cage"), WALL_FACE, 0.1, "the surface at the wall while dragging")
+    window.picture("mirrored_cage_in_edit_mode")
+    yield from click(window)
+    expect_free(window)
+    bpy.context.object.update_from_editmode()
+    points = [vertex.co for vertex in mesh.vertices]
+    apart = max(min((point - Vector((-other.x, other.y, other.z))).length for other in points) for point in points)
+    expect_near(apart, 0.0, 1e-5, "the distance of vertices from their mirror images")
+
+
 def curve_in_edit_mode(window: Window) -> Steps:
     """Points of a bevelled curve pushed into the wall: its tube bends along it."""
     yield from prepared(window, scenes.add_curve, "Curve", "EDIT")
@@ -106,6 +124,7 @@ def piece_with_modifiers(window: Window) -> Steps:
 _ALL = (
     cage_in_edit_mode,
     curve_in_edit_mode,
+    mirrored_cage_in_edit_mode,
     lattice_in_edit_mode,
     lattice_in_object_mode,
     piece_with_modifiers,

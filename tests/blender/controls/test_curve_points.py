@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_grid, add_modifier, edit_mode, evaluated, moved, select, shift, turn
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, moved, select, shift, turn
 
 import stiv
 from stiv.blender import AcceptedScene, BlenderEdit, EditSettings, check_scene, guard_result
@@ -146,6 +146,14 @@ def test_what_cannot_follow_its_points_is_refused_by_name() -> None:
     circle.data.dimensions, circle.data.bevel_depth = "3D", 0.1
     circle.shape_key_add(name="Basis")
     refused(f"{circle.name}: its shape keys hide edits; apply all shape keys")
+
+
+def test_a_modifier_that_uses_another_object_that_moves_is_refused_by_name() -> None:
+    curve, cube = add_nurbs("curve"), add_cube("Cube", (9, 0, 0))
+    add_modifier(curve, "SIMPLE_DEFORM", angle=0.3, origin=cube)
+    select(curve, cube)
+    with pytest.raises(stiv.InputError, match=f'{curve.name}: modifier "Simple_Deform" uses "Cube"; deselect one'):
+        begin()
 
 
 def refused(message: str) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, evaluated, select, shift
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift
 from mathutils import Vector
 from oracles import rational
 
@@ -205,6 +205,26 @@ def slide_against(ob: Any, direction: int) -> None:
         ob.location = place + Vector(step)
         found.append(meet("Piece", "Body"))
     assert any(found)
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_multires_deforms_at_the_level_shown_and_that_of_the_render(mode: str) -> None:
+    piece = multires()
+    add_body()
+    select(piece) if mode == "OBJECT" else edit_mode(piece)
+    if mode == "EDIT":
+        bpy.ops.mesh.select_all(action="SELECT")
+    start = np.array([vertex.co for vertex in piece.data.vertices])
+    edit = BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")
+    edit.apply(shift(0.1, 0, -2))
+    assert edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    change = np.array([vertex.co for vertex in piece.data.vertices]) - start
+    assert change[:, 2].min() < -1 and np.ptp(change[:, 2]) > 0.1
+    for levels in (1, 2):
+        piece.modifiers[0].levels = levels
+        assert len(evaluated(piece)) == (4 * 2**levels // 2 + 1) ** 2
+        assert not meet("Piece", "Body")
 
 
 def test_nodes_that_do_not_move_along_are_refused_by_name() -> None:

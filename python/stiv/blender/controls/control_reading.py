@@ -209,7 +209,7 @@ def evaluations_of(meshes: Sequence[VisibleMesh]) -> frozenset[str]:
 
 def _check_references(control_set: ControlSet, moving: set[str]) -> None:
     """Refuse modifiers that are evaluated during the edit and refer to other objects that move."""
-    for name in control_set.names if control_set.observed is not None else ():
+    for name in control_set.names if control_set.observed is not None or control_set.role == "curve" else ():
         for dependency in dependencies(bpy.data.objects[name]):
             if dependency.used in moving:
                 raise InputError(f'{name}: {dependency.through} uses "{dependency.used}"; deselect one')

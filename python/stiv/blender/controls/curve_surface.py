@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import bpy
 import numpy as np
@@ -17,7 +17,7 @@ from stiv.blender.controls.points import to_stored
 from stiv.blender.scene.arrays import Floats, Indices, Singles, transform_points
 from stiv.blender.scene.curve_reading import spline_starts, write_curve_points
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.stack_twin import StackTwin
+from stiv.blender.scene.stack_twin import StackTwin, kept_twin, kept_twins
 
 TRIALS = (1e-3, 0.1, 1.0)  # random moves of the points, in sizes of the curve
 ROUNDING = 3e-6  # of the size: difference between two linear results in single precision
@@ -42,17 +42,17 @@ def curve_surface(
 
     frame: (4, 4). local: its points at the start, (m, 3). Raises InputError if an edit would change its faces.
     """
-    observer = _CurveObserver(ob, scene, frame, local, evaluations)
-    with observer.open() as twins:
+    with kept_twins():
+        observer = _CurveObserver(ob, scene, frame, local, evaluations)
         random = np.random.default_rng(0)
         moves = [each * observer.size * random.uniform(-1, 1, local.shape) for each in TRIALS]
-        trials = [observer.evaluate_in(twins, move) for move in moves]
+        trials = [observer.moved(move) for move in moves]
         if trials[0] is None:
             raise InputError(f"{ob.name}: its fill changes its faces; convert it to a mesh")
-        weights = observer.linear_weights(twins)
+        weights = observer.linear_weights()
         if all(observer.agrees(trial, weights, move) for trial, move in zip(trials, moves, strict=True)):
             return observer.linear(weights)
-        return stiv.observed(observer.evaluate, observer.mean_weights(twins))
+        return stiv.observed(observer.evaluate, observer.mean_weights())
 
 
 class _CurveObserver:
@@ -65,53 +65,47 @@ class _CurveObserver:
         self._frame, self._local = frame, local
         self._starts = spline_starts(ob.data) if ob.type == "CURVE" else np.arange(len(local) + 1, dtype=np.int32)
         self.size = float(np.ptp(local, axis=0).max(initial=0.0)) or 1.0
-        with self.open() as twins:
-            self._start = [twin.evaluate(local) for twin in twins]
+        self._start = [twin.evaluate(local) for twin in self._twins()]
 
-    @contextmanager
-    def open(self) -> Iterator[list[_CurveTwin]]:
-        """Twins for all evaluations, removed at the end of the `with` statement."""
-        twins: list[_CurveTwin] = []
-        try:
-            for evaluation in self._evaluations:
-                twins.append(_CurveTwin(self._reference.find(), bpy.data.scenes[self._scene], evaluation))
-            yield twins
-        finally:
-            for twin in twins:
-                twin.remove()
+    def _twins(self) -> list[StackTwin]:
+        """Twins for all evaluations. Only inside `kept_twins`."""
+        return [kept_twin((self._reference, each), partial(self._make_twin, each)) for each in self._evaluations]
+
+    def _make_twin(self, evaluation: str) -> _CurveTwin:
+        return _CurveTwin(self._reference.find(), bpy.data.scenes[self._scene], evaluation)
 
     def evaluate(self, controls: Floats) -> Floats | None:
         """World positions, (n, 3), of all evaluations; None where the faces differ from those at the start."""
         local = to_stored(self._frame, controls, self._local)
-        with self.open() as twins:
-            points = self.evaluate_in(twins, local.astype(np.float64) - self._local)
+        with kept_twins():
+            points = self.moved(local.astype(np.float64) - self._local)
         return None if points is None else transform_points(self._frame, points)
 
-    def evaluate_in(self, twins: Sequence[_CurveTwin], move: Floats) -> Floats | None:
-        """Local positions, (n, 3), after a move of the points, (m, 3)."""
-        shown = [twin.evaluate((self._local + move).astype(np.float32)) for twin in twins]
+    def moved(self, move: Floats) -> Floats | None:
+        """Local positions, (n, 3), after a move of the points, (m, 3). Only inside `kept_twins`."""
+        shown = [twin.evaluate((self._local + move).astype(np.float32)) for twin in self._twins()]
         if not all(now.has_topology_of(start) for now, start in zip(shown, self._start, strict=True)):
             return None
         return np.concatenate([each.positions for each in shown]).astype(np.float64)
 
-    def linear_weights(self, twins: Sequence[_CurveTwin]) -> stiv.Weights:
+    def linear_weights(self) -> stiv.Weights:
         """Weights of the points, (n, m), if the surface is linear: each evaluation moves three, along one axis each."""
         columns = []
         for first in range(0, len(self._local), 3):
             chosen = np.arange(first, min(first + 3, len(self._local)), dtype=np.int32)
-            change = self._change(twins, chosen, np.eye(3)[: len(chosen)] * STEPS["linear"] * self.size)
+            change = self._change(chosen, np.eye(3)[: len(chosen)] * STEPS["linear"] * self.size)
             columns += [
                 _Column.of(change[:, axis] / (STEPS["linear"] * self.size), LEAST["linear"])
                 for axis in range(len(chosen))
             ]
         return _weights_of(columns, len(self.start()))
 
-    def mean_weights(self, twins: Sequence[_CurveTwin]) -> stiv.Weights:
+    def mean_weights(self) -> stiv.Weights:
         """Weights of the points, (n, m), near the start, from small moves of points that are far apart."""
         step, anchors = STEPS["observed"] * self.size, self._anchors()
         columns = [_Column.of(np.empty(0), 0.0)] * len(self._local)
         for group in _distant_points(self._starts):
-            change = self._change(twins, group, step * PROBE) @ PROBE / step
+            change = self._change(group, step * PROBE) @ PROBE / step
             nearest = group[np.abs(anchors[:, None] - group).argmin(axis=1)]
             for number in group:
                 columns[number] = _Column.of(np.where(nearest == number, change, 0.0), LEAST["observed"])
@@ -125,12 +119,12 @@ class _CurveObserver:
         tree.balance()
         return np.array([tree.find(point)[1] for point in self.start().tolist()], np.int32)
 
-    def _change(self, twins: Sequence[_CurveTwin], chosen: Indices, moves: Floats) -> Floats:
+    def _change(self, chosen: Indices, moves: Floats) -> Floats:
         """Change of the surface, (n, 3), by moves of some points; none where the faces differ."""
         move = np.zeros(self._local.shape)
         move[chosen] = moves
         start = self.start()
-        moved = self.evaluate_in(twins, move)
+        moved = self.moved(move)
         return np.zeros_like(start) if moved is None else moved - start
 
     def start(self) -> Floats:
