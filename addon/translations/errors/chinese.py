@@ -47,6 +47,7 @@ MESSAGES = {
     "it has the role No Collision; choose Automatic": "角色为无碰撞；请选择自动",
     "it is linked; make a library override of it": "是关联的；请为其创建库重写",
     "its fill changes its faces; convert it to a mesh": "填充会改变其面；请转换为网格",
+    "its nodes show instances; add Realize Instances to them": "其节点显示实例；请添加“实现实例”",
     "its override is not editable; make it editable in the Outliner": "其库重写不可编辑；请在大纲视图中设为可编辑",
     'its parent "{}" moves too; select both': "其父级“{}”也会移动；请同时选择两者",
     "its parent is scaled unevenly; apply the parent's scale": "其父级缩放不均匀；请应用父级的缩放",

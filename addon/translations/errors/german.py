@@ -47,6 +47,7 @@ MESSAGES = {
     "it has the role No Collision; choose Automatic": "hat die Rolle Keine Kollision; Automatisch wählen",
     "it is linked; make a library override of it": "ist verknüpft; eine Bibliotheksüberschreibung anlegen",
     "its fill changes its faces; convert it to a mesh": "die Füllung ändert die Flächen; in ein Mesh konvertieren",
+    "its nodes show instances; add Realize Instances to them": "Geometry Nodes zeigen Instanzen; Instanzen realisieren hinzufügen",
     "its override is not editable; make it editable in the Outliner": "die Überschreibung ist nicht bearbeitbar; im Outliner freigeben",
     'its parent "{}" moves too; select both': 'das Elternobjekt "{}" bewegt sich auch; beide auswählen',
     "its parent is scaled unevenly; apply the parent's scale": "das Elternobjekt ist ungleichmäßig skaliert; dessen Skalierung anwenden",

@@ -47,6 +47,7 @@ MESSAGES = {
     "it has the role No Collision; choose Automatic": "役割が「衝突判定なし」です。「自動」にしてください",
     "it is linked; make a library override of it": "リンクされています。ライブラリオーバーライドを作成してください",
     "its fill changes its faces; convert it to a mesh": "塗りつぶしで面が変わります。メッシュに変換してください",
+    "its nodes show instances; add Realize Instances to them": "ノードがインスタンスを表示しています。「インスタンス実体化」を追加してください",
     "its override is not editable; make it editable in the Outliner": "オーバーライドが編集不可です。アウトライナーで編集可能にしてください",
     'its parent "{}" moves too; select both': "親「{}」も動きます。両方を選択してください",
     "its parent is scaled unevenly; apply the parent's scale": "親のスケールが不均一です。親のスケールを適用してください",

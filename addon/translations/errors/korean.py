@@ -47,6 +47,7 @@ MESSAGES = {
     "it has the role No Collision; choose Automatic": "역할이 충돌 없음임; 자동을 선택하세요",
     "it is linked; make a library override of it": "링크되어 있음; 라이브러리 오버라이드를 만드세요",
     "its fill changes its faces; convert it to a mesh": "채우기가 면을 바꿈; 메쉬로 변환하세요",
+    "its nodes show instances; add Realize Instances to them": "노드가 인스턴스를 표시함; 인스턴스 실현을 추가하세요",
     "its override is not editable; make it editable in the Outliner": "오버라이드를 편집할 수 없음; 아웃라이너에서 편집 가능하게 하세요",
     'its parent "{}" moves too; select both': '부모 "{}"도 움직임; 둘 다 선택하세요',
     "its parent is scaled unevenly; apply the parent's scale": "부모의 축척이 균일하지 않음; 부모의 축척을 적용하세요",

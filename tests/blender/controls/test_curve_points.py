@@ -43,11 +43,21 @@ def add_nurbs(kind: str) -> Any:
     return bpy.context.object
 
 
+def add_flat() -> Any:
+    """A 2D curve without a fill, in a tilted plane."""
+    ob = add_bezier("FREE")
+    ob.data.extrude = 0.05
+    ob.data.dimensions, ob.data.fill_mode = "2D", "NONE"
+    bpy.context.view_layer.update()
+    return ob
+
+
 MAKERS = {
     "free": lambda: add_bezier("FREE"),
     "aligned": lambda: add_bezier("ALIGNED"),
     "auto": lambda: add_bezier("AUTO"),
     "curve": lambda: add_nurbs("curve"),
+    "flat": add_flat,
     "surface": lambda: add_nurbs("surface"),
 }
 
@@ -111,7 +121,9 @@ def test_the_surface_stops_at_the_floor(made: str, mode: str) -> None:
         assert edit.write().passed
         assert check_scene(bpy.context, DEFORM).pairs == ()
         assert check_scene(bpy.context, EditSettings(guard="render")).pairs == ()
-    assert np.abs(evaluated(ob) - start)[:, 2].max() > 0.9
+    assert np.abs(evaluated(ob) - start)[:, 2].max() > (0.1 if made == "flat" else 0.9)
+    if made == "flat":
+        assert np.abs(np.reshape(points(ob), (-1, 3))[:, 2]).max() == 0
     if mode == "EDIT":
         bpy.ops.object.mode_set(mode="OBJECT")
         assert check_scene(bpy.context, DEFORM).pairs == ()

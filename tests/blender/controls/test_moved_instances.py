@@ -227,6 +227,28 @@ def test_multires_deforms_at_the_level_shown_and_that_of_the_render(mode: str) -
         assert not meet("Piece", "Body")
 
 
+def test_vertices_that_carry_instances_are_refused_until_the_nodes_realize_them() -> None:
+    """Realized, the instances deform with the sheet."""
+    piece = scattered(other_object)
+    add_body()
+    select(piece)
+    deform = EditSettings(object_response="deform")
+    with pytest.raises(stiv.InputError, match="Piece: its nodes show instances; add Realize Instances to them"):
+        BlenderEdit.begin(bpy.context, deform, "move")
+    tree = piece.modifiers[0].node_group
+    realize, scatter, both = tree.nodes.new("GeometryNodeRealizeInstances"), *tree.nodes[2:4]
+    tree.links.remove(scatter.outputs[0].links[0])
+    tree.links.new(scatter.outputs[0], realize.inputs[0])
+    tree.links.new(realize.outputs[0], both.inputs[0])
+    bpy.context.view_layer.update()
+    count = len(evaluated(piece))
+    edit = BlenderEdit.begin(bpy.context, deform, "move")
+    edit.apply(shift(0.1, 0, -2))
+    assert edit.write().passed
+    assert count == len(evaluated(piece)) == 9 + 9 * 8
+    assert not meet("Piece", "Body")
+
+
 def test_nodes_that_do_not_move_along_are_refused_by_name() -> None:
     grid = add_grid("Grid", 2)
     add_nodes(grid, lambda tree: other_object(tree, "RELATIVE"))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the control sets of an edit from its participants and the visible meshes."""
 
+from collections import Counter
 from collections.abc import Sequence
 
 import bpy
@@ -181,6 +182,10 @@ def _check_children(deformed: set[str], in_groups: set[str], meshes: Sequence[Vi
             raise InputError(f"{ob.name}: its vertices carry instances; make them real")
         if ob.parent is not None and ob.parent.name in deformed and ob.parent_type.startswith(("VERTEX", "LATTICE")):
             raise InputError(f'{ob.name}: is parented to vertices of "{ob.parent.name}"; clear the parent')
+    shown = Counter((mesh.owner.name, mesh.read_from) for mesh in meshes)
+    for (name, _), count in shown.items():
+        if name in deformed and count > 1:
+            raise InputError(f"{name}: its nodes show instances; add Realize Instances to them")
 
 
 def _check_surface(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> None:

@@ -10,12 +10,17 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.control_weights import response_weights
+from stiv.blender.controls.control_weights import (
+    ControlWeights,
+    axes_of_weights,
+    free_directions_of,
+    response_weights,
+)
 from stiv.blender.controls.curve_surface import curve_surface
 from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.joined_seams import SeamWriter, seam_message, selection_weights
 from stiv.blender.controls.points import PointGoal, to_stored
-from stiv.blender.scene.arrays import Floats, Singles, as_matrix, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, transform_points
 from stiv.blender.scene.curve_reading import (
     movable_curve_points,
     read_curve_points,
@@ -45,15 +50,24 @@ def make_curve_set(
     frame, local = as_matrix(ob.matrix_world), read_curve_points(ob.data)
     movable = movable_curve_points(ob.data)
     selected = movable & (selected_curve_points(ob.data) if ob.mode == "EDIT" else participant.selected)
-    controls, max_weights = transform_points(frame, local), movable.astype(np.float64)
+    controls, limits = transform_points(frame, local), _limits(ob, frame, movable)
     origin = None if ob.mode == "EDIT" else frame[:3, 3]
     made = ControlSet(
         (ob.name,), "curve", surfaces, curve_surface(ob, scene, frame, local, evaluations), controls,
-        response_weights(participant, selected, max_weights, settings), max_weights, frame,
-        PointGoal(selected, controls, None, origin, movable),
+        response_weights(participant, selected, limits.max_weights, settings), limits.max_weights, frame,
+        PointGoal(selected, controls, None, origin, movable, limits.pinned),
         CurveWriter(participant.reference, ob.mode, frame, local),
+        weight_axes=axes_of_weights(limits.max_weights, limits.directions),
     )  # fmt: skip
     return _merge_poles(made, local) if ob.type == "SURFACE" else made
+
+
+def _limits(ob: bpy.types.Object, frame: Floats, movable: Flags) -> ControlWeights:
+    """Weights of points that may move, (m,) flags; a 2D curve stays in its plane."""
+    if ob.type == "SURFACE" or ob.data.dimensions == "3D":
+        return ControlWeights(movable.astype(np.float64), None)
+    directions = free_directions_of(frame[:3, :3], np.array([False, False, True]))
+    return ControlWeights((movable[:, None] & directions.free).astype(np.float64), directions)
 
 
 def _merge_poles(made: ControlSet, local: Singles) -> ControlSet:
