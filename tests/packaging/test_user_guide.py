@@ -13,7 +13,8 @@ BLENDERS = {
     "Cursor", "Curve", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Gimbal", "Grid", "Increment",
     "Individual Origins", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make", "Mesh",
     "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected", "STIV", "Snap To",
-    "Realize Instances", "Shape Key Edit Mode", "Topology Mirror", "Transform", "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
+    "Realize Instances", "Shape Key Edit Mode", "Topology Mirror", "Transform", "Transform Modal Map", "Undo", "Vertex",
+    "View", "Volume",
 }  # fmt: skip
 
 
