@@ -72,8 +72,9 @@ def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats
     location = np.asarray(start.location) + shift
     if start.space is not None and np.array_equal(motion[:3, :3], np.eye(3)):
         place = start.world[:3, 3]
-        location = keep_locked(start.space, location, place, place + motion[:3, 3])
-    ob.location = location
+        ob.location = keep_locked(start.space, location, place, place + motion[:3, 3])
+    else:
+        ob.location = location
     ob.scale = np.asarray(start.scale) * factors
     if np.array_equal(factors, np.ones(3)) and not np.array_equal(motion[:3, :3], np.eye(3)):
         _write_rotation(ob, start, nearest_rotation(inner[:3, :3]))
