@@ -3,6 +3,7 @@
 
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -203,3 +204,14 @@ def meet(first: str, second: str) -> int:
     low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
     near = np.argwhere((low <= high).all(axis=2))
     return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
+
+
+def add_bowl(radius: float, rim: float, segments: int = 32) -> Any:
+    """A sphere without what is above the height `rim`, open there."""
+    content = bmesh.new()
+    bmesh.ops.create_uvsphere(content, u_segments=segments, v_segments=segments, radius=radius)
+    bmesh.ops.delete(content, geom=[vertex for vertex in content.verts if vertex.co.z > rim], context="VERTS")
+    data = bpy.data.meshes.new("Bowl")
+    content.to_mesh(data)
+    content.free()
+    return add("Bowl", data)

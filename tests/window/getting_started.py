@@ -7,6 +7,7 @@ import time
 
 import bpy
 import scenes
+from interface import in_small_window
 from playing import click, expect_free
 from simulation import Steps, Window
 
@@ -61,4 +62,5 @@ def newcomer_dresses_the_figure(window: Window) -> Steps:
     yield from window.settle()
 
 
-GETTING_STARTED = {"newcomer_dresses_the_figure": newcomer_dresses_the_figure}
+_ALL = (newcomer_dresses_the_figure, in_small_window(newcomer_dresses_the_figure))
+GETTING_STARTED = {scenario.__name__: scenario for scenario in _ALL}

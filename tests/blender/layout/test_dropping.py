@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, select
+from building import add_bowl, add_cube, add_grid, select
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mathutils import Euler
@@ -37,6 +37,24 @@ def clear() -> None:
 def lowest(ob: bpy.types.Object) -> float:
     bpy.context.view_layer.update()
     return min((ob.matrix_world @ vertex.co).z for vertex in ob.data.vertices)
+
+
+@pytest.mark.parametrize(("segments", "seed"), [(16, 0), (64, 1), (64, 2)])
+@pytest.mark.parametrize("half", [(0.35, 0.35, 0.35), (0.875, 0.175, 0.175)])
+def test_in_a_smooth_bowl_boxes_end_level_on_its_floor(segments: int, seed: int, half: tuple[float, ...]) -> None:
+    """Supported by their lower corners, which are then on the sphere, as low as a level box can be."""
+    random = np.random.default_rng(seed)
+    add_bowl(2.0, 0.05, segments)
+    place = (*random.uniform(-0.9, 0.9, 2), 1.5)
+    box = add_cube("Box", place, 1.0, scale=half, rotation_euler=tuple(random.uniform(-3, 3, 3)))
+    select(box)
+    report = drop(bpy.context, DropSettings(EDIT))
+    assert report.status == "done" and report.contacts[0] >= 3
+    bpy.context.view_layer.update()
+    across = [np.hypot(half[k], half[(k + 1) % 3]) for k in range(3)]
+    heights = [half[k - 1] - np.sqrt(4 - across[k] ** 2) for k in range(3)]
+    assert min(abs(box.location.z - height) for height in heights) < 0.06
+    assert check_scene(bpy.context).pairs == ()
 
 
 @settings(max_examples=12, deadline=None)

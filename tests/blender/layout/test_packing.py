@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, mesh, select
+from building import add, add_bowl, add_cube, mesh, select
 
 import stiv
 from stiv.blender import EditSettings, FitSettings, check_scene, fit_into, nearest_pair
@@ -51,6 +51,30 @@ def add_parts(count: int, size: float, seed: int = 0) -> list[bpy.types.Object]:
         add_cube(f"Part {k}", (8 + 2 * k, 0, 0), size * rng.uniform(0.6, 1), scale=rng.uniform(0.7, 1, 3))
         for k in range(count)
     ]
+
+
+@pytest.mark.parametrize(("rim", "thickness", "tilt"), [(0.05, 0.0, 0.2), (0.05, 0.2, 0.0), (1.2, 0.2, 0.0)])
+def test_bowls_and_jars_are_filled_from_above(rim: float, thickness: float, tilt: float) -> None:
+    """A thin bowl that is tilted, a thick one, and a jar; each part is between its wall, by Blender's ray casts."""
+    bowl, parts = add_bowl(2.0, rim), add_parts(6, 0.3)
+    bowl.rotation_euler.x = tilt
+    if thickness:
+        bowl.modifiers.new("Solidify", "SOLIDIFY").thickness = thickness
+    select(bowl, *parts)
+    report = fit_into(bpy.context, FitSettings(EDIT, seed=1))
+    assert report.status == "done" and not report.left
+    bpy.context.view_layer.update()
+    shown = bowl.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    for part in parts:
+        place = bowl.matrix_world.inverted() @ part.location
+        around = [(np.cos(angle), np.sin(angle), 0.0) for angle in np.linspace(0, 6, 16)]
+        hits = [shown.ray_cast(place, direction) for direction in (*around, (0, 0, -1))]
+        assert all(hit[0] for hit in hits), part.name
+        assert all(
+            hit[1].length < 2.001 and (hit[1] - place).dot(hit[2]) * (-1 if thickness else 1) > 0 for hit in hits
+        )
+        assert positions(part)[:, 2].max() <= positions(bowl)[:, 2].max()
+    assert check_scene(bpy.context).pairs == ()
 
 
 def test_an_open_crate_is_filled_from_above() -> None:
