@@ -59,7 +59,7 @@ def _product(first: Singles, second: Singles) -> Singles:
 def keep_locked(space: ParentSpace, location: Floats, start: Floats, goal: Floats) -> Singles:
     """The stored location, (3,), near a wanted one whose place keeps the coordinates in which start and goal agree.
 
-    start, goal: world places, (3,). Without such a location, the one that comes nearest to it.
+    start, goal: world places, (3,). If there is none, the location that comes nearest to it.
     """
     locked: Flags = start == goal
     if not locked.any() or locked.all():
