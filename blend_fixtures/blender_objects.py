@@ -65,6 +65,10 @@ def _add_mesh(item: MeshObject) -> None:
         made = obj.vertex_groups.new(name=group.name)
         for vertex, weight in group.weights.items():
             made.add([vertex], weight, "REPLACE")
+    for modifier in item.modifiers:
+        added = obj.modifiers.new(modifier.name, modifier.kind)
+        for key, value in modifier.settings.items():
+            setattr(added, key, value)
     if item.lattice:
         obj.modifiers.new("Lattice", "LATTICE").object = bpy.data.objects[item.lattice]
     if item.subdivision:

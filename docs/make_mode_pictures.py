@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FIXTURES = {  # pictures, and how many steps of the script they show; None: all
     "rigid": ("box_along_wall", 1),
     "cage": ("cage_into_wavy_wall", None),
+    "modifiers": ("plate_with_modifiers", None),
     "lattice": ("lattice_bspline", None),
     "soft": ("arm_with_handles", None),
     "weighted": ("figures/weighted_handles", None),

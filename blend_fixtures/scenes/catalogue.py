@@ -12,6 +12,7 @@ from .pressing import (
     box_along_wall,
     cage_into_wavy_wall,
     coplanar_plates,
+    plate_with_modifiers,
     rigid_ellipsoid,
     sheet_through_sheet,
     sphere_along_wall,
@@ -33,4 +34,5 @@ def all_fixtures() -> tuple[Fixture, ...]:
         *(lattice_of_type(interpolation) for interpolation in INTERPOLATIONS),
         lattice_then_subdivision(),
         arm_with_handles(),
+        plate_with_modifiers(),
     )

@@ -51,6 +51,15 @@ class Subdivision:
 
 
 @dataclass(frozen=True)
+class Modifier:
+    """Any modifier: its type and name in Blender, and its settings."""
+
+    kind: str
+    name: str
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class VertexGroup:
     """A vertex group: vertices and their weights."""
 
@@ -61,7 +70,7 @@ class VertexGroup:
 @dataclass(frozen=True)
 class MeshObject:
     """A mesh with an optional Lattice modifier (`lattice` names the object) before its Subdivision Surface
-        modifier.
+        modifier, and others before both.
 
     An additional object, as the add-on creates it, shows `loop` levels of Loop subdivision; 0 for none.
     """
@@ -76,6 +85,7 @@ class MeshObject:
     loop: int = 0
     smooth: bool = True
     groups: tuple[VertexGroup, ...] = ()
+    modifiers: tuple[Modifier, ...] = ()
 
 
 @dataclass(frozen=True)

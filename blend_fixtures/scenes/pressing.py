@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .colors import MOVING, SECOND, STILL
-from .fixture import EmptyObject, Fixture, MeshObject, Placement, Subdivision, View
+from .fixture import EmptyObject, Fixture, MeshObject, Modifier, Placement, Subdivision, View
 from .motion import move, on_objects, on_points, rotate
 from .primitives import box, grid, icosphere, triangulated
 from .shape import Shape
@@ -29,6 +29,28 @@ def cage_into_wavy_wall() -> Fixture:
             move(on_points("Cage"), (0.05, 0.0, -0.3), repeat=3),
         ),
         view=View((4.2, -5.2, 3.4), (0.0, 0.0, 0.5)),
+    )
+
+
+def plate_with_modifiers() -> Fixture:
+    """Half of a curved plate that is mirrored, thick and bevelled, pressed onto a ball."""
+    half = grid(3, 5, 1.1, 2.0).moved((0.55, 0.0, 0.0))
+    x, y, _ = half.vertices.T
+    bent = np.column_stack([x, y, 0.25 * x**2 - 0.1 * y**2])
+    modifiers = (
+        Modifier("MIRROR", "Mirror"),
+        Modifier("SOLIDIFY", "Solidify", {"thickness": 0.12}),
+        Modifier("BEVEL", "Bevel", {"width": 0.03, "segments": 1, "limit_method": "NONE"}),
+    )
+    return Fixture(
+        name="plate_with_modifiers",
+        summary="A mirrored, thick and bevelled plate pressed onto a ball in Edit Mode",
+        meshes=(
+            MeshObject("Plate", Shape(bent, half.faces), MOVING, Placement((0.0, 0.0, 1.15)), modifiers=modifiers),
+            MeshObject("Ball", icosphere(3, 0.8), STILL),
+        ),
+        steps=(move(on_points("Plate"), (0.0, 0.05, -0.15), repeat=5),),
+        view=View((3.4, -4.4, 2.6), (0.0, 0.0, 0.5)),
     )
 
 

@@ -26,6 +26,7 @@ from stiv.blender.scene.triangulation_flips import (
 )
 from stiv.blender.settings import Exclusions
 
+SPLITTING = ("TRIANGULATE", "NODES")  # modifiers that may split quads along another diagonal as they bend
 StepTest = Callable[[Floats, Floats], bool]
 
 
@@ -90,6 +91,8 @@ class Verifier:
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
     def _keeps_diagonals(self, number: int, placed: EvaluatedPositions | None) -> bool:
+        if any(modifier.type in SPLITTING for modifier in self.assembly.meshes[number].owner.find().modifiers):
+            return False
         if number not in self._diagonals:
             self._diagonals[number] = QuadDiagonals.of(self.assembly.meshes[number])
         quads = self._diagonals[number]
