@@ -7,11 +7,12 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, meet, shift, snapshot
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, meet, shift, snapshot, stretch
 from mathutils import Vector
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, compare, correct_after_tool, read_state
+from stiv.blender.controls.motion import Influence, Motion
 
 MOVE = (0.15, 0.1, -0.2)
 
@@ -63,6 +64,28 @@ def test_without_contact_all_vertices_end_where_blender_puts_them(axes: str, cho
     bpy.ops.transform.translate(value=MOVE, mirror=True)
     assert np.abs(local(sheet) - start).max() > 0.1
     assert mine == pytest.approx(local(sheet), abs=3e-5)  # Blender's distance of mirror images
+
+
+def test_proportional_editing_and_scale_are_mirrored_as_in_blender() -> None:
+    sheet = add_sheet("XY")
+    edit_mode(sheet)
+    choose(sheet, "one side")
+    edit = begin()
+    edit.apply(Motion(shift(*MOVE), np.zeros(3), influence=Influence(0.6)))
+    assert edit.write().passed
+    mine = local(sheet)
+    edit.restore()
+    options = {"use_proportional_edit": True, "proportional_edit_falloff": "SMOOTH", "proportional_size": 0.6}
+    bpy.ops.transform.translate(value=MOVE, mirror=True, **options)
+    assert mine == pytest.approx(local(sheet), abs=3e-5)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "scale")
+    centre = np.array(sheet.matrix_world @ Vector((0.5, 0.3, 0)))
+    edit.apply(stretch((1.3, 0.9, 1.2), centre))
+    assert edit.write().passed
+    mine = local(sheet)
+    edit.restore()
+    bpy.ops.transform.resize(value=(1.3, 0.9, 1.2), mirror=True, center_override=centre)
+    assert mine == pytest.approx(local(sheet), abs=3e-5)
 
 
 def add_floor(sheet: Any) -> None:
