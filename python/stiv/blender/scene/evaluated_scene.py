@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import bpy
@@ -84,8 +85,14 @@ class VisibleMesh:
         return self.source != self.owner.name
 
     def world(self) -> Floats:
-        """World positions, (n, 3)."""
-        return transform_points(self.matrix, self.local)
+        """World positions, (n, 3), read-only."""
+        return self._world
+
+    @cached_property
+    def _world(self) -> Floats:
+        positions = transform_points(self.matrix, self.local)
+        positions.setflags(write=False)
+        return positions
 
     def vertex_number(self, vertex: int) -> int:
         """Number of a vertex in Blender's mesh."""
