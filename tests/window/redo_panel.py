@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import bpy
+import extension
 import scenes
 from guard_scenarios import steps
 from playing import FURTHEST, NEAR, box, box_x, click, expect_free, expect_near, prepared, start
@@ -30,6 +31,33 @@ def redo_panel(window: Window) -> Steps:
     expect_free(window)
     yield from window.undo()
     assert box().location.length == 0.0
+
+
+def redo_panel_is_limited(window: Window) -> Steps:
+    """A solve that takes too long stops with a message; without the limit, the same one reaches the wall."""
+    yield from prepared(window, scenes.add_box, "Box")
+    yield from start(window)
+    yield from window.glide(window.pixel((0.3, 0.0, 0.0)))
+    yield from click(window)
+    limit, messages = extension.module("operators.transform.redo_limit"), extension.module("operators.reports")
+    kept, limit.LIMIT = limit.LIMIT, -1
+    try:
+        yield from redone_with(window, 5.0)
+        assert box_x() < FURTHEST - NEAR, box_x()
+        assert "stopped after -1 seconds" in "".join(messages.last_messages), messages.last_messages
+    finally:
+        limit.LIMIT = kept
+    expect_free(window)
+    yield from redone_with(window, 5.0)
+    expect_near(box_x(), FURTHEST, NEAR, "the box at the wall")
+
+
+def redone_with(window: Window, value: float) -> Steps:
+    """What another value in the panel does."""
+    bpy.context.window_manager.operators[-1].properties.value = (value, 0.0, 0.0)
+    with window.override():
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from window.settle()
 
 
 def redo_panel_by_mouse(window: Window) -> Steps:
@@ -74,4 +102,5 @@ def click_into_first_number(window: Window) -> Steps:
     yield from window.settle()
 
 
-REDO_PANEL = {scenario.__name__: scenario for scenario in (redo_panel, redo_panel_by_mouse)}
+_ALL = (redo_panel, redo_panel_is_limited, redo_panel_by_mouse)
+REDO_PANEL = {scenario.__name__: scenario for scenario in _ALL}

@@ -20,12 +20,11 @@ from ...transform.view import Vector
 from ...translations import translate, translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
-from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
+from ..reports import outcome_text, report_error, report_outcome, report_raised, say, write_failure
 from ..task_operator import TaskOperator
-from . import drag_results
+from . import drag_results, redo_limit
 from .constraint import Constraint, free_directions
 from .options import TransformOptions
-from .redo_limit import LIMIT, is_redo, run_within
 
 MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
 
@@ -125,11 +124,11 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
 
     def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
         """Make all calls of the steps at once; the redo panel does not wait without limit."""
-        if not is_redo(self):
+        if not redo_limit.is_redo(self):
             return stiv_blender.run_steps(steps)
-        result, was_stopped = run_within(context, steps)
+        result, was_stopped = redo_limit.run_within(context, steps)
         if was_stopped:
-            self.report({"WARNING"}, translate("stopped after {} seconds, short of the goal").format(LIMIT))
+            say(self, "WARNING", translate("stopped after {} seconds, short of the goal").format(redo_limit.LIMIT))
         return result
 
     def _steps(
