@@ -6,12 +6,21 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_modifier, evaluated, select, shift, snapshot
+from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot
 from stack_trials import WAYS, open_piece, run_random_trial, run_trial
-from stacks import KINDS, STACKS, add_block, add_sheet, mirrored, skin
+from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, kept_twins
+from stiv.blender import (
+    BlenderEdit,
+    EditSettings,
+    check_scene,
+    compare,
+    correct_after_tool,
+    kept_twins,
+    read_state,
+    repair_scene,
+)  # fmt: skip
 from stiv.blender.controls.held_vertices import find_held_vertices
 from stiv.blender.controls.stack_block import BlockSettings, StackBlock
 from stiv.blender.scene.arrays import as_matrix, transform_points
@@ -48,6 +57,33 @@ def test_random_combinations_of_modifiers(seed: int) -> None:
     outcome, names = run_random_trial(seed)
     assert outcome.verdict != "met", (names, outcome.text)
     assert outcome.verdict != "refused" or 20 < len(outcome.text) <= 80
+
+
+@pytest.mark.parametrize("name", ["Mirror", "Solidify, Subdivision Surface", "Armature", "Geometry Nodes"])
+def test_the_live_guard_corrects_vertices_below_modifiers(name: str) -> None:
+    ob = STACKS[name]()
+    add_body()
+    select(ob)
+    accepted = read_state(bpy.context)
+    for vertex in ob.data.vertices:
+        vertex.co.z -= 0.9
+    ob.data.update()
+    assert meet("Piece", "Body") > 0
+    changes = compare(accepted, read_state(bpy.context))
+    assert correct_after_tool(bpy.context, DEFORM, accepted, changes).corrected
+    assert meet("Piece", "Body") == 0 and check_scene(bpy.context, DEFORM).pairs == ()
+    assert len(bpy.data.scenes) == 1
+
+
+@pytest.mark.parametrize("name", ["Mirror", "Solidify", "Geometry Nodes, Subdivision Surface"])
+def test_pieces_below_modifiers_are_repaired(name: str) -> None:
+    ob = STACKS[name]()
+    ob.location.z = -0.7
+    select(ob, add_body())
+    assert meet("Piece", "Body") > 0
+    assert repair_scene(bpy.context).status == "repaired"
+    assert meet("Piece", "Body") == 0 and check_scene(bpy.context, DEFORM).pairs == ()
+    assert len(bpy.data.scenes) == 1
 
 
 def small_motion(points: np.ndarray) -> np.ndarray:
