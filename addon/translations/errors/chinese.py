@@ -12,6 +12,7 @@ MESSAGES = {
     "Topology Mirror is not supported; turn it off": "不支持拓扑镜像；请关闭",
     "a scale of 0 would flatten objects; choose another factor": "缩放为 0 会压平物体；请选择其他系数",
     "a {} has no controls; set its deformation to Rigid": "{}没有控制点；请将变形方式设为刚体",
+    'also follows "{}", hidden in Edit Mode': '同时跟随编辑模式中隐藏的 "{}"',
     "also moves {} its mesh": "同时移动 {} 其网格",
     "back to the last state without intersections: {}": "已恢复到最后的无相交状态：{}",
     "bodies that may overlap would overlap more than at the start": "已排除的物体会比开始时重叠更多",

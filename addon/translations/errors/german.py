@@ -12,6 +12,7 @@ MESSAGES = {
     "Topology Mirror is not supported; turn it off": "Topologie spiegeln wird nicht unterstützt; ausschalten",
     "a scale of 0 would flatten objects; choose another factor": "die Skalierung 0 macht Objekte flach; anderen Faktor wählen",
     "a {} has no controls; set its deformation to Rigid": "kein Bearbeiten bei {}; die Verformung auf Starr stellen",
+    'also follows "{}", hidden in Edit Mode': 'folgt auch "{}", im Bearbeitungsmodus verborgen',
     "also moves {} its mesh": "bewegt auch {} sein Mesh",
     "back to the last state without intersections: {}": "zurück zum letzten Zustand ohne Überschneidungen: {}",
     "bodies that may overlap would overlap more than at the start": "ausgenommene Objekte würden sich mehr überlappen als am Anfang",

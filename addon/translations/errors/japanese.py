@@ -12,6 +12,7 @@ MESSAGES = {
     "Topology Mirror is not supported; turn it off": "トポロジーミラーには対応していません。オフにしてください",
     "a scale of 0 would flatten objects; choose another factor": "スケール 0 ではオブジェクトが潰れます。別の値にしてください",
     "a {} has no controls; set its deformation to Rigid": "{} は編集できません。変形方法を「剛体」にしてください",
+    'also follows "{}", hidden in Edit Mode': '編集モードで非表示の "{}" にも追従します',
     "also moves {} its mesh": "メッシュの共有により {} も動きます",
     "back to the last state without intersections: {}": "最後の交差のない状態に戻しました: {}",
     "bodies that may overlap would overlap more than at the start": "除外したオブジェクトの重なりが開始時より深くなります",

@@ -12,6 +12,7 @@ MESSAGES = {
     "Topology Mirror is not supported; turn it off": "토폴로지 미러는 지원되지 않음; 끄세요",
     "a scale of 0 would flatten objects; choose another factor": "축척 0은 오브젝트를 납작하게 만듦; 다른 값을 선택하세요",
     "a {} has no controls; set its deformation to Rigid": "{}에는 조절점이 없음; 변형 방식을 강체로 설정하세요",
+    'also follows "{}", hidden in Edit Mode': '편집 모드에서 숨겨진 "{}"도 따름',
     "also moves {} its mesh": "함께 움직임: {} 메쉬 공유",
     "back to the last state without intersections: {}": "교차 없는 마지막 상태로 복원함: {}",
     "bodies that may overlap would overlap more than at the start": "제외된 오브젝트가 시작할 때보다 더 겹치게 됨",

@@ -53,6 +53,8 @@ def test_modifiers_shown_only_in_object_mode_are_followed_in_edit_mode() -> None
     add_modifier(cube, "DISPLACE", strength=1.0, mid_level=0.0)
     edit_mode(cube)
     before, kept = snapshot(), counts()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    assert 'Cube: also follows "Displace", hidden in Edit Mode' in edit.start_notes
     assert move() == ""
     assert snapshot() != before and counts() == kept
     assert meetings() == [0, 0, 0]

@@ -9,10 +9,11 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.cage_surface import read_surface
+from stiv.blender.controls.cage_surface import hidden_note, read_surface
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
+from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.key_editing import KeyEditing, check_keys
 from stiv.blender.controls.loop_surfaces import RefinedWriter, refined_writer
 from stiv.blender.controls.points import PointGoal, to_stored
@@ -48,7 +49,8 @@ def make_cage_set(
         (ob.name,), "cage", surfaces, surface.deformation or stiv.identity(len(local)), controls,
         response_weights(participant, selected, max_weights, settings), max_weights, frame,
         PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
-        surface.limited(writer), note=sharing_note(ob), weight_axes=axes_of_weights(max_weights, found.directions),
+        surface.limited(writer), note=join_notes(sharing_note(ob), hidden_note(ob, shown)),
+        weight_axes=axes_of_weights(max_weights, found.directions),
         observed=surface.observed,
     )  # fmt: skip
 

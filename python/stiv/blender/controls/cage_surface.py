@@ -18,7 +18,7 @@ from stiv.blender.controls.observed_stack import ObservedStack, ShownStack
 from stiv.blender.controls.shared_meshes import in_frames
 from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
-from stiv.blender.scene.evaluations import SHOWN
+from stiv.blender.scene.evaluations import SHOWN, is_active, is_edited
 from stiv.blender.scene.lattice_reading import is_undeformed
 from stiv.blender.scene.modifier_stack import (
     LatticeStage,
@@ -87,6 +87,19 @@ def read_surface(
         showings = [ShownStack(user, each, _keys(user, writer, each)) for user, each in rows]
         observed = ObservedStack(scene, writer.frame, transform_points(writer.frame, writer.original), showings)
         return CageSurface(observed.deformation, observed)
+
+
+def hidden_note(ob: bpy.types.Object, shown: Sequence[ShownAs]) -> str:
+    """Message about the modifiers that an edit follows though Edit Mode does not show them; "" if there are none."""
+    if not is_edited(ob):
+        return ""
+    evaluations = {each.evaluation for each in shown}
+    hidden = [
+        modifier.name for modifier in ob.modifiers
+        if not is_active(modifier, ob) and any(is_active(modifier, ob, each) for each in evaluations)
+    ]  # fmt: skip
+    names = ", ".join(hidden)
+    return f'{ob.name}: also follows "{names}", hidden in Edit Mode' if hidden else ""
 
 
 def _known_surfaces(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import cage_writer, open_cage, selected_vertices
-from stiv.blender.controls.cage_surface import read_surface
+from stiv.blender.controls.cage_surface import hidden_note, read_surface
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs, Writer
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, pinned_directions, response_weights
 from stiv.blender.controls.joined_seams import SeamWriter, copy_to_seams, join_notes, join_rows, seam_message
@@ -66,7 +66,7 @@ def make_handle_sets(
         (ob.name,), "soft", surfaces, whole, controls, weights, max_weights, frame,
         PointGoal(found.moving, controls, None, origin, None, pinned_directions(max_weights, limits.directions)),
         HandleWriter(cage, limited if control_seams is None else SeamWriter(limited, control_seams)),
-        note=join_notes(sharing_note(ob), found.note),
+        note=join_notes(sharing_note(ob), hidden_note(ob, shown_as), found.note),
         weight_axes=axes_of_weights(max_weights, limits.directions), observed=surface.observed,
     )]  # fmt: skip
 
