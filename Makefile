@@ -15,6 +15,7 @@ EXTENSION_TOOLS := tools/build_extension.py tools/build_guide.py addon/blender_m
 	$(wildcard docs/user_guide.md docs/images/* docs/films/* blend_fixtures/examples/*)
 PLATFORMS := $(shell sed -n 's/^\([a-z][^ ]*\).*/\1/p' tools/platforms.txt)
 HERE := linux_x64
+WINDOWS_BLENDERS := 4.5.15 5.2.3
 FUZZ_SECONDS := 30
 WINDOW_RELEASE := trixie
 WINDOW_SEQUENCES := 200
@@ -37,7 +38,7 @@ demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/de
 	build/venv-blender/bin/python -m stiv.command_line demo --output build/demo
 
 test: build/stiv_tests build/stiv_tests_asan build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
-	build/venv/bin/python tools/run_tests.py native sanitizers threads window python blender lint
+	build/venv/bin/python tools/run_tests.py native sanitizers threads windows window python blender lint
 
 test-native: build/stiv_tests ## Run the core's own tests
 	build/venv/bin/python tools/run_tests.py native
@@ -107,8 +108,8 @@ test-windows: $(WHEEL) build/venv/portable ## Compile for Windows, and run the s
 test-windows-native: build/venv/portable $(OPENSUBDIV) ## Run the core's own tests under Wine (half an hour to compile)
 	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV) --native
 
-test-windows-blender: $(WHEEL) build/venv/portable ## Run tests on the official Windows module of Blender under Wine
-	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV) --blender $(DEMO_BLENDER)
+test-windows-blender: $(WHEEL) build/venv/portable ## Install the zip into Blender's official Windows modules under Wine, and run tests there
+	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV) --blender $(WINDOWS_BLENDERS)
 
 coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line coverage; detection, acceptance and penetration need 95 %
 	tools/install_debian_packages.sh tools/debian_packages_coverage.txt

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Print the Blender versions that exist as modules for the running Python, on one line; with --demo, the demo's."""
+"""Print the Blender versions that exist as modules for the running Python, on one line; with --demo, the demo's.
+
+With --python VERSION: the version of Python in that Blender.
+"""
 
 import sys
 import tomllib
@@ -10,8 +13,12 @@ TABLE = Path(__file__).with_name("blender_versions.toml")
 
 def main(arguments: list[str]) -> int:
     """Print the versions; the exit code is 1 if no Blender module exists for this Python."""
+    table = tomllib.loads(TABLE.read_text())
+    if arguments[:1] == ["--python"]:
+        print(*[python for python, row in table.items() if arguments[1] in row["blender"]])
+        return 0
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    entry = tomllib.loads(TABLE.read_text()).get(python)
+    entry = table.get(python)
     if entry is None:
         problem = f"no Blender module exists for Python {python}; set STIV_PYTHON to a Python 3.11 or 3.13"
         print(problem, file=sys.stderr)

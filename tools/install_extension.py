@@ -38,7 +38,11 @@ def into_module(archive: Path, environment: Path) -> None:
     process = os.environ | {"BLENDER_USER_RESOURCES": str(resources), "HOME": str(resources)}
     subprocess.run([sys.executable, __file__, archive, "--here"], env=process, check=True)
     (resources / "package").mkdir()
-    (resources / "package/stiv_addon").symlink_to(resources / "extensions" / REPOSITORY / IDENTIFIER)
+    installed, package = resources / "extensions" / REPOSITORY / IDENTIFIER, resources / "package/stiv_addon"
+    if sys.platform == "win32":  # where a link needs privileges
+        shutil.copytree(installed, package)
+    else:
+        package.symlink_to(installed)
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"
     wheels = resources / "extensions/.local/lib" / version / "site-packages"
     folders = Path(sysconfig.get_path("purelib"))

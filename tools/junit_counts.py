@@ -62,6 +62,18 @@ def from_ctest(path: Path, code: int) -> Counts:
     return counts
 
 
+def from_doctest(output: str, code: int) -> Counts:
+    """Test cases of a program's output; a line "skipped: reason" instead is one skip."""
+    summaries = [Counts(int(found[1]), int(found[2])) for found in DOCTEST_SUMMARY.finditer(output)]
+    skipped = re.search(r"^skipped: (.*)$", output, re.MULTILINE)
+    counts = Counts(skipped=Counter([skipped[1]] if skipped else []))
+    for summary in summaries:
+        counts.add(summary)
+    if code != 0 or not (summaries or skipped):
+        counts.failed = max(counts.failed, 1)
+    return counts
+
+
 def _reason(skip: ElementTree.Element) -> str:
     """The reason for a skip; for a whole module, pytest writes it into the text, after the location."""
     if skip.get("message") == "collection skipped" and skip.text:

@@ -3,7 +3,7 @@
 # portable_modules.sh PYTHON OPENSUBDIV PLATFORM [TARGET...]: compile the native modules for a platform of
 # tools/platforms.txt, or other targets, into build/portable/PLATFORM. Zig's clang (package ziglang of PyPI, installed for
 # PYTHON) compiles them and links its C++ library, with nothing of this system but the headers of header-only libraries.
-# The core is compiled once. STIV_PYTHONS: fewer versions of Python than the platform's.
+# The core is compiled once. STIV_PYTHONS: fewer versions of Python than the platform's, or none.
 set -eu
 python=$1
 opensubdiv=$(realpath "$2")
@@ -24,7 +24,7 @@ zig_cache=$PWD/build/portable/zig-cache
 export ZIG_GLOBAL_CACHE_DIR="$zig_cache" ZIG_LOCAL_CACHE_DIR="$zig_cache"
 
 headers=
-for version in ${STIV_PYTHONS:-$pythons}; do
+for version in ${STIV_PYTHONS-$pythons}; do
     suite=$(sed -n "s/^$version  *//p" "$here/extension_pythons.txt")
     case "$system" in
     Windows) folder=build/portable/windows-headers && "$here/windows_headers.sh" "$version" "$suite" "$folder" "$zig" ;;
@@ -65,6 +65,6 @@ cmake -S . -B "$build/cmake" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_TRY_COM
     -DSTIV_HIGHWAY_INCLUDE="$PWD/$build/include" -DSTIV_OPENSUBDIV_SOURCE="$opensubdiv" \
     -Dpybind11_DIR="$("$python" -m pybind11 --cmakedir)" "-DSTIV_PYTHON_HEADERS=$headers" >"$build/cmake.log" 2>&1 ||
     { cat "$build/cmake.log" >&2; exit 1; }
-rm -f "$build"/cmake/native/bindings/_native.*  # of versions that are not requested
+[ $# -gt 0 ] || rm -f "$build"/cmake/native/bindings/_native.*  # of versions that are not requested
 cmake --build "$build/cmake" ${STIV_JOBS:+-j$STIV_JOBS} --target "${@:-stiv_portable_modules}" >"$build/build.log" 2>&1 ||
     { cat "$build/build.log" >&2; exit 1; }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run the named parts of the tests, even if one of them fails, and print a summary at the end.
 
-Usage: run_tests.py PART...   with the parts native, sanitizers, threads, python, blender, lint and window.
+Usage: run_tests.py PART...   with the parts native, sanitizers, threads, windows, python, blender, lint and
+window.
 """
 
 import os
@@ -46,9 +47,14 @@ class Row:
     seconds: float
 
 
+def log_of(title: str) -> Path:
+    """Where the output of a run is stored."""
+    return REPORTS / f"{re.sub('[^a-z0-9.-]+', '-', title)}.log"
+
+
 def run(title: str, command: list[str | Path]) -> int:
     """Run a command from the root of the source tree, and print its output when it ends. Ends commands that hang."""
-    log = REPORTS / f"{re.sub('[^a-z0-9.-]+', '-', title)}.log"
+    log = log_of(title)
     with log.open("wb") as output:
         try:
             code = subprocess.run(
@@ -88,6 +94,12 @@ def lint(title: str) -> Counts:
     return counts
 
 
+def windows(title: str) -> Counts:
+    """Exact signs on Windows: a program compiled by Zig, under Wine; skipped with the reason without them."""
+    code = run(title, ["tools/test_windows.sh", sys.executable, BUILD / "opensubdiv", "--predicates"])
+    return junit_counts.from_doctest(log_of(title).read_text(errors="replace"), code)
+
+
 def window(title: str) -> Counts:
     """The add-on in a real window; skipped with the reason if no chroot can be created."""
     report = REPORTS / "window.xml"
@@ -104,6 +116,8 @@ def jobs(name: str) -> Iterator[Job]:
         yield Job(name, lambda: native(name, "asan"), alone=True)
     elif name == "threads":
         yield Job(name, lambda: native(name, "tsan", "--tests-regex", "^threads$"), alone=True)
+    elif name == "windows":
+        yield Job(name, lambda: windows(name), alone=True)
     elif name == "python":
         yield Job(name, lambda: pytest(name, BUILD / "venv", "-m", "not blender"))
     elif name == "blender":

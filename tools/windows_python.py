@@ -15,6 +15,7 @@ import tarfile
 import zipfile
 from pathlib import Path
 
+NUMPY = {"3.11": "numpy==1.26.4", "3.13": "numpy==2.1.3"}  # Wine 8 loads no newer one
 ARCHIVES = {
     "3.11": ("3.11.1", "b6d6b1071cbed92691e7c37f25f3dcc814cdee2a99b154dcdd1d78c3da7ec863"),
     "3.13": ("3.13.1", "2538b7dd20f9b9bbc7f501ac625285255dccf73d85297b9c3b61d4213ef7de43"),
@@ -51,6 +52,7 @@ def unpack(version: str, folder: Path) -> None:
         with zipfile.ZipFile(io.BytesIO(content.read())) as files:
             files.extractall(folder.parent)
     (folder.parent / f"cp{version.replace('.', '')}").rename(folder)
+    (folder / "DLLs/_wmi.pyd").unlink(missing_ok=True)  # for names of the system: Python does without, Wine 8 crashes
 
 
 def main(version: str, folder: Path, packages: list[str]) -> None:
@@ -59,9 +61,11 @@ def main(version: str, folder: Path, packages: list[str]) -> None:
         unpack(version, folder)
     target = ["--target", str(folder / "Lib/site-packages"), "--upgrade", "--platform", "win_amd64"]
     choice = ["--python-version", version, "--implementation", "cp", "--only-binary=:all:"]
+    choice += ["--ignore-requires-python"]  # of this Python; pip chooses by the version above
     if packages:
+        pinned = [] if "--no-deps" in packages else [NUMPY[version]]
         command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        subprocess.run([*command, *target, *choice, *packages], check=True)
+        subprocess.run([*command, *target, *choice, *packages, *pinned], check=True)
 
 
 if __name__ == "__main__":

@@ -4,29 +4,47 @@
 #include <algorithm>
 #include <atomic>
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 namespace stiv {
 
 namespace {
 
 std::atomic<VectorTarget> limit{VectorTarget::avx512};
 
+#if defined(__x86_64__)
+
+/// Does the operating system save these registers? A bit for each kind. [Intel 64 manual, volume 1, section 13.3]
+bool saves(unsigned kinds) {
+  unsigned saved = 0, high = 0;
+  __asm__("xgetbv" : "=a"(saved), "=d"(high) : "c"(0));
+  return (saved & kinds) == kinds;
+}
+
+/// Asks the processor. The __builtin_cpu_supports of Zig's library always says no.
+VectorTarget detected() {
+  constexpr unsigned avx_registers = 0x06, avx512_registers = 0xe6;
+  constexpr unsigned avx512 = bit_AVX512F | bit_AVX512DQ | bit_AVX512CD | bit_AVX512BW | bit_AVX512VL;
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & bit_OSXSAVE) == 0 || !saves(avx_registers))
+    return VectorTarget::baseline;
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0 || (b & bit_AVX2) == 0) return VectorTarget::baseline;
+  return (b & avx512) == avx512 && saves(avx512_registers) ? VectorTarget::avx512 : VectorTarget::avx2;
+}
+
+#else
+
+VectorTarget detected() { return VectorTarget::baseline; }
+
+#endif
+
 }  // namespace
 
 VectorTarget best_vector_target() {
-#if defined(__x86_64__)
-  // The compiler's own detection, which also asks whether the operating system saves the registers.
-  static const VectorTarget best = [] {
-    __builtin_cpu_init();  // on Windows no constructor does it
-    if (!__builtin_cpu_supports("avx2")) return VectorTarget::baseline;
-    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-                        __builtin_cpu_supports("avx512cd");
-    return avx512 ? VectorTarget::avx512 : VectorTarget::avx2;
-  }();
+  static const VectorTarget best = detected();
   return best;
-#else
-  return VectorTarget::baseline;
-#endif
 }
 
 VectorTarget vector_target() { return std::min(best_vector_target(), limit.load(std::memory_order_relaxed)); }
