@@ -39,7 +39,7 @@ def windows_interface(module: Path) -> tuple[set[str], set[str]]:
 
 @dataclass(frozen=True)
 class MacModule:
-    """What the loader of macOS reads of a module."""
+    """Properties of a module that the loader of macOS reads."""
 
     processor: str
     exported: set[str]
