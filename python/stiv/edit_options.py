@@ -130,7 +130,9 @@ class EditOptions(SharedOptions):
     #: of the rounds: "conservative", or "polynomial" as published; acceptance is always conservative and exact
     narrow_phase: str = _choice("conservative", "narrow_phase", _native.NarrowPhase)
     broad_phase: str = _choice("bvh", "broad_phase", _native.BroadPhase)  #: "hash_grid", "brute_force": for comparison
-    max_sub_edits: int = 6  #: passes of rounds and acceptance
+    #: passes of rounds and acceptance toward a goal or sub-goal; an edit refines its solution in at most twice as many.
+    #: 1: one pass in all, without sub-goals
+    max_sub_edits: int = 6
     max_rounds: int = 60  #: detections and responses in a sub-edit
     accumulated_rounds: int = 12  #: rounds that keep the constraints of earlier rounds
     pull_limit: float = 0.04  #: maximum pull of a drag toward its goal, in diagonals of the movable surface; 0: none

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
@@ -16,7 +17,8 @@ namespace {
 
 constexpr int max_pulls_of_drag = 12;
 constexpr double shortest_stride = 0.25;           // in pull distances
-constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round of a pull; below it no further pull
+constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round of a pull; below it the pull is poor
+constexpr double growing_rate = 1.5;               // of the rate of the pull before
 
 /// The accepted controls, plus the motion of the goal since it was last followed; the goal itself if it was reached
 /// then.
@@ -31,6 +33,17 @@ void pull(EditCall& call, const Aim& aim, double distance) {
   const Controls goal = interpolate(call.accepted.controls, aim.controls, fraction, call.context.rotation_rows());
   if (call.context.stored(goal) == call.accepted.controls) return;
   run_sub_edits_by_rotation_steps(call, {goal, aim.surface, true});
+}
+
+/// Pulls. Returns the relative drop of the energy for each round that this takes.
+double energy_drop_rate(EditCall& call, const Aim& aim, double distance) {
+  const Counters& counters = call.execution.counters;
+  const std::int64_t rounds_before = counters.rounds;
+  const double before = energy(call.accepted.surface, aim.surface);
+  pull(call, aim, distance);
+  const double after = energy(call.accepted.surface, aim.surface);
+  const auto rounds = static_cast<double>(std::max<std::int64_t>(counters.rounds - rounds_before, 1));
+  return before > 0 ? (1 - after / before) / rounds : 0;
 }
 
 }  // namespace
@@ -78,15 +91,27 @@ PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& d
 }
 
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits) {
-  const Counters& counters = call.execution.counters;
-  for (int k = 0; k < limits.pulls && counters.rounds < limits.rounds; ++k) {
-    const std::int64_t rounds_before = counters.rounds;
-    const double before = energy(call.accepted.surface, aim.surface);
-    pull(call, aim, limits.distance);
-    const double after = energy(call.accepted.surface, aim.surface);
-    const auto rounds = static_cast<double>(std::max<std::int64_t>(counters.rounds - rounds_before, 1));
-    if (!(after < (1 - least_energy_drop_rate * rounds) * before)) return;
+  double rate_before = std::numeric_limits<double>::infinity();
+  int poor = 0;
+  for (int k = 0; k < limits.pulls && poor < limits.poor_pulls; ++k) {
+    const double rate = energy_drop_rate(call, aim, limits.distance);
+    if (!(rate > 0)) return;
+    poor = rate >= least_energy_drop_rate || rate > growing_rate * rate_before ? 0 : poor + 1;
+    rate_before = rate;
   }
+}
+
+void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
+  const EditContext& context = call.context;
+  const bool is_far = longest_displacement(call.accepted.surface, aim.surface) > context.far_distance();
+  if (!is_far || context.pull_distance() == 0 || drag.leapt_from == call.accepted.controls) return;
+  const bool was_blocked = call.report.blocked;
+  const Controls from = call.accepted.controls;
+  drag.is_leaping = true;
+  pull(call, aim, std::numeric_limits<double>::infinity());
+  drag.is_leaping = false;
+  if (call.accepted.controls == from) drag.leapt_from = from;
+  call.report.blocked = was_blocked && call.report.blocked;
 }
 
 }  // namespace stiv

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "editing/edit_call.hpp"
 
@@ -17,6 +18,9 @@ struct DragProgress {
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_several_calls = false;
+  bool is_leaping = false;  ///< the time budget ended a leap, which the next call to the same goal resumes
+  std::optional<Controls> leapt_from =
+      std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
 };
 
 /// Applies the increment from the goal that was followed last, in strides if the call has a time budget.
@@ -25,17 +29,21 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag);
 struct PullLimits {
   double distance = std::numeric_limits<double>::infinity();  ///< largest motion of the goal in a pull
   int pulls = 12;                                             ///< the most pulls
-  std::int64_t rounds =
-      std::numeric_limits<std::int64_t>::max();  ///< no pull begins after this many rounds of the call
+  int poor_pulls = 1;  ///< consecutive pulls that lower the energy too little, after which no other begins
 };
 
 /// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
 /// returns from deep inside a wall lifts the shape off the wall, and pulls move it back.
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim);
 
-/// Pulls until the energy no longer falls enough for the rounds that it takes. Each pull is one sub-edit that accepts
-/// only a state with lower energy.
+/// Pulls until the energy no longer falls enough for the rounds that it takes, or not at all. Each pull is one sub-edit
+/// that accepts only a state with lower energy. A pull that gains clearly more than the one before is never poor: a
+/// shape that slides off an edge starts slowly.
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits);
+
+/// Pulls toward a far goal without a limit on its motion. Short pulls cannot take a shape around an obstacle that the
+/// goal has passed. A leap that fails does not block the call, and is not repeated.
+void leap(EditCall& call, const Aim& aim, DragProgress& drag);
 
 /// The longest displacement of a vertex between two surfaces.
 double longest_displacement(const Positions& from, const Positions& to);

@@ -2,20 +2,21 @@
 #include "stiv/editing/session.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "editing/drag.hpp"
 #include "editing/edit_result.hpp"
 #include "editing/feasible_state.hpp"
 #include "editing/sub_edit_loop.hpp"
+#include "editing/sub_goals.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
 
 namespace {
 
-/// The first solution is linearized where the surfaces met on the way to the goal, possibly far from the result.
-/// Solving again from there lowers the energy further. An edit does so while it has taken fewer rounds than this.
-constexpr int rounds_of_cheap_edit = 24;
+/// Consecutive poor pulls that end an edit or settling. One, if a time budget ends most calls after a pull at most.
+int poor_pulls_before_end(const Execution& execution) { return execution.has_time_budget() ? 1 : 2; }
 
 /// Whether a goal counts as followed when the time budget ends its call.
 enum class FollowedGoal {
@@ -65,9 +66,17 @@ class EditSession::Implementation {
   EditResult edit(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
-      const bool is_mouse_move = longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
-      run_sub_edits_by_rotation_steps(call, aim);
-      if (!call.report.blocked && !is_mouse_move) refine(call, aim);
+      forget_leaps();
+      if (longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance() ||
+          context_.options().max_sub_edits == 1) {
+        run_sub_edits_by_rotation_steps(call, aim);
+      } else {
+        const State start = accepted_;
+        approach_by_sub_goals(call, aim);
+        refine(call, aim);
+        if (stays_far(call, aim)) retry_directly(call, aim, start);
+        if (!moves_pinned_controls(context_.options(), start.controls, aim.controls)) return_to_best(call, aim);
+      }
     });
   }
 
@@ -75,17 +84,22 @@ class EditSession::Implementation {
     return carry_out(goal, execution, FollowedGoal::as_the_work_recorded, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim);
+      if (aim.controls != drag_.followed.controls) forget_leaps();
+      if (drag_.is_leaping) leap(call, aim, drag_);
       follow_goal(call, aim, drag_);
       pull_until_settled(call, aim, limits);
+      leap(call, aim, drag_);
     });
   }
 
   EditResult settle(Execution& execution) {
     const Controls goal = goal_;
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
-      PullLimits limits;
+      PullLimits limits{.poor_pulls = poor_pulls_before_end(call.execution)};
       if (is_dragging_) limits.distance = context_.pull_distance();
+      if (drag_.is_leaping) leap(call, aim, drag_);
       pull_until_settled(call, aim, limits);
+      if (is_dragging_) leap(call, aim, drag_);
     });
   }
 
@@ -130,10 +144,31 @@ class EditSession::Implementation {
     bool lasts_ = false;
   };
 
-  /// Further sub-edits. The response has already settled, so the edit is not blocked even if one of these is.
+  void forget_leaps() {
+    drag_.is_leaping = false;
+    drag_.leapt_from.reset();
+  }
+
+  /// The first solution is linearized where the surfaces met on the way to the goal, possibly far from the result.
+  /// Solving again from there lowers the energy further. An edit whose response had settled stays unblocked.
   void refine(EditCall& call, const Aim& aim) {
-    pull_until_settled(call, aim, {.pulls = context_.options().max_sub_edits - 1, .rounds = rounds_of_cheap_edit});
-    call.report.blocked = false;
+    const bool was_blocked = call.report.blocked;
+    pull_until_settled(
+        call, aim,
+        {.pulls = 2 * context_.options().max_sub_edits, .poor_pulls = poor_pulls_before_end(call.execution)});
+    call.report.blocked = was_blocked && call.report.blocked;
+  }
+
+  /// Repeats the edit from its start without sub-goals, and uses the better result.
+  void retry_directly(EditCall& call, const Aim& aim, const State& start) {
+    State found = std::exchange(accepted_, start);
+    EditReport report = std::exchange(call.report, {});
+    queries_.clear_cache();
+    run_sub_edits_by_rotation_steps(call, aim);
+    refine(call, aim);
+    if (energy(accepted_.surface, aim.surface) < energy(found.surface, aim.surface)) return;
+    accepted_ = std::move(found);
+    call.report = std::move(report);
   }
 
   /// Wraps every call: checks, interruption and the result. A call that is cancelled or throws changes nothing.

@@ -35,20 +35,6 @@ Vector3 along_weight_axes(const EditOptions& options, Index control, const Vecto
   return (along.array().abs() > rounding * displacement.norm()).select(along, 0);
 }
 
-/// Does the goal move controls along pinned axes? The obstacles they hit must move aside, which may raise the energy.
-bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to) {
-  if (options.weights.size() == 0) return false;
-  const Index values = static_cast<Index>(options.weights.size() / from.rows());
-  for (Index k = 0; k < from.rows(); ++k) {
-    const auto weights = options.weights.segment(values * k, values);
-    if (!(weights.array() == 0).any() || from.row(k) == to.row(k)) continue;
-    if (values == 1) return true;
-    const Vector3 moved = along_weight_axes(options, k, (to.row(k) - from.row(k)).transpose());
-    if ((weights.array() == 0 && moved.array() != 0).any()) return true;
-  }
-  return false;
-}
-
 class SubEditLoop {
  public:
   SubEditLoop(EditCall& call, const Aim& aim)
@@ -145,6 +131,19 @@ void SubEditLoop::run() {
 }
 
 }  // namespace
+
+bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to) {
+  if (options.weights.size() == 0) return false;
+  const Index values = static_cast<Index>(options.weights.size() / from.rows());
+  for (Index k = 0; k < from.rows(); ++k) {
+    const auto weights = options.weights.segment(values * k, values);
+    if (!(weights.array() == 0).any() || from.row(k) == to.row(k)) continue;
+    if (values == 1) return true;
+    const Vector3 moved = along_weight_axes(options, k, (to.row(k) - from.row(k)).transpose());
+    if ((weights.array() == 0 && moved.array() != 0).any()) return true;
+  }
+  return false;
+}
 
 void run_sub_edits(EditCall& call, const Aim& aim) { SubEditLoop(call, aim).run(); }
 

@@ -13,4 +13,7 @@ void run_sub_edits(EditCall& call, const Aim& aim);
 /// "Rotation steps")
 void run_sub_edits_by_rotation_steps(EditCall& call, const Aim& aim);
 
+/// Does the goal move controls along pinned axes? The obstacles they hit must move aside, which may raise the energy.
+bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to);
+
 }  // namespace stiv

@@ -50,7 +50,7 @@ struct EditOptions {
   VolumeKind volumes = VolumeKind::relative;
   NarrowPhase narrow_phase = NarrowPhase::conservative;  ///< of the rounds; acceptance is always conservative and exact
   BroadPhase broad_phase = BroadPhase::bvh;
-  int max_sub_edits = 6;
+  int max_sub_edits = 6;        ///< toward a goal or sub-goal; 1: one in all, without sub-goals
   int max_rounds = 60;          ///< in a sub-edit
   int accumulated_rounds = 12;  ///< rounds that accumulate constraints
   double pull_limit = 0.04;  ///< longest pull of a drag toward its goal, in diagonals of the moving vertices; 0: none

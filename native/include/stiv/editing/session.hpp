@@ -55,7 +55,8 @@ class EditSession {
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
 
-  /// One edit from the accepted controls toward `goal`, (m, 3). Refines its first solution while that is cheap.
+  /// One edit from the accepted controls toward `goal`, (m, 3). Passes sub-goals if the goal is far. Refines
+  /// its solution while that lowers the energy. Ends at the best state of its path, unless pinned controls move.
   EditResult edit(const Controls& goal, Execution& execution);
 
   /// One mouse move of a drag: applies the increment since the last goal, then pulls toward the absolute goal.

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/sub_goals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "editing/control_interpolation.hpp"
+#include "editing/drag.hpp"
+#include "editing/feasible_state.hpp"
+#include "editing/sub_edit_loop.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr int max_sub_goals = 64;
+
+int sub_goal_count(const EditCall& call, const Aim& aim) {
+  if (call.execution.has_time_budget()) return 1;
+  const double distance = longest_displacement(call.accepted.surface, aim.surface);
+  return static_cast<int>(std::clamp<double>(std::ceil(distance / call.context.far_distance()), 1, max_sub_goals));
+}
+
+}  // namespace
+
+void approach_by_sub_goals(EditCall& call, const Aim& aim) {
+  const Controls start = call.accepted.controls;
+  const std::vector<Index>& rows = call.context.rotation_rows();
+  const int count = sub_goal_count(call, aim);
+  for (int k = 1; k < count; ++k) {
+    const Controls goal = interpolate(start, aim.controls, static_cast<double>(k) / count, rows);
+    if (std::optional<State> sub_goal = feasible_state(call.context, goal, call.execution))
+      run_sub_edits_by_rotation_steps(call, {goal, sub_goal->surface, aim.must_improve});
+  }
+  run_sub_edits_by_rotation_steps(call, aim);
+}
+
+bool stays_far(const EditCall& call, const Aim& aim) {
+  return !call.context.deformation().rotation_rows().empty() && !call.execution.has_time_budget() &&
+         longest_displacement(call.accepted.surface, aim.surface) > call.context.far_distance();
+}
+
+void return_to_best(EditCall& call, const Aim& aim) {
+  std::vector<Controls>& path = call.report.path;
+  double least = energy(call.accepted.surface, aim.surface);
+  std::size_t best = path.size();
+  for (std::size_t k = path.size(); k-- > 1;) {
+    State state{path[k - 1], call.context.surface_at(path[k - 1], call.execution)};
+    const double value = energy(state.surface, aim.surface);
+    if (!(value < least)) continue;
+    least = value;
+    best = k;
+    call.accepted = std::move(state);
+  }
+  path.resize(best);
+}
+
+}  // namespace stiv
