@@ -54,6 +54,7 @@ class _Nearest:
     position: Vector = field(default_factory=lambda: np.zeros(3))
     direction: Vector = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     edge: int = -1
+    vertex: int = -1
 
 
 @dataclass
@@ -152,7 +153,7 @@ class SnapSearch:
         if nearest.target is None:
             return None
         if nearest.edge < 0:
-            return Found(nearest.position, nearest.direction, "VERTEX")
+            return Found(nearest.position, self._normal_at(nearest.target, nearest.vertex), "VERTEX")
         return self._on_edge(nearest, nearest.target, pixel, view, source)
 
     def _compare(
@@ -223,6 +224,12 @@ class SnapSearch:
         inverse = np.linalg.pinv(target.matrix[:3, :3])
         return _unit(inverse.T @ inverse @ direction)
 
+    def _normal_at(self, target: SnapTarget, vertex: int) -> Vector:
+        """The world normal of a vertex; upward for points without a surface."""
+        if not target.surface:
+            return np.array([0.0, 0.0, 1.0])
+        return self._direction(target, _unit(target.matrix[:3, :3] @ target.mesh.vertex_normal(vertex)))
+
     def _projection(self, target: SnapTarget, view: View) -> _Projected:
         known = self._projected.get(id(target))
         if known is None or known.view is not view:
@@ -250,7 +257,7 @@ class _Projected:
             position = _world(self.target, self.target.mesh.vertices[vertices[index]][None])[0]
             if _is_before(position, plane):
                 nearest.distance, nearest.target, nearest.edge = float(away[index]), self.target, -1
-                nearest.position = position
+                nearest.position, nearest.vertex = position, int(vertices[index])
                 return
 
     def nearest_edge(self, edges: Numbers, nearest: _Nearest, pixel: Pixel, plane: Vector | None) -> None:

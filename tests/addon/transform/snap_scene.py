@@ -30,7 +30,7 @@ class Quad:
         edge_order = loop if self.upwards else np.array([2, 1, 0, 3])
         self.mesh = SimpleNamespace(
             vertices=self.corners, edges=edges, corner_vertices=order, corner_edges=edge_order, starts=np.array([0, 4]),
-            loose=np.empty(0, int),
+            loose=np.empty(0, int), vertex_normal=lambda vertex: np.array([0.0, 0.0, 1.0 if self.upwards else -1.0]),
         )  # fmt: skip
 
     def cast(self, origin: np.ndarray, direction: np.ndarray) -> tuple | None:

@@ -153,3 +153,14 @@ def test_a_base_snaps_to_geometry_where_only_increments_are_chosen() -> None:
 @pytest.mark.parametrize("element", ["VERTEX", "EDGE", "FACE", "GRID", "VOLUME"])
 def test_typed_numbers_do_not_snap(element: str) -> None:
     assert moved((450.0, 300.0), snapping(element), typed=typed("0.3"))[0] == 0.3
+
+
+@pytest.mark.parametrize("element", ["FACE", "VERTEX", "EDGE"])
+def test_a_move_is_aligned_with_the_normal_of_a_face_or_a_vertex_or_along_an_edge(element: str) -> None:
+    pixel = VIEW.project(CORNERS[0] if element == "VERTEX" else (CORNERS[0] + CORNERS[1]) / 2)
+    snap, state = snapping(element, align=True), State(Pointer.at((400.0, 300.0)).moved(pixel), ctrl=True)
+    found = requested_translation(state, FRAME, snap=snap).alignment
+    along = (CORNERS[1] - CORNERS[0]) / np.linalg.norm(CORNERS[1] - CORNERS[0])
+    assert found is not None and abs(found[0] @ (along if element == "EDGE" else (0, 0, 1))) == pytest.approx(1)
+    for without in (replace(snap, align=False), snapping("INCREMENT", align=True)):
+        assert requested_translation(state, FRAME, snap=without).alignment is None

@@ -45,6 +45,18 @@ class SnapMesh:
         used[self.edges.ravel()] = True
         return np.flatnonzero(~used).astype(np.int32)
 
+    def vertex_normal(self, vertex: int) -> Floats:
+        """Unit normal of a vertex, (3,), as Blender's: of its faces by their angles; without faces, its direction."""
+        normal = np.zeros(3)
+        for corner in np.flatnonzero(self.corner_vertices == vertex):
+            face = int(np.searchsorted(self.starts, corner, side="right")) - 1
+            corners = self.vertices[self.corner_vertices[self.starts[face] : self.starts[face + 1]]]
+            place = int(corner - self.starts[face])
+            sides = [_unit(corners[(place + k) % len(corners)] - corners[place]) for k in (1, -1)]
+            across = _unit(np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0))
+            normal += across * np.arccos(np.clip(sides[0] @ sides[1], -1.0, 1.0))
+        return _unit(normal) if normal.any() else _unit(self.vertices[vertex])
+
     @cached_property
     def tree(self) -> BVHTree:
         """A tree of the faces."""
@@ -223,3 +235,8 @@ def _of_points(obj: bpy.types.Object, points: Floats, edges: Indices = NO_EDGES)
     mesh = SnapMesh(points.reshape(-1, 3), edges)
     low, high = (mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)) if len(mesh.vertices) else (_NONE, _NONE)
     return SnapTarget(as_matrix(obj.matrix_world), low, high, False, lambda: mesh)
+
+
+def _unit(vector: Floats) -> Floats:
+    length = float(np.linalg.norm(vector))
+    return vector / length if length > 0 else vector
