@@ -109,7 +109,8 @@ def piece_with_modifiers(window: Window) -> Steps:
     assert scenes.evaluated_extent("Piece") > before + 0.2, "the piece at the body while dragging"
     assert len(bpy.data.scenes) == 2, "the copy that Blender evaluates stays during a drag"
     window.picture("piece_with_modifiers")
-    yield from click(window)
+    window.key("LEFTMOUSE")
+    yield from window.until(lambda: not window.dragging(), "the end of the transform", 120)
     assert len(bpy.data.scenes) == 1
     expect_free(window)
     yield from window.undo()

@@ -154,9 +154,9 @@ def add_mirrored_piece() -> Any:
             vertex.co = (0.5 + 0.3 * y * y, 1.2 * y, 0.7 * x)
 
     def build_body(content: bmesh.types.BMesh) -> None:
-        bmesh.ops.create_icosphere(content, subdivisions=4, radius=0.7)
+        bmesh.ops.create_icosphere(content, subdivisions=4, radius=0.45)
 
-    add_mesh("Body", build_body, (1.7, 0.2, 0.1))
+    add_mesh("Body", build_body, (1.4, 0.2, 0.1))
     piece = add_mesh("Piece", build_plate)
     piece.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
     piece.modifiers.new("Solidify", "SOLIDIFY").thickness = 0.15
