@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.sparse
 from numpy.typing import NDArray
 
 import stiv
 from blend_fixtures.scenes.primitives import grid, triangulated
 from tests.oracles.path import find_contacts
+
+scipy = pytest.importorskip("scipy")  # Pythons of other platforms lack it
 
 Floats = NDArray[np.float64]
 RANDOM = np.random.default_rng(7)

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from blend_fixtures.scenes.primitives import box, icosphere, triangulated
-from blend_fixtures.scenes.shape import Shape, joined
 from numpy.typing import NDArray
 
 import stiv
+from blend_fixtures.scenes.primitives import box, icosphere, triangulated
+from blend_fixtures.scenes.shape import Shape, joined
 
 Array = NDArray[np.float64]
 EGG = triangulated(icosphere(2, 0.3)).scaled((1.0, 0.6, 0.5))
