@@ -197,11 +197,11 @@ class SnapSearch:
         along_edge = self._direction(target, nearest.direction)
         best, distance = Found(nearest.position, along_edge, "EDGE"), REACH
 
-        def compare(position: Vector, element: str) -> None:
+        def compare(position: Vector, element: str, direction: Vector = along_edge) -> None:
             nonlocal best, distance
             away = _pixels_to(position, pixel, view)
             if away < distance:
-                best, distance = Found(position, along_edge, element), away
+                best, distance = Found(position, direction, element), away
 
         if fraction is not None and self.elements & (SCREEN_ELEMENTS - {"EDGE"}):
             if "EDGE_MIDPOINT" in self.elements:
@@ -214,7 +214,8 @@ class SnapSearch:
                 if 0.0 <= foot <= 1.0:
                     compare(ends[0] + foot * along, "EDGE_PERPENDICULAR")
             if "VERTEX" in self.elements and (fraction < share or fraction > 1.0 - share):
-                compare(ends[int(fraction >= 0.5)], "VERTEX")
+                end = int(fraction >= 0.5)
+                compare(ends[end], "VERTEX", self._normal_at(target, int(target.mesh.edges[nearest.edge][end])))
         return best if best.element in self.elements else None
 
     def _direction(self, target: SnapTarget, direction: Vector) -> Vector:

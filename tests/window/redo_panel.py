@@ -53,7 +53,7 @@ def redo_panel_is_limited(window: Window) -> Steps:
 
 
 def redone_with(window: Window, value: float) -> Steps:
-    """What another value in the panel does."""
+    """Repeat the last operator with another value, as the panel does."""
     bpy.context.window_manager.operators[-1].properties.value = (value, 0.0, 0.0)
     with window.override():
         bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
