@@ -52,12 +52,34 @@ def add_flat() -> Any:
     return ob
 
 
+def add_tapered() -> Any:
+    """A tube that ends in points, where vertices coincide."""
+    ob, taper = add_bezier("FREE"), bpy.data.curves.new("Taper", "CURVE")
+    spline = taper.splines.new("POLY")
+    spline.points.add(2)
+    for place, point in zip((-1, 0, 1), spline.points, strict=True):
+        point.co = place, 1 - place * place, 0, 1
+    ob.data.taper_object = add("Taper", taper, (30, 0, 0))
+    bpy.context.view_layer.update()
+    return ob
+
+
+def add_thick() -> Any:
+    """A NURBS surface whose modifier makes it follow its points in other ways than linearly."""
+    bpy.ops.surface.primitive_nurbs_surface_surface_add(location=(0, 0, 2))
+    add_modifier(bpy.context.object, "SOLIDIFY", thickness=0.1)
+    bpy.context.object.data.resolution_u = bpy.context.object.data.resolution_v = 2
+    return bpy.context.object
+
+
 MAKERS = {
     "free": lambda: add_bezier("FREE"),
     "aligned": lambda: add_bezier("ALIGNED"),
     "auto": lambda: add_bezier("AUTO"),
     "curve": lambda: add_nurbs("curve"),
     "flat": add_flat,
+    "tapered": add_tapered,
+    "thick": add_thick,
     "surface": lambda: add_nurbs("surface"),
 }
 
@@ -121,7 +143,7 @@ def test_the_surface_stops_at_the_floor(made: str, mode: str) -> None:
         assert edit.write().passed
         assert check_scene(bpy.context, DEFORM).pairs == ()
         assert check_scene(bpy.context, EditSettings(guard="render")).pairs == ()
-    assert np.abs(evaluated(ob) - start)[:, 2].max() > (0.1 if made == "flat" else 0.9)
+    assert np.abs(evaluated(ob) - start)[:, 2].max() > {"flat": 0.1, "thick": 0.4}.get(made, 0.9)
     if made == "flat":
         assert np.abs(np.reshape(points(ob), (-1, 3))[:, 2]).max() == 0
     if mode == "EDIT":
@@ -156,6 +178,9 @@ def test_what_cannot_follow_its_points_is_refused_by_name() -> None:
     bpy.context.view_layer.update()
     refused(f"{circle.name}: its fill changes its faces; convert it to a mesh")
     circle.data.dimensions, circle.data.bevel_depth = "3D", 0.1
+    add_modifier(circle, "REMESH", voxel_size=0.1)
+    refused(f'{circle.name}: Remesh "Remesh" changes topology; apply it')
+    circle.modifiers.clear()
     circle.shape_key_add(name="Basis")
     refused(f"{circle.name}: its shape keys hide edits; apply all shape keys")
 

@@ -15,7 +15,8 @@ import stiv
 from stiv import InputError
 from stiv.blender.controls.points import to_stored
 from stiv.blender.scene.arrays import Floats, Indices, Singles, transform_points
-from stiv.blender.scene.curve_reading import spline_starts, write_curve_points
+from stiv.blender.scene.curve_reading import spline_places, write_curve_points
+from stiv.blender.scene.modifier_stack import modifier_error
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import StackTwin, kept_twin, kept_twins
 
@@ -23,7 +24,8 @@ TRIALS = (1e-3, 0.1, 1.0)  # random moves of the points, in sizes of the curve
 ROUNDING = 3e-6  # of the size: difference between two linear results in single precision
 PROBE = np.array([0.36, 0.48, 0.8])  # direction of the moves that measure weights
 STEPS = {"linear": 4.0, "observed": 1e-2}  # of these moves, in sizes
-DISTANT = 24  # points along a spline, handles included: no vertex follows two that are so far apart
+DISTANT = 24, 12  # points along a curve, handles included, and of a surface: no vertex follows two so far apart
+OTHER_SPLINE = np.array([10**6, 1, 1])  # factors of places: points of other splines are far away
 LEAST = {"linear": 1e-6, "observed": 1e-3}  # weights below are noise
 
 
@@ -48,11 +50,18 @@ def curve_surface(
         moves = [each * observer.size * random.uniform(-1, 1, local.shape) for each in TRIALS]
         trials = [observer.moved(move) for move in moves]
         if trials[0] is None:
-            raise InputError(f"{ob.name}: its fill changes its faces; convert it to a mesh")
+            raise _topology_error(ob)
         weights = observer.linear_weights()
         if all(observer.agrees(trial, weights, move) for trial, move in zip(trials, moves, strict=True)):
             return observer.linear(weights)
         return stiv.observed(observer.evaluate, observer.mean_weights())
+
+
+def _topology_error(ob: bpy.types.Object) -> InputError:
+    active = [modifier for modifier in ob.modifiers if modifier.show_viewport or modifier.show_render]
+    if active:
+        return modifier_error(ob, active[0].name, "changes topology")
+    return InputError(f"{ob.name}: its fill changes its faces; convert it to a mesh")
 
 
 class _CurveObserver:
@@ -63,7 +72,7 @@ class _CurveObserver:
     ) -> None:
         self._reference, self._scene, self._evaluations = ObjectReference.of(ob), scene.name, tuple(evaluations)
         self._frame, self._local = frame, local
-        self._starts = spline_starts(ob.data) if ob.type == "CURVE" else np.arange(len(local) + 1, dtype=np.int32)
+        self._places = spline_places(ob.data)
         self.size = float(np.ptp(local, axis=0).max(initial=0.0)) or 1.0
         self._start = [twin.evaluate(local) for twin in self._twins()]
 
@@ -104,9 +113,10 @@ class _CurveObserver:
         """Weights of the points, (n, m), near the start, from small moves of points that are far apart."""
         step, anchors = STEPS["observed"] * self.size, self._anchors()
         columns = [_Column.of(np.empty(0), 0.0)] * len(self._local)
-        for group in _distant_points(self._starts):
+        places = self._places * OTHER_SPLINE
+        for group in _distant_points(self._places):
             change = self._change(group, step * PROBE) @ PROBE / step
-            nearest = group[np.abs(anchors[:, None] - group).argmin(axis=1)]
+            nearest = group[np.abs(places[anchors][:, None] - places[group]).sum(axis=2).argmin(axis=1)]
             for number in group:
                 columns[number] = _Column.of(np.where(nearest == number, change, 0.0), LEAST["observed"])
         return _weights_of(columns, len(anchors))
@@ -146,11 +156,11 @@ class _CurveObserver:
         )
 
 
-def _distant_points(starts: Indices) -> list[Indices]:
-    """Groups of points that are far apart along their spline, from the first points of all splines, (s + 1,)."""
-    points = np.arange(starts[-1])
-    place = points - starts[np.searchsorted(starts, points, side="right") - 1]
-    return [points[place % DISTANT == first] for first in range(min(DISTANT, np.diff(starts).max(initial=0)))]
+def _distant_points(places: Indices) -> list[Indices]:
+    """Groups of points that are far apart on their spline, from the places of all points, (m, 3)."""
+    apart = DISTANT[int(places[:, 2].any())]
+    _, group = np.unique(places[:, 1:] % apart, axis=0, return_inverse=True)
+    return [np.flatnonzero(group.ravel() == number).astype(np.int32) for number in range(group.max(initial=-1) + 1)]
 
 
 @dataclass(frozen=True)

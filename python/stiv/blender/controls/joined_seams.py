@@ -217,7 +217,7 @@ def _merge_columns(weights: stiv.Weights, control_seams: Seams) -> stiv.Weights:
 def _restrict(control_set: ControlSet, rows: Indices) -> stiv.Deformation:
     """The deformation restricted to some vertices; the identity if each of them is a control."""
     chosen = selection_weights(rows, control_set.deformation.vertex_count)
-    if control_set.role == "soft" or control_set.observed is not None:
+    if control_set.role in ("soft", "curve") or control_set.observed is not None:
         return stiv.compose(chosen, control_set.deformation)
     try:
         limited = stiv.compose(chosen, control_set.deformation)

@@ -31,6 +31,17 @@ def spline_starts(curve: bpy.types.Curve) -> Indices:
     return np.cumsum([0, *sizes]).astype(np.int32)
 
 
+def spline_places(curve: bpy.types.Curve) -> Indices:
+    """Number of the spline of each point, and its place along and across it, (m, 3); handles have places too."""
+    starts = spline_starts(curve)
+    found = [np.empty((0, 3), np.int32)]
+    for number, (spline, count) in enumerate(zip(curve.splines, np.diff(starts), strict=True)):
+        along = spline.point_count_u if spline.point_count_v > 1 else max(int(count), 1)
+        place = np.arange(count, dtype=np.int32)
+        found.append(np.stack([np.full_like(place, number), place % along, place // along], axis=1))
+    return np.concatenate(found)
+
+
 def selected_curve_points(curve: bpy.types.Curve) -> Flags:
     """Flags of the selected points, (m,). A selected Bezier point moves its handles too."""
     found = [np.empty(0, np.bool_)]
