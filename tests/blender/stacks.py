@@ -130,6 +130,12 @@ def thick_and_smooth() -> Any:
     return ob
 
 
+def thick_and_triangulated() -> Any:
+    ob = on_sheet("SOLIDIFY", thickness=0.1)()
+    add_modifier(ob, "TRIANGULATE")
+    return ob
+
+
 def bevelled() -> Any:
     ob = add_block()
     add_modifier(ob, "BEVEL", width=0.05, segments=2, limit_method="NONE")
@@ -306,6 +312,7 @@ STACKS = {
                       constant_offset_displace=(0, 0, 0.4)),
     "Solidify": on_sheet("SOLIDIFY", thickness=0.1),
     "Solidify, Subdivision Surface": thick_and_smooth,
+    "Solidify, Triangulate": thick_and_triangulated,
     "Bevel, Smooth by Angle": bevelled,
     "Bevel, Subdivision Surface": bevelled_and_smooth,
     "Geometry Nodes": pushed_by_nodes,

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -61,7 +63,9 @@ Stage = SubdivisionStage | LatticeStage
 
 @dataclass(frozen=True)
 class StackEnd:
-    """The exact end of a stack: its last subdivision, and the modifiers from there on; those leave positions alone."""
+    """The exact end of a stack: its last subdivision, if any, and the modifiers from there on; the others leave all
+    positions alone.
+    """
 
     subdivision: SubdivisionStage | None = None
     modifiers: tuple[str, ...] = ()
@@ -96,7 +100,7 @@ def read_end(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> S
     stages = [_stage(ob, each, scene, evaluation) for each in active]
     places = [place for place, stage in enumerate(stages) if isinstance(stage, SubdivisionStage)]
     if not places:
-        return StackEnd()
+        return StackEnd(None, _last_preserving(active))
     subdivision = stages[places[-1]]
     assert isinstance(subdivision, SubdivisionStage)
     end = active[places[-1] :]
@@ -104,6 +108,12 @@ def read_end(ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> S
     if unknown and not keep_positions(ob, scene, evaluation, unknown):
         return StackEnd()
     return StackEnd(subdivision, tuple(each.name for each in end))
+
+
+def _last_preserving(modifiers: Sequence[bpy.types.Modifier]) -> tuple[str, ...]:
+    """Names of the last modifiers that all leave positions alone."""
+    found = [each.name for each in itertools.takewhile(lambda one: one.type in POSITION_PRESERVING, modifiers[::-1])]
+    return tuple(found[::-1])
 
 
 class UnsupportedStackError(InputError):
