@@ -6,6 +6,7 @@ The models are a rabbit and an ogre of about 1,500 vertices, decimated with libi
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -23,6 +24,7 @@ from stiv import InputError
 from stiv.mesh_files import read_mesh
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.integer]
 FILES = {"bunny": "stanford-bunny.obj", "ogre": "ogre.obj"}
 TRIANGLES = 3000  #: of a model after decimation
 
@@ -43,7 +45,7 @@ def _decimated(path: Path) -> Shape:
     if not path.is_file():
         raise InputError(f"{path}: there is no such file; bench quality needs {', '.join(FILES.values())}")
     try:
-        import igl
+        igl = importlib.import_module("igl")
     except ModuleNotFoundError as error:
         raise InputError("bench quality needs libigl: pip install -r tools/requirements/bench.txt") from error
     mesh = read_mesh(path)
@@ -94,7 +96,12 @@ def by_cage(name: str, cage: Shape, levels: int, obstacles: Sequence[Shape], mov
 
 
 def by_handles(
-    name: str, mover: Shape, obstacles: Sequence[Shape], handles: Array, fixed: Array, move: Callable[[Array], Array]
+    name: str,
+    mover: Shape,
+    obstacles: Sequence[Shape],
+    handles: Indices,
+    fixed: Indices,
+    move: Callable[[Array], Array],
 ) -> Edit:
     """Laplacian editing by some vertices."""
     deformation = stiv.laplacian(mover.vertices, mover.triangles(), handles, fixed=fixed)
@@ -137,7 +144,7 @@ def cases(folder: Path) -> dict[str, Callable[[], Edit]]:
     model = Models(folder)
     ball = triangulated(icosphere(3, 0.3))
 
-    def nearest(shape: Shape, *places: Sequence[float]) -> Array:
+    def nearest(shape: Shape, *places: Sequence[float]) -> Indices:
         return np.unique([int(np.linalg.norm(shape.vertices - p, axis=1).argmin()) for p in places])
 
     def bunny_handles() -> Edit:

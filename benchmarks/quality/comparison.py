@@ -65,7 +65,7 @@ _Found = tuple[Array, float, bool]  # surface, seconds, whether the solver conve
 
 def _by_stiv(edit: Edit) -> dict[str, _Found]:
     def session() -> stiv.EditSession:
-        options = stiv.EditOptions(threads=1, **edit.options)  # type: ignore[arg-type]
+        options = stiv.EditOptions(threads=1, **edit.options)
         return stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
 
     def timed(session: stiv.EditSession, work: Callable[[], object]) -> _Found:

@@ -12,6 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.quality.comparison import quality, quality_text
+from benchmarks.quality.pictures import draw_worst
 from benchmarks.sessions.blender_profile import blender_profile
 from benchmarks.sessions.cloth import cloth, cloth_text
 from benchmarks.sessions.dragged_profile import dragged_text
@@ -43,6 +45,7 @@ examples:
   stiv bench race                            against a stop at the first contact, and our loop with ipctk (needs ipctk)
   stiv bench cloth                           against Blender's cloth simulation
   stiv bench --models FOLDER                 Figures 9 and 1 with bunny, teapot and ogre from a folder
+  stiv bench quality --models FOLDER         edits beside converged solutions of an interior-point method (needs ipctk)
   stiv bench scaling --largest 300000        growth with the number of triangles
 
 exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
@@ -73,8 +76,17 @@ def parser() -> Parser:
         "--models",
         type=Path,
         metavar="FOLDER",
-        help="models: folder with stanford-bunny.obj, teapot.obj and ogre.obj, each optional",
+        help="models, quality: folder with stanford-bunny.obj, teapot.obj and ogre.obj; models: each optional",
     )
+    parser.add_argument("--edits", nargs="+", default=[], metavar="NAME", help="quality: default: all")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=60.0,
+        metavar="S",
+        help="quality: limit of each converged solution (default: 60)",
+    )
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="quality: draw the worst three edits")
     parser.add_argument("--in-blender", action="store_true", help="profile: in Blender, from the .blend files")
     parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
     return parser
@@ -85,8 +97,10 @@ def run(given: Sequence[str]) -> ExitCode:
     arguments = parser().parse_args(given)
     require_folder(arguments.json)
     what = arguments.what or ("models" if arguments.models else None)
-    if what is None or (what == "models") != (arguments.models is not None):
-        raise InputError(f"bench: choose one of {', '.join(_BENCHES)}; only models has the option --models FOLDER")
+    if what is None or (what in ("models", "quality")) != (arguments.models is not None):
+        raise InputError(
+            f"bench: choose one of {', '.join(_BENCHES)}; only models and quality have the option --models FOLDER"
+        )
     unknown = [name for name in arguments.scenes if name not in PUBLISHED]
     if unknown or min(arguments.threads) < 1:
         raise InputError(
@@ -145,6 +159,13 @@ def _models(arguments: argparse.Namespace, report: Report) -> _Result:
     return rows, models_text(rows)
 
 
+def _quality(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows, surfaces = quality(arguments.models, arguments.edits, arguments.seconds, report)
+    if arguments.pictures is not None:
+        draw_worst(arguments.models, rows, surfaces, arguments.pictures)
+    return rows, quality_text(rows)
+
+
 def _scaling(arguments: argparse.Namespace, report: Report) -> _Result:
     rows = scaling(arguments.threads, arguments.largest, report)
     return rows, scaling_text(rows)
@@ -157,4 +178,5 @@ _BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
     "cloth": _cloth,
     "models": _models,
     "scaling": _scaling,
+    "quality": _quality,
 }
