@@ -72,7 +72,7 @@ class LinearMotion:
 
 
 class RigidMotion:
-    """Controls are a center and a rotation vector; a step adds to the center, and turns what is there."""
+    """Controls are a center and a rotation vector; a step adds to the center and to the rotation."""
 
     is_straight = False
     free_count = 2

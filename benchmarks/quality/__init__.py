@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How close edits come to converged solutions: edits of real models, and their comparison."""
+"""Compares edits of real models with converged solutions."""

@@ -35,7 +35,7 @@ def quality(
     names    of edits; empty: all
     seconds  of the processor, the limit of one interior-point solution
 
-    Raises InputError without ipctk, the models, or an edit of such a name.
+    Raises InputError without ipctk, the models, or an edit of that name.
     """
     try:
         interior_point = importlib.import_module("benchmarks.interior_point")

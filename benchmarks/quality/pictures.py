@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of the edits that end farthest from the converged solution: start, edit and solution side by side."""
+"""Pictures of the edits that end furthest from the converged solution: start, edit and solution side by side."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class EditContext {
   const Proximity& round_proximity() const { return round_proximity_; }
   /// The least separation that survives storing.
   double least_separation() const { return least_separation_; }
-  /// A goal is far if a vertex is farther from it than this: a quarter of the diagonal of the moving vertices.
+  /// A goal is far if a vertex is further from it than this: a quarter of the diagonal of the moving vertices.
   double far_distance() const { return 0.25 * diagonal_; }
   /// Largest displacement of a vertex of the goal in a pull; 0: no pulls.
   double pull_distance() const { return options_.pull_limit * diagonal_; }

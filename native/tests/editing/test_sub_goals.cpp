@@ -12,7 +12,7 @@ using namespace stiv::tests;
 
 namespace {
 
-/// What is left of a path of heights of the upper sheet, relative to a goal at `goal_height`.
+/// A path of heights of the upper sheet, cut at the state closest to a goal at `goal_height`.
 std::vector<Controls> best_path(const Scene& scene, const std::vector<double>& heights, double goal_height) {
   const EditContext context(scene.surface, scene.deformation, scene.controls, {}, Execution(1));
   CollisionQueries queries(context);
