@@ -40,7 +40,7 @@ def into_module(archive: Path, environment: Path) -> None:
     (resources / "package").mkdir()
     installed, package = resources / "extensions" / REPOSITORY / IDENTIFIER, resources / "package/stiv_addon"
     if sys.platform == "win32":  # where a link needs privileges
-        shutil.copytree(installed, package)
+        shutil.copytree(installed, package, copy_function=shutil.copyfile)  # copy2 needs a newer Wine than 8
     else:
         package.symlink_to(installed)
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"
