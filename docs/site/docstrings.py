@@ -11,6 +11,7 @@ import griffe
 
 NATIVE = {  # classes of the compiled module, whose stub has no docstrings
     "InputError": "Invalid input. The message names the object and the element, and how to continue. Nothing changed.",
+    "InfeasibleError": "A deformation has no surface at these controls. Nothing changed.",
     "StartIntersectsError": "The start of an edit intersects: `pairs` of triangles, (P, 2). Repair or exclude them.",
     "CancelledError": "The job was cancelled; nothing changed.",
 }

@@ -46,12 +46,14 @@ class JobThread {
   void rethrow() const;
 
  private:
+  /// @cond
   /// A function of the caller that the work waits for.
   struct Call {
     const std::function<void()>& function;
     bool has_begun = false, has_ended = false;
     std::exception_ptr raised = nullptr;
   };
+  /// @endcond
 
   void run(const Work& work);
   void call_owner(const std::function<void()>& function);
