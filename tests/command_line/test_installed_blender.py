@@ -6,6 +6,7 @@ Where STIV_TEST_BLENDER names an installed Blender, that is used as well.
 
 import os
 import stat
+import subprocess
 import sys
 from pathlib import Path
 
@@ -31,6 +32,7 @@ def stand_in(tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="the stand-in is a script of Unix")
 def test_the_command_runs_inside_and_its_exit_code_comes_back(tmp_path, capsys, stand_in):
     mesh = tmp_path / "a ü.obj"
     mesh.write_text(CROSSING)
@@ -45,6 +47,16 @@ def test_a_program_that_is_not_there_ends_with_2(tmp_path, capsys):
     assert "is not an executable program" in capsys.readouterr().err
 
 
+def test_a_file_that_is_not_a_program_ends_with_2(monkeypatch, capsys):
+    def refuse(*_, **__):
+        raise OSError(193, "not a valid application")
+
+    monkeypatch.setattr(subprocess, "Popen", refuse)
+    assert program.run(["check", "a.blend", "--blender", sys.executable]) == 2
+    assert "is not an executable program" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the program is one of Unix")
 def test_a_program_that_is_not_blender_ends_with_2(capsys):
     assert program.run(["check", "a.blend", "--blender", "/bin/true"]) == 2
     assert "did not run STIV's script" in capsys.readouterr().err

@@ -48,11 +48,19 @@ class Job:
     description: str = ""
 
 
+def resolved(path: Path) -> Path:
+    """The absolute path behind links, or the path as given where Windows cannot follow it."""
+    try:
+        return path.resolve()
+    except OSError:
+        return path.absolute()
+
+
 def read_job(path: Path) -> Job:
     """Reads a job; its paths are relative to its folder. Raises InputError naming file, entry and field."""
     data = read_json(path, MAX_BYTES)
     try:
-        return parse_job(data, path.resolve().parent)
+        return parse_job(data, resolved(path).parent)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from stiv import InputError
 from stiv.batch.dask_cluster import require_distributed, run_on_cluster
-from stiv.batch.job import Job, read_job
+from stiv.batch.job import Job, read_job, resolved
 from stiv.batch.pool import Pool, PoolError
 from stiv.batch.records import Record
 from stiv.batch.run import RunOptions, exit_code, report_of, run_job
@@ -73,7 +73,7 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
         raise InputError(f"--workers: {arguments.workers} is not between 1 and 1024")
     whole = read_job(arguments.job)
     job = whole if arguments.part is None else _part_of(whole, *arguments.part)
-    state = arguments.job.resolve().with_suffix(".state")
+    state = resolved(arguments.job).with_suffix(".state")
     part = "" if arguments.part is None else "-{}-of-{}".format(*arguments.part)
     options = RunOptions(state, arguments.resume, arguments.worker_blender, f"lock{part}")
     for name in {"SIGTERM", "SIGBREAK"} & set(dir(signal)):  # the second: Ctrl+Break on Windows

@@ -31,7 +31,11 @@ def blender_command(blender: str, arguments: Sequence[str]) -> list[str]:
 def run_inside(blender: str, arguments: Sequence[str]) -> int:
     """Runs the command with these arguments in Blender, and returns its exit code."""
     command = blender_command(blender, arguments)
-    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
+    try:
+        started = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="replace")
+    except OSError as error:  # on Windows, any file counts as executable before
+        raise InputError(f"{OPTION}: {blender} is not an executable program") from error
+    with started as process:
         assert process.stdout is not None
         began = False
         for line in process.stdout:
