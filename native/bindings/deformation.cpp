@@ -11,6 +11,7 @@
 #include "stiv/deformation/lattice.hpp"
 #include "stiv/deformation/observed.hpp"
 #include "stiv/deformation/placement.hpp"
+#include "stiv/deformation/scalars.hpp"
 #include "stiv/deformation/subdivision.hpp"
 #include "stiv/error.hpp"
 
@@ -156,6 +157,27 @@ void bind_observed(py::module_& module) {
                              "How often the Jacobian was replaced.");
 }
 
+/// The same for scalars.
+std::shared_ptr<ScalarDeformation> observe_scalars(py::object evaluate, ScalarJacobian jacobian, Eigen::VectorXd lower,
+                                                   Eigen::VectorXd upper, Eigen::VectorXd longest_step) {
+  return make_scalars(
+      [function = share(std::move(evaluate))](const Eigen::VectorXd& values) -> std::optional<Positions> {
+        const py::gil_scoped_acquire locked;
+        const py::object value = (*function)(values);
+        if (value.is_none()) return std::nullopt;
+        return value.cast<Positions>();
+      },
+      std::move(jacobian), {std::move(lower), std::move(upper), std::move(longest_step)});
+}
+
+void bind_scalars(py::module_& module) {
+  py::class_<ScalarDeformation, Deformation, std::shared_ptr<ScalarDeformation>>(module, "ScalarDeformation")
+      .def(py::init(&observe_scalars), py::arg("evaluate"), py::arg("jacobian"), py::arg("lower"), py::arg("upper"),
+           py::arg("longest_step"))
+      .def("replace_jacobian", &ScalarDeformation::set_jacobian, py::arg("jacobian"))
+      .def_property_readonly("jacobian_revision", &ScalarDeformation::revision, "How often the Jacobian was replaced.");
+}
+
 LatticeInterpolation interpolation_of(const std::string& name) {
   if (name == "linear") return LatticeInterpolation::linear;
   if (name == "cardinal") return LatticeInterpolation::cardinal;
@@ -204,9 +226,8 @@ std::shared_ptr<Deformation> compose(const std::shared_ptr<Deformation>& outer,
   if (observed && inner_linear) return shared(make_composition(observed, inner_linear));
   if (observed && inner_other) return shared(make_composition(observed, inner_other));
   throw InputError(
-      "compose: the outer deformation must be linear or observed, the inner one linear, observed or by handles; "
-      "compose "
-      "chains from the inside, and concatenate others side by side");
+      "compose: the outer deformation must be linear or observed, the inner one linear, observed, by scalars or by "
+      "handles; compose chains from the inside, and concatenate others side by side");
 }
 
 std::shared_ptr<Deformation> concatenate(
@@ -256,6 +277,7 @@ void bind_class(py::module_& module) {
 void bind_deformation(py::module_& module) {
   bind_class(module);
   bind_observed(module);
+  bind_scalars(module);
   module.def(
       "identity", [](Index count) { return shared(make_identity(count)); }, py::arg("vertex_count"));
   module.def(

@@ -34,6 +34,7 @@ from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.observed import InfeasibleError, ObservedDeformation, observed
 from stiv.paper_preset import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair, start_repair
+from stiv.scalars import ScalarDeformation, difference_jacobian, scalars
 from stiv.self_test import SelfTest, self_test
 from stiv.subdivision import Cage, catmull_clark, loop, subdivided_faces, subdivision_weights
 from stiv.surface import Body, Surface
@@ -63,6 +64,7 @@ __all__ = [
     "ObservedDeformation",
     "RepairOptions",
     "RepairResult",
+    "ScalarDeformation",
     "SelfTest",
     "StartIntersectsError",
     "StepCheck",
@@ -76,6 +78,7 @@ __all__ = [
     "concatenate",
     "contract",
     "contraction_step",
+    "difference_jacobian",
     "edit",
     "expand",
     "find_interference",
@@ -96,6 +99,7 @@ __all__ = [
     "repair",
     "rigid",
     "rigid_rest_controls",
+    "scalars",
     "scaling",
     "scaling_rest_controls",
     "self_test",

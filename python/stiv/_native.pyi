@@ -135,6 +135,22 @@ class ObservedDeformation(Deformation):
         How often the Jacobian was replaced.
         """
 
+class ScalarDeformation(Deformation):
+    def __init__(
+        self,
+        evaluate: Any,
+        jacobian: Annotated[ArrayLike, float64, "[m, n]"],
+        lower: Annotated[ArrayLike, float64, "[m, 1]"],
+        upper: Annotated[ArrayLike, float64, "[m, 1]"],
+        longest_step: Annotated[ArrayLike, float64, "[m, 1]"],
+    ) -> None: ...
+    def replace_jacobian(self, jacobian: Annotated[ArrayLike, float64, "[m, n]"]) -> None: ...
+    @property
+    def jacobian_revision(self) -> int:
+        """
+        How often the Jacobian was replaced.
+        """
+
 class Handles:
     def __init__(
         self,

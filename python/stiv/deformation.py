@@ -71,7 +71,7 @@ def compose(outer: Deformation | Weights, *inner: Deformation | Weights) -> Defo
 
     The last one acts first: `compose(subdivision, lattice)` subdivides the mesh that the lattice deforms. Each has as
     many controls as the next one has vertices. Weights are linear deformations without offset. The last one may be a
-    deformation by handles (`laplacian`, `arap`). All others need sparse weights, or are `observed`.
+    deformation by handles (`laplacian`, `arap`) or by `scalars`. All others need sparse weights, or are `observed`.
 
     Raises InputError if numbers do not match, or for another kind of deformation.
     """

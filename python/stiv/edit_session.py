@@ -35,8 +35,9 @@ Progress = Callable[[str, float], None]
 class EditResult:
     """Result of an edit."""
 
-    #: "reached" (the goal itself), "corrected" (interference was resolved), "blocked" (stopped at the last clear
-    #: state), "budget" (out of time), "cancelled" (the state before the edit), or "unchanged" (nothing to do)
+    #: "reached" (the goal itself), "corrected" (short of it: interference was resolved, or a limit of `stiv.scalars`
+    #: holds), "blocked" (stopped at the last clear state), "budget" (out of time), "cancelled" (the state before the
+    #: edit), or "unchanged" (nothing to do)
     status: str
     controls: NDArray[np.float64]  #: (m, 3) accepted controls, as stored
     surface: NDArray[np.float64]  #: (N, 3) surface of these controls, world coordinates

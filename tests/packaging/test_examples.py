@@ -43,6 +43,7 @@ PRINTED = {
         r"done \('Cube',\) 1\.01",
         r"corrected",
         r"corrected 0 True",
+        r"corrected 0 True",
     ],
     "checks": [r"1 passed"],
 }

@@ -9,6 +9,7 @@
 #include "stiv/deformation/combination.hpp"
 #include "stiv/deformation/lattice.hpp"
 #include "stiv/deformation/placement.hpp"
+#include "stiv/deformation/scalars.hpp"
 #include "stiv/deformation/subdivision.hpp"
 #include "stiv/editing/session.hpp"
 #include "stiv/error.hpp"

@@ -23,6 +23,7 @@ class Chained : public Base {
   Index control_count() const override { return inner_->control_count(); }
   Index vertex_count() const override { return outer_->vertex_count(); }
   std::vector<Index> rotation_rows() const override { return inner_->rotation_rows(); }
+  ScalarRows scalar_rows() const override { return inner_->scalar_rows(); }
   std::uint64_t revision() const override { return outer_->revision() + inner_->revision(); }
 
   Positions surface(const Controls& p, const Execution& execution) const override {

@@ -89,6 +89,11 @@ void append(SparseField& whole, const SparseField& added, Index first) {
   whole.value.insert(whole.value.end(), added.value.begin(), added.value.end());
 }
 
+void append(Eigen::VectorXd& whole, const Eigen::VectorXd& added) {
+  whole.conservativeResize(whole.size() + added.size());
+  whole.tail(added.size()) = added;
+}
+
 /// A view, not a copy: J and the metric are evaluated at the same controls for thousands of contacts.
 ControlsView rows_of_component(const ControlsView& p, const std::vector<Index>& starts, std::size_t component) {
   return p.middleRows(starts[component], starts[component + 1] - starts[component]);
@@ -254,6 +259,18 @@ class Concatenation final : public Deformation {
       for (const Index row : components_[component].deformation->rotation_rows())
         rows.push_back(control_starts_[component] + row);
     return rows;
+  }
+
+  ScalarRows scalar_rows() const override {
+    ScalarRows scalars;
+    for (std::size_t component = 0; component < components_.size(); ++component) {
+      const ScalarRows added = components_[component].deformation->scalar_rows();
+      for (const Index row : added.rows) scalars.rows.push_back(control_starts_[component] + row);
+      append(scalars.limits.lower, added.limits.lower);
+      append(scalars.limits.upper, added.limits.upper);
+      append(scalars.limits.longest_step, added.limits.longest_step);
+    }
+    return scalars;
   }
 
  private:

@@ -24,7 +24,8 @@ std::optional<State> state_at_fraction(const EditCall& call, const State& candid
 Acceptance accept_largest_fraction(EditCall& call, const RoundOutcome& outcome, const StatePredicate& is_agreeable) {
   const Positions& from = call.accepted.surface;
   Acceptance acceptance;
-  double fraction = 1;
+  double fraction = call.context.limits().fraction_of_longest_step(call.accepted.controls, outcome.candidate.controls);
+  acceptance.is_part = fraction < 1;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     call.execution.check();
     std::optional<State> found = state_at_fraction(call, outcome.candidate, fraction);

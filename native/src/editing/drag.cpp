@@ -32,7 +32,7 @@ void pull(EditCall& call, const Aim& aim, double distance) {
   const double fraction = missing > distance ? distance / missing : 1;
   const Controls goal = interpolate(call.accepted.controls, aim.controls, fraction, call.context.rotation_rows());
   if (call.context.stored(goal) == call.accepted.controls) return;
-  run_sub_edits_by_rotation_steps(call, {goal, aim.surface, true});
+  run_sub_edits_by_steps(call, {goal, aim.surface, true});
 }
 
 /// Pulls. Returns the relative drop of the energy for each round that this takes.
@@ -69,7 +69,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
     try {
       const Controls increment = incremented(call, drag.followed.controls, next.controls);
       if (call.context.stored(increment) != call.accepted.controls)
-        run_sub_edits_by_rotation_steps(call, {increment, aim.surface, false});
+        run_sub_edits_by_steps(call, {increment, aim.surface, false});
     } catch (const Interrupted&) {
       if (call.report.path.size() > accepted_before)
         drag.followed = std::move(next);  // else the next call begins with the rest of the stride

@@ -42,6 +42,14 @@ std::vector<Index> free_rotation_rows(const Deformation& deformation, const Eige
   return rows;
 }
 
+/// Rows of the controls that are angles or other scalars, ascending.
+std::vector<Index> rows_without_length(const Deformation& deformation) {
+  std::vector<Index> rows = deformation.rotation_rows();
+  for (const Index row : deformation.scalar_rows().rows) rows.push_back(row);
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
 }  // namespace
 
 double energy(const Positions& a, const Positions& b) { return 0.5 * (a - b).squaredNorm(); }
@@ -51,6 +59,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr
     : surface_(checked(std::move(surface), deformation)),
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
+      limits_(deformation_->scalar_rows(), options_.storage),
       rotation_rows_(free_rotation_rows(*deformation_, options_.weights)),
       revision_(deformation_->revision()),
       metric_(metric_of(*deformation_, options_)) {
@@ -66,7 +75,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr
 void EditContext::set_proximity(const Positions& start, const Controls& controls) {
   const MovingExtent extent = moving_extent(*surface_, *deformation_, start);
   diagonal_ = extent.diagonal;
-  least_separation_ = stiv::least_separation(extent, controls, options_.storage, deformation_->rotation_rows());
+  least_separation_ = stiv::least_separation(extent, controls, options_.storage, rows_without_length(*deformation_));
   const std::vector<BodyPairSeparation>& pairs = options_.pair_separations;
   const bool may_touch = options_.volumes != VolumeKind::relative && options_.separation == 0 && pairs.empty();
   options_.separation =

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "editing/control_limits.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
@@ -58,7 +59,11 @@ class EditContext {
   /// @param name of the argument: "controls" or "goal"
   /// @throws InputError for a shape or values that do not fit; names object and control
   void check_controls(const Controls& controls, const char* name) const;
-  Controls stored(const Controls& controls) const { return as_stored(controls, options_.storage); }
+  const ControlLimits& limits() const { return limits_; }
+  /// As they are read back from storage, within the limits.
+  Controls stored(const Controls& controls) const {
+    return limits_.nearest_stored(as_stored(controls, options_.storage));
+  }
   /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
   /// Relative to the center of the start: smaller coordinates round less.
@@ -70,6 +75,7 @@ class EditContext {
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Deformation> deformation_;
   EditOptions options_;
+  ControlLimits limits_;
   std::vector<Index> rotation_rows_;
   std::uint64_t revision_;  ///< of the deformation, for the metric
   std::unique_ptr<Metric> metric_;

@@ -22,7 +22,7 @@ std::vector<Index> bodies_in_contact(const Surface& surface, const Events& event
 EditStatus status_of(const EditContext& context, const Controls& before, const Controls& accepted, const Controls& goal,
                      const EditReport& report) {
   if (report.goal_is_infeasible) return EditStatus::blocked;
-  if (accepted == goal || accepted == context.stored(goal))
+  if (context.limits().contain(goal) && (accepted == goal || accepted == context.stored(goal)))
     return accepted == before ? EditStatus::unchanged : EditStatus::reached;
   return report.blocked ? EditStatus::blocked : EditStatus::corrected;
 }

@@ -24,11 +24,11 @@ double unit_in_last_place(double x) {
 }
 
 /// World size of a unit in the last place of controls stored in a frame.
-double unit_in_frame(const StorageFrame& storage, const Controls& p, const std::vector<Index>& rotation_rows) {
+double unit_in_frame(const StorageFrame& storage, const Controls& p, const std::vector<Index>& rows_without_length) {
   const Eigen::Affine3d to_local(storage.frame.inverse());
   double largest = 0;
   for (Index row = storage.first; row < storage.first + storage.count; ++row) {
-    if (std::binary_search(rotation_rows.begin(), rotation_rows.end(), row)) continue;
+    if (std::binary_search(rows_without_length.begin(), rows_without_length.end(), row)) continue;
     const Vector3 local = to_local * Vector3(p.row(row));
     largest = std::max(largest, local.cwiseAbs().maxCoeff());
   }
@@ -71,10 +71,10 @@ MovingExtent moving_extent(const Surface& surface, const Deformation& deformatio
 }
 
 double least_separation(const MovingExtent& extent, const Controls& p, const std::vector<StorageFrame>& frames,
-                        const std::vector<Index>& rotation_rows) {
+                        const std::vector<Index>& rows_without_length) {
   if (frames.empty()) return double_noise * extent.largest_coordinate;
   double unit = unit_in_last_place(extent.largest_coordinate);
-  for (const StorageFrame& storage : frames) unit = std::max(unit, unit_in_frame(storage, p, rotation_rows));
+  for (const StorageFrame& storage : frames) unit = std::max(unit, unit_in_frame(storage, p, rows_without_length));
   return least_units * unit;
 }
 

@@ -21,7 +21,7 @@ MovingExtent moving_extent(const Surface& surface, const Deformation& deformatio
 /// the controls. (mathematics.md, Eq. 1)
 /// @param frames empty: controls are stored in double precision
 double least_separation(const MovingExtent& extent, const Controls& p, const std::vector<StorageFrame>& frames,
-                        const std::vector<Index>& rotation_rows);
+                        const std::vector<Index>& rows_without_length);
 
 /// The requested separation, or 1e-4 of the diagonal for 0, raised to the least possible.
 /// @throws InputError if the request is negative, not finite or below the least possible, which the message names

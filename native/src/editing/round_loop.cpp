@@ -132,14 +132,25 @@ std::vector<ControlConstraint> RoundLoop::linearised(const std::vector<Stiv>& st
 /// Projects to the next candidate.
 void RoundLoop::project() {
   const ScopedTimer timer(call_.execution.timings.response);
-  const Controls& from = progress_.accumulates ? progress_.goal : outcome_.candidate.controls;
-  ConstraintSet& constraints = progress_.constraints;
-  progress_.p = options_.solver == ConstraintSolver::lcp ? constraints.project(from, call_.execution)
-                                                         : constraints.project_as_equations(from, call_.execution);
+  progress_.p = projection_within_limits(progress_.accumulates ? progress_.goal : outcome_.candidate.controls);
   progress_.events_are_constrained = progress_.is_cut = false;
   outcome_.events = std::move(*progress_.events);
   progress_.events.reset();
   call_.execution.checkpoint();
+}
+
+/// The point closest to `from` that satisfies the constraints. Adds the limits that it exceeds until it exceeds none:
+/// most limits are far away.
+Controls RoundLoop::projection_within_limits(const Controls& from) {
+  ConstraintSet& constraints = progress_.constraints;
+  for (;;) {
+    Controls p = options_.solver == ConstraintSolver::lcp ? constraints.project(from, call_.execution)
+                                                          : constraints.project_as_equations(from, call_.execution);
+    std::vector<ControlConstraint> limits =
+        call_.context.limits().exceeded(p, constraints, call_.context.metric(), call_.accepted.controls);
+    if (limits.empty()) return p;
+    constraints.add(std::move(limits));
+  }
 }
 
 /// Shortens the step to the candidate, at which there is no surface.

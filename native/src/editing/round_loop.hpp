@@ -38,6 +38,7 @@ class RoundLoop {
   bool search();
   bool constrain();
   void project();
+  Controls projection_within_limits(const Controls& from);
   void shorten_step(int cuts);
   template <class Evaluate>
   auto at_feasible_candidate(const Evaluate& evaluate);

@@ -45,13 +45,14 @@ class EditSession::Implementation {
     const FloatingPointScope floating_point;
     context_.check_controls(controls, "controls");
     context_.check_controls(goal, "goal");
+    context_.limits().check(controls);
     State state{controls, context_.surface_at(controls, execution)};
     const bool is_known = controls.rows() == checked_.rows() && controls == checked_;
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
     checked_ = controls;
     progress_.reset();
     queries_.clear_cache();
-    drag_ = {.followed = last_feasible(context_, state, goal, execution)};
+    drag_ = {.followed = last_feasible(context_, state, context_.limits().nearest(goal), execution)};
     goal_ = goal;
     accepted_ = std::move(state);
     is_dragging_ = goal != controls;
@@ -69,7 +70,7 @@ class EditSession::Implementation {
       forget_leaps();
       if (longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance() ||
           context_.options().max_sub_edits == 1) {
-        run_sub_edits_by_rotation_steps(call, aim);
+        run_sub_edits_by_steps(call, aim);
       } else {
         const State start = accepted_;
         approach_by_sub_goals(call, aim);
@@ -164,7 +165,7 @@ class EditSession::Implementation {
     State found = std::exchange(accepted_, start);
     EditReport report = std::exchange(call.report, {});
     queries_.clear_cache();
-    run_sub_edits_by_rotation_steps(call, aim);
+    run_sub_edits_by_steps(call, aim);
     refine(call, aim);
     if (energy(accepted_.surface, aim.surface) < energy(found.surface, aim.surface)) return;
     accepted_ = std::move(found);
@@ -196,8 +197,9 @@ class EditSession::Implementation {
   EditStatus solve(EditCall& call, const Controls& goal, State& target, FollowedGoal followed, const Work& work) {
     Transaction transaction(*this);
     try {
-      target = last_feasible(context_, accepted_, goal, call.execution);
-      call.report.goal_is_infeasible = target.controls != goal;
+      const Controls aim = context_.limits().nearest(goal);
+      target = last_feasible(context_, accepted_, aim, call.execution);
+      call.report.goal_is_infeasible = target.controls != aim;
       context_.surface().check_positions(target.surface);
       if (!context_.is_empty() && target.controls != accepted_.controls)
         work(call, {target.controls, target.surface, false});
@@ -205,7 +207,7 @@ class EditSession::Implementation {
       drag_.followed = target;
       progress_.reset();
       transaction.commit();
-      return status_of(context_, transaction.controls_before(), accepted_.controls, target.controls, call.report);
+      return status_of(context_, transaction.controls_before(), accepted_.controls, goal, call.report);
     } catch (const Interrupted&) {
       if (call.execution.cancel_requested()) {
         call.report.path.clear();

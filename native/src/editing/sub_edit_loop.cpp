@@ -118,8 +118,9 @@ void SubEditLoop::run() {
     call_.execution.checkpoint();
     edit.path.push_back(call_.accepted.controls);
     const double energy_after = energy_of(call_.accepted);
-    if (fraction_ == 1 && !edit.blocked) return;
-    if (fraction_ < 1 && !edit.blocked && energy_after < energy_before_ && cuts < max_cuts) {
+    const bool is_part = fraction_ < 1 || acceptance.is_part;
+    if (!is_part && !edit.blocked) return;
+    if (is_part && !edit.blocked && energy_after < energy_before_ && cuts < max_cuts) {
       ++cuts;
       --sub_edit;  // settled within reach of a search: no sub-edit toward the whole goal yet
     } else if (energy_after > (1 - least_energy_drop) * energy_before_) {
@@ -147,14 +148,17 @@ bool moves_pinned_controls(const EditOptions& options, const Controls& from, con
 
 void run_sub_edits(EditCall& call, const Aim& aim) { SubEditLoop(call, aim).run(); }
 
-void run_sub_edits_by_rotation_steps(EditCall& call, const Aim& aim) {
+void run_sub_edits_by_steps(EditCall& call, const Aim& aim) {
+  const ControlLimits& limits = call.context.limits();
   const std::vector<Index>& rows = call.context.rotation_rows();
   const std::vector<Index> turning = call.context.deformation().rotation_rows();
   const auto turn = [&] { return largest_rotation(call.accepted.controls, aim.controls, turning); };
+  const auto part = [&] { return limits.fraction_of_longest_step(call.accepted.controls, aim.controls); };
   const auto next_goal = [&] {
-    return interpolate(call.accepted.controls, aim.controls, std::min(1.0, largest_turn / turn()), rows);
+    const double fraction = std::min(largest_turn / turn(), part());
+    return limits.nearest(interpolate(call.accepted.controls, aim.controls, fraction, rows));
   };
-  const int steps = static_cast<int>(std::ceil(turn() / largest_turn));
+  const int steps = static_cast<int>(std::ceil(std::max(turn() / largest_turn, 1 / part())));
   for (int step = 1; step < steps; ++step) {
     const Controls before = call.accepted.controls;
     run_sub_edits(call, {next_goal(), aim.surface, aim.must_improve});

@@ -9,9 +9,9 @@ namespace stiv {
 /// longer falls. (mathematics.md, "The loop and its guarantee")
 void run_sub_edits(EditCall& call, const Aim& aim);
 
-/// The same in steps of at most 0.3 rad, because vertices move on straight lines within a step. (mathematics.md,
-/// "Rotation steps")
-void run_sub_edits_by_rotation_steps(EditCall& call, const Aim& aim);
+/// The same in steps of at most 0.3 rad, and of at most the longest steps of scalars, because vertices move on straight
+/// lines within a step. (mathematics.md, "Rotation steps")
+void run_sub_edits_by_steps(EditCall& call, const Aim& aim);
 
 /// Does the goal move controls along pinned axes? The obstacles they hit must move aside, which may raise the energy.
 bool moves_pinned_controls(const EditOptions& options, const Controls& from, const Controls& to);

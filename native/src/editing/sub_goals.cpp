@@ -32,9 +32,9 @@ void approach_by_sub_goals(EditCall& call, const Aim& aim) {
   for (int k = 1; k < count; ++k) {
     const Controls goal = interpolate(start, aim.controls, static_cast<double>(k) / count, rows);
     if (std::optional<State> sub_goal = feasible_state(call.context, goal, call.execution))
-      run_sub_edits_by_rotation_steps(call, {goal, sub_goal->surface, aim.must_improve});
+      run_sub_edits_by_steps(call, {goal, sub_goal->surface, aim.must_improve});
   }
-  run_sub_edits_by_rotation_steps(call, aim);
+  run_sub_edits_by_steps(call, aim);
 }
 
 bool stays_far(const EditCall& call, const Aim& aim) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stiv/response/resolver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -48,6 +49,10 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
 
 void ConstraintSet::add(std::vector<ControlConstraint> constraints) {
   for (ControlConstraint& constraint : constraints) constraints_.push_back(std::move(constraint));
+}
+
+bool ConstraintSet::has_limit(Index limit) const {
+  return std::any_of(constraints_.begin(), constraints_.end(), [&](const auto& c) { return c.limit == limit; });
 }
 
 void ConstraintSet::complete_gram(const Execution& execution) {

@@ -12,6 +12,18 @@
 
 namespace stiv {
 
+/// Limits of scalar controls, (k) each.
+struct ScalarLimits {
+  Eigen::VectorXd lower, upper;  ///< infinite: none
+  Eigen::VectorXd longest_step;  ///< > 0: the largest change in a linear step of the surface; infinite: any
+};
+
+/// Rows of the controls that are scalars, such as angles or slider values, ascending. A row is (value, 0, 0).
+struct ScalarRows {
+  std::vector<Index> rows;
+  ScalarLimits limits;
+};
+
 /// A map q = f(p) from controls to surface positions, and the products with its Jacobian J. [P5.1, App. B]
 /// Every method may be called from several threads. Immutable, except that J of a function of the caller can be
 /// replaced (observed.hpp).
@@ -59,6 +71,9 @@ class Deformation {
   /// Rows of the controls that are rotation vectors, ascending. Their increments are composed as rotations, and large
   /// ones are split into steps.
   virtual std::vector<Index> rotation_rows() const { return {}; }
+
+  /// Rows of the controls that are scalars. Accepted states respect their limits exactly. (scalars.hpp)
+  virtual ScalarRows scalar_rows() const { return {}; }
 };
 
 }  // namespace stiv

@@ -16,7 +16,7 @@ namespace stiv {
 
 enum class EditStatus {
   reached,    ///< the goal itself
-  corrected,  ///< interference was resolved, short of the goal
+  corrected,  ///< short of the goal: interference was resolved, or a limit of a scalar holds
   blocked,    ///< stopped at the last clear state before the response settled; `blocking` lists the bodies. Or stopped
               ///< before controls without a surface: `counters.infeasible` is positive
   budget,     ///< the time budget ended first; the last accepted state is returned

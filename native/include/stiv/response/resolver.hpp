@@ -20,6 +20,7 @@ struct ControlConstraint {
   SparseField row;
   SparseField step;
   double bound = 0;
+  Index limit = -1;  ///< the limit of a scalar that it keeps (ControlLimits); -1: none
 };
 
 /// Linearizes STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
@@ -37,6 +38,7 @@ class ConstraintSet {
  public:
   void add(std::vector<ControlConstraint> constraints);
   std::size_t size() const { return constraints_.size(); }
+  bool has_limit(Index limit) const;
 
   /// Removes constraints that were inactive in the last projection.
   void drop_inactive();

@@ -8,6 +8,7 @@
 #include "deformation/checks.hpp"
 #include "deformation/observed/jacobian.hpp"
 #include "deformation/observed/jacobian_metric.hpp"
+#include "deformation/observed/stored_evaluation.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -23,20 +24,17 @@ std::shared_ptr<const JacobianProducts> checked_products(Jacobian jacobian) {
 class Observed final : public ObservedDeformation {
  public:
   Observed(Evaluation evaluate, Jacobian jacobian)
-      : evaluate_(std::move(evaluate)),
-        products_(checked_products(std::move(jacobian))),
+      : products_(checked_products(std::move(jacobian))),
         control_count_(products_->control_count()),
-        vertex_count_(products_->vertex_count()) {}
+        vertex_count_(products_->vertex_count()),
+        evaluation_(std::move(evaluate), vertex_count_) {}
 
   Index control_count() const override { return control_count_; }
   Index vertex_count() const override { return vertex_count_; }
 
   Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count_);
-    std::optional<Evaluated> known = stored(p);
-    if (!known) known = evaluated(p, execution);
-    if (!known->surface) throw InfeasibleError("evaluate has no surface at these controls");
-    return std::move(*known->surface);
+    return evaluation_.surface(p, execution);
   }
 
   SparseField pull_back(const ControlsView&, const SparseField& g) const override { return products()->pull_back(g); }
@@ -72,47 +70,16 @@ class Observed final : public ObservedDeformation {
   }
 
  private:
-  /// The value of the function at some controls.
-  struct Evaluated {
-    Controls controls;
-    std::optional<Positions> surface;
-  };
-
   std::shared_ptr<const JacobianProducts> products() const {
     const std::lock_guard lock(mutex_);
     return products_;
   }
 
-  std::optional<Evaluated> stored(const Controls& p) const {
-    const std::lock_guard lock(mutex_);
-    return last_ && last_->controls == p ? last_ : std::nullopt;
-  }
-
-  Evaluated evaluated(const Controls& p, const Execution& execution) const {
-    execution.check();
-    Evaluated value{p, {}};
-    execution.call_owner([&] {
-      const std::lock_guard one_at_a_time(calling_);
-      value.surface = evaluate_(p);
-    });
-    if (value.surface) {
-      if (value.surface->rows() != vertex_count_)
-        throw InputError("evaluate returned " + std::to_string(value.surface->rows()) + " vertices, expected " +
-                         std::to_string(vertex_count_) + "; return nothing if the topology differs");
-      check_finite(*value.surface, "evaluate, vertex");
-    }
-    const std::lock_guard lock(mutex_);
-    last_ = value;
-    return value;
-  }
-
-  Evaluation evaluate_;
   std::shared_ptr<const JacobianProducts> products_;
   Index control_count_, vertex_count_;
+  StoredEvaluation evaluation_;
   std::uint64_t revision_ = 0;
-  mutable std::optional<Evaluated> last_;
-  mutable std::mutex mutex_;  ///< of J and the last value
-  mutable std::mutex calling_;
+  mutable std::mutex mutex_;  ///< of J
 };
 
 }  // namespace
