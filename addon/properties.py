@@ -247,7 +247,14 @@ class StivCheckResult(bpy.types.PropertyGroup):
     left_out: StringProperty(name="Unguarded Objects", options={"SKIP_SAVE"})
 
 
+class StivKeyValue(bpy.types.PropertyGroup):
+    """A shape key by its name, and the value that it should get."""
+
+    value: FloatProperty(name="Value", description="Value of the shape key", soft_min=0.0, soft_max=1.0)
+
+
 CLASSES = (
+    StivKeyValue,
     StivPairSeparation,
     StivPassingPair,
     StivSceneSettings,

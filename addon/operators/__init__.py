@@ -20,6 +20,7 @@ from .setup.handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from .setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
 from .setup.pair_distances import STIV_OT_separation_add, STIV_OT_separation_remove
 from .transform.drag import STIV_OT_drag
+from .transform.morph import STIV_OT_morph
 from .transform.move import STIV_OT_move
 from .transform.rotate import STIV_OT_rotate
 from .transform.scale import STIV_OT_scale
@@ -42,6 +43,7 @@ CLASSES = (
     STIV_OT_live_transform,
     STIV_OT_check,
     STIV_OT_measure,
+    STIV_OT_morph,
     *LAYOUT,
     *RESHAPING,
     STIV_OT_separate,

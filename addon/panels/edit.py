@@ -31,6 +31,7 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         for operator in TRANSFORMS:
             column.operator(operator.bl_idname, text=operator.bl_label.split()[-1], icon=ICONS[operator.kind])
+        column.operator("stiv.morph", text="Morph", icon="SHAPEKEY_DATA")
         self.layout.use_property_split, self.layout.use_property_decorate = True, False
         settings = self.layout.column()
         settings.prop(context.scene.stiv, "interference")

@@ -30,6 +30,8 @@ from stiv.blender.layout.layout_task import LayoutReport, LayoutTask
 from stiv.blender.layout.packing import FitInto, FitSettings, fit_into
 from stiv.blender.layout.placing import Place, PlaceSettings, place
 from stiv.blender.layout.pushing_apart import PushApart, push_apart
+from stiv.blender.morphing.key_sliders import movable_keys
+from stiv.blender.morphing.morph import MorphReport, morph
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
@@ -83,6 +85,7 @@ __all__ = [
     "LayoutReport",
     "LayoutTask",
     "LoopSurface",
+    "MorphReport",
     "Motion",
     "ObjectState",
     "ObjectsIntersectError",
@@ -127,6 +130,8 @@ __all__ = [
     "intersection_text",
     "kept_twins",
     "may_have_surface",
+    "morph",
+    "movable_keys",
     "nearest_pair",
     "object_pair",
     "place",

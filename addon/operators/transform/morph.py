@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.morph`: moves values of the active object's shape keys until surfaces touch."""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty
+
+from ... import stiv_blender
+from ...modal.header_texts import result_text
+from ...native_module import NeedsNativeModule
+from ...properties import StivKeyValue
+from ...scene.edit_settings import edit_settings
+from ...translations import translate
+from ..reports import report_error, say
+
+
+class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
+    """Move shape key values until surfaces touch"""
+
+    bl_idname = "stiv.morph"
+    bl_label = "Collision Morph"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+
+    keys: CollectionProperty(name="Shape Keys", type=StivKeyValue)
+    others_yield: BoolProperty(name="Others Yield", description="Let the other shape keys of the object respond")
+
+    @classmethod
+    def is_available(cls, context: bpy.types.Context) -> bool:
+        """In Object Mode, with an active object that has shape keys."""
+        data = None if context.active_object is None else context.active_object.data
+        return bool(context.mode == "OBJECT" and getattr(data, "shape_keys", None) is not None)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the sliders of the shape keys in a dialog."""
+        self.keys.clear()
+        for block in stiv_blender.movable_keys(context.active_object):
+            row = self.keys.add()
+            row.name, row.value = block.name, block.value
+        result: set[str] = context.window_manager.invoke_props_dialog(self)
+        return result
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """A slider for each key, and the option."""
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
+        for row in self.keys:
+            self.layout.prop(row, "value", text=row.name, translate=False)
+        self.layout.prop(self, "others_yield")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Move the keys whose value differs from the given one, and report."""
+        ob = context.active_object
+        present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
+        values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
+        if not values:
+            self.report({"INFO"}, translate("No value changes"))
+            return {"CANCELLED"}
+        settings = edit_settings(context.scene)
+        try:
+            found = stiv_blender.morph(context, {ob.name: values}, settings, others_yield=self.others_yield)
+        except Exception as error:  # nothing may stay half done, whatever went wrong
+            return report_error(self, error)
+        values = {key: value for (_, key), value in found.values.items()}
+        described = {"status": found.status, "blocking": found.blocking, "values": values}
+        context.window_manager.stiv_last_edit = json.dumps(described)
+        if text := result_text(found.status, found.blocking, translate):
+            say(self, "INFO", text)
+        return {"FINISHED"}

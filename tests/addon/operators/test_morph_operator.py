@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`stiv.morph` as a script calls it: values, undo, the description of the last edit, and what it refuses."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from stiv.blender import check_scene  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture
+def ball() -> Any:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.mesh.primitive_plane_add(size=8, location=(2, 0, 0), rotation=(0, np.pi / 2, 0))
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=16, ring_count=9)
+    ball = bpy.context.object
+    ball.shape_key_add(name="Basis")
+    for name, factor in (("Wide", 3), ("Thin", 0.5)):
+        key = ball.shape_key_add(name=name)
+        key.value = 0  # 1 in Blender 5
+        for point, rest in zip(key.data, ball.data.vertices, strict=True):
+            point.co = rest.co * factor
+    return ball
+
+
+def value(ball: Any, key: str) -> float:
+    return float(ball.data.shape_keys.key_blocks[key].value)
+
+
+def morph(others_yield: bool = False, **values: float) -> set[str]:
+    rows = [{"name": name, "value": goal} for name, goal in values.items()]
+    result: set[str] = bpy.ops.stiv.morph("EXEC_DEFAULT", True, keys=rows, others_yield=others_yield)
+    return result
+
+
+def test_a_morph_stops_reports_and_is_one_undo_step(ball: Any) -> None:
+    bpy.ops.ed.undo_push(message="start")
+    assert morph(Wide=1.0) == {"FINISHED"}
+    assert 0.45 < value(ball, "Wide") < 0.55
+    assert check_scene(bpy.context).pairs == ()
+    said = json.loads(bpy.context.window_manager.stiv_last_edit)
+    assert said["status"] in ("corrected", "blocked") and said["values"] == {"Wide": value(ball, "Wide")}
+    bpy.ops.ed.undo()
+    assert value(bpy.data.objects["Sphere"], "Wide") == 0
+
+
+def test_the_other_keys_yield(ball: Any) -> None:
+    assert morph(Wide=0.6) == morph(others_yield=True, Wide=0.6) == {"FINISHED"}
+    assert value(ball, "Wide") > 0.52 and value(ball, "Thin") > 0.05
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_values_that_do_not_change_or_do_not_exist(ball: Any) -> None:
+    assert morph(Wide=0.0) == {"CANCELLED"}
+    with pytest.raises(RuntimeError, match="Sphere: it has no shape key Round"):
+        morph(Round=1.0)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Plane"]
+    assert not bpy.ops.stiv.morph.poll()
