@@ -83,7 +83,7 @@ class _MorphedScene:
     """The surface of all visible objects as a function of sliders, evaluated in the scene itself.
 
     Attributes:
-        assembly: what no slider moves is fixed.
+        assembly: objects that no slider moves are fixed.
         start: the values at the start, (k,).
         written: the values that Blender shows, (k,).
     """
@@ -124,7 +124,7 @@ class _MorphedScene:
         self.write(at)
         return found
 
-    def fix_what_stays(self, goal: Floats, jacobian: Floats) -> None:
+    def fix_resting_objects(self, goal: Floats, jacobian: Floats) -> None:
         """Fix the objects that neither the Jacobian nor the goal, (k,), moves."""
         moved = (jacobian != 0).any(axis=(1, 2))
         at_goal = self.evaluate(goal)
@@ -147,7 +147,7 @@ def _solve(scene: _MorphedScene, goals: Floats, given: Flags, others_yield: bool
     """Move the sliders toward their goals, and leave the scene at the closest values that Blender shows free."""
     jacobian = scene.jacobian()
     nearest = np.clip(goals, scene.lower, scene.upper)
-    scene.fix_what_stays(nearest, jacobian)
+    scene.fix_resting_objects(nearest, jacobian)
     lower = np.where(given, np.minimum(scene.start, nearest), scene.lower)
     upper = np.where(given, np.maximum(scene.start, nearest), scene.upper)
     deformation = stiv.scalars(scene.evaluate, jacobian, lower=lower, upper=upper)
@@ -176,7 +176,7 @@ def _solve(scene: _MorphedScene, goals: Floats, given: Flags, others_yield: bool
 def _open_session(
     scene: _MorphedScene, deformation: stiv.ScalarDeformation, weights: Floats
 ) -> tuple[stiv.EditSession, Exclusions]:
-    """A session, and what may intersect in it: the exclusions, and objects that intersect themselves at the start."""
+    """A session, and its exclusions, with those of objects that intersect themselves at the start."""
     excluded, controls = scene.settings.excluded, deformation.controls(scene.start)
     try:
         return _make_session(scene, deformation, weights, excluded, controls), excluded
