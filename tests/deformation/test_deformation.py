@@ -194,7 +194,10 @@ def test_compose_applies_one_deformation_after_the_other() -> None:
         (lambda: stiv.linear(([0, 1], [1], [1.0], 3)), "shape must be"),
         (lambda: stiv.linear(MATRIX, np.zeros((3, 3))), "offset: shape"),
         (lambda: stiv.linear_weights(stiv.identity(2)), "only linear deformations"),
-        (lambda: stiv.compose(stiv.linear(MATRIX), stiv.rigid(POINTS)), "the inner one linear, observed or by handles"),
+        (
+            lambda: stiv.compose(stiv.linear(MATRIX), stiv.rigid(POINTS)),
+            "the inner one linear, observed, by scalars",
+        ),
         (lambda: stiv.compose(stiv.linear(MATRIX), stiv.linear(MATRIX)), "5 controls, the inner one moves 9"),
         (lambda: stiv.rigid([[0, 0, np.nan]]), "vertices, row 0"),
         (lambda: stiv.rigid(POINTS, (0, 0, np.inf)), "pivot"),
