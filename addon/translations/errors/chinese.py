@@ -130,4 +130,8 @@ MESSAGES = {
     "{} vertices follow": "{} 个顶点跟随",
     "{} vertices, {} has {}; use another target": "{} 个顶点，{} 有 {} 个；请使用其他目标物",
     "{}{}: no surface; also select an object that has one": "{}{}：没有表面；请同时选择有表面的物体",
+    "it is in Edit Mode; leave it": "处于编辑模式；请先退出",
+    "no shape key is given a value; name at least one": "没有给任何形态键赋值；请至少指定一个",
+    "the value of {} is not finite": "{} 的值不是有限数",
+    "there is no such object": "没有这个物体",
 }

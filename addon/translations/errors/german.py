@@ -130,4 +130,8 @@ MESSAGES = {
     "{} vertices follow": "{} Vertices folgen",
     "{} vertices, {} has {}; use another target": "{} Vertices, {} hat {}; anderes Ziel verwenden",
     "{}{}: no surface; also select an object that has one": "{}{}: keine Oberfläche; auch ein Objekt mit Oberfläche auswählen",
+    "it is in Edit Mode; leave it": "im Bearbeitungsmodus; verlassen Sie ihn",
+    "no shape key is given a value; name at least one": "kein Formschlüssel erhält einen Wert; mindestens einen nennen",
+    "the value of {} is not finite": "der Wert von {} ist nicht endlich",
+    "there is no such object": "dieses Objekt gibt es nicht",
 }

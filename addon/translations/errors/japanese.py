@@ -130,4 +130,8 @@ MESSAGES = {
     "{} vertices follow": "{} 頂点が従います",
     "{} vertices, {} has {}; use another target": "頂点 {} 個ですが {} は {} 個です。別のターゲットを使ってください",
     "{}{}: no surface; also select an object that has one": "{}{}: サーフェスがありません。サーフェスのあるオブジェクトも選択してください",
+    "it is in Edit Mode; leave it": "編集モードです。終了してください",
+    "no shape key is given a value; name at least one": "値を持つシェイプキーがありません。1つ以上指定してください",
+    "the value of {} is not finite": "{} の値が有限ではありません",
+    "there is no such object": "そのオブジェクトはありません",
 }

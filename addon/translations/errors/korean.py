@@ -130,4 +130,8 @@ MESSAGES = {
     "{} vertices follow": "버텍스 {}개가 따라감",
     "{} vertices, {} has {}; use another target": "버텍스 {}개, {}은(는) {}개; 다른 대상을 사용하세요",
     "{}{}: no surface; also select an object that has one": "{}{}: 표면이 없음; 표면이 있는 오브젝트도 선택하세요",
+    "it is in Edit Mode; leave it": "에디트 모드임; 먼저 나가세요",
+    "no shape key is given a value; name at least one": "값이 주어진 모양 키가 없음; 하나 이상 지정하세요",
+    "the value of {} is not finite": "{}의 값이 유한하지 않음",
+    "there is no such object": "그런 오브젝트가 없음",
 }

@@ -16,6 +16,7 @@ namespace stiv {
 namespace {
 
 constexpr int max_sub_goals = 64;
+constexpr double poor_gain = 0.01;  // of the distance between two sub-goals
 
 int sub_goal_count(const EditCall& call, const Aim& aim) {
   if (call.execution.has_time_budget()) return 1;
@@ -29,10 +30,14 @@ void approach_by_sub_goals(EditCall& call, const Aim& aim) {
   const Controls start = call.accepted.controls;
   const std::vector<Index>& rows = call.context.rotation_rows();
   const int count = sub_goal_count(call, aim);
-  for (int k = 1; k < count; ++k) {
+  const auto distance = [&] { return std::sqrt(energy(call.accepted.surface, aim.surface)); };
+  const double least_gain = poor_gain * distance() / count;
+  for (int k = 1, poor = 0; k < count && poor < 2; ++k) {
     const Controls goal = interpolate(start, aim.controls, static_cast<double>(k) / count, rows);
+    const double before = distance();
     if (std::optional<State> sub_goal = feasible_state(call.context, goal, call.execution))
       run_sub_edits_by_steps(call, {goal, sub_goal->surface, aim.must_improve});
+    poor = before - distance() < least_gain ? poor + 1 : 0;
   }
   run_sub_edits_by_steps(call, aim);
 }

@@ -7,8 +7,8 @@ namespace stiv {
 
 /// Runs the sub-edits toward points on the way to the goal, a quarter of the diagonal apart, and then toward the goal.
 /// A projection from deep inside or beyond an obstacle can leave it on the wrong side; from near its surface it rarely
-/// does. With a time budget there are no sub-goals, so that settling can resume the rounds. (mathematics.md, "The
-/// loop")
+/// does. Two sub-goals without a gain end them. With a time budget there are no sub-goals, so that settling can resume
+/// the rounds. (mathematics.md, "The loop")
 void approach_by_sub_goals(EditCall& call, const Aim& aim);
 
 /// Is a goal that rotates still far after the sub-goals, so that the direct way is worth a try? A rigid body has few

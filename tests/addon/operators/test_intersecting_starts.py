@@ -54,7 +54,7 @@ def test_excluded_objects_do_not_go_deeper_and_are_guarded_once_apart() -> None:
     assert overlap() <= before + 1e-5
     move(1.0, 0.0, 0.0)
     assert blender.check_scene(bpy.context).pairs == ()
-    move(-5.0, 0.0, 0.0)
+    move(-2.0, 0.0, 0.0)
     assert blender.check_scene(bpy.context).pairs == ()
     assert -0.05 < overlap() < 0.05
 
