@@ -62,6 +62,7 @@ lint: build/venv/lint $(WHEEL) ## Check format, style, types, spelling, and the 
 	build/venv/bin/python tools/run_tests.py lint
 
 extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(BLENDER_VENVS) ## Build dist/stiv-<version>-<platform>.zip for all PLATFORMS (an hour, the first time), validate and test them; BLENDER=blender: install it there
+	tools/install_debian_packages.sh tools/debian_packages_extension.txt
 	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist $(PLATFORMS) >build/extension-all
 	set -e; for zip in $$(cat build/extension-all); do for venv in $(dir $(BLENDER_VENVS)); do \
 		$$venv/bin/python tools/install_extension.py "$$zip" --validate; done; done

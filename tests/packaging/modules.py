@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Inspection of compiled modules for any system, with binutils and LIEF."""
 
+import os
 import re
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,3 +64,28 @@ def mac_module(module: Path) -> MacModule:
         tuple(parsed.build_version.minos),
         parsed.has_code_signature,
     )
+
+
+def oldest_tags(wheel: Path) -> set[str]:
+    """The tags of the oldest C libraries that a Linux wheel runs with, as auditwheel finds them."""
+    said = " ".join(lines_of(sys.executable, "-m", "auditwheel", "show", wheel))
+    return set(re.findall(r'consistent with the following platform tag: "(\w+)"', said))
+
+
+OTOOL = """#!/bin/sh
+# LLVM's otool knows no -m, which only says that names of files may contain brackets.
+for argument; do shift; [ "$argument" = -m ] || set -- "$@" "$argument"; done
+exec "{}" "$@"
+"""
+
+
+def libraries_by_delocate(wheel: Path, tools: Path) -> set[str]:
+    """Shared libraries that a macOS wheel needs, as delocate lists them with LLVM's tools, linked into a new folder."""
+    tools.mkdir()
+    llvm = sorted(Path("/usr/lib").glob("llvm-*/bin/llvm-otool"))[-1].parent
+    (tools / "lipo").symlink_to(llvm / "llvm-lipo")
+    (tools / "otool").write_text(OTOOL.format(llvm / "llvm-otool"), encoding="utf-8")
+    (tools / "otool").chmod(0o755)
+    listing = [sys.executable, "-m", "delocate.cmd.delocate_listdeps", "--all", wheel]
+    search = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}"}
+    return set(subprocess.run(listing, env=search, capture_output=True, text=True, check=True).stdout.split())

@@ -10,7 +10,15 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from modules import exported_names, mac_module, needed_libraries, newest_glibc, windows_interface
+from modules import (
+    exported_names,
+    libraries_by_delocate,
+    mac_module,
+    needed_libraries,
+    newest_glibc,
+    oldest_tags,
+    windows_interface,
+)
 
 from tools import portable_wheels
 
@@ -83,6 +91,17 @@ def test_macos_modules_export_only_their_entry_and_need_macos_11(all_wheels: lis
         assert module.libraries == {"/usr/lib/libSystem.B.dylib"}
         assert module.oldest[:2] == (11, 0)
         assert module.signed or module.processor == "X86_64"  # arm64 loads only signed modules
+
+
+def test_auditwheel_and_delocate_find_the_systems_that_the_tags_name(all_wheels: list[Path], tmp_path: Path) -> None:
+    for wheel in all_wheels:
+        tag = wheel.stem.split("-")[-1]
+        if tag.startswith("manylinux"):
+            (oldest,) = oldest_tags(wheel)
+            assert oldest.split("_", 3)[3] == tag.split("_", 3)[3]
+            assert int(oldest.split("_")[2]) <= OLDEST[1]
+        elif tag.startswith("macosx"):
+            assert libraries_by_delocate(wheel, tmp_path / wheel.name) == {"/usr/lib/libSystem.B.dylib"}
 
 
 def test_each_zip_has_the_wheels_of_its_platform_only(all_wheels: list[Path]) -> None:
