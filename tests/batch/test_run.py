@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The lock of a job and the peak memory of a worker on Windows, with stand-ins for its libraries."""
+"""The lock of a job, the peak memory of a worker, and signals that end a batch, on Windows too."""
 
 from __future__ import annotations
 
 import ctypes
+import signal
 import sys
 import types
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 
 from stiv import InputError
 from stiv.batch import run, worker
+from stiv.command_line import batch, program
+from tests.batch.jobs import write_job
 
 
 def test_the_lock_of_a_job_on_windows_is_that_of_its_c_runtime(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,3 +51,15 @@ def test_the_peak_memory_on_windows_is_that_of_the_working_set(monkeypatch: pyte
 
 def test_the_peak_memory_is_known_on_this_system() -> None:
     assert worker._peak_megabytes() > 5
+
+
+@pytest.mark.parametrize("name", sorted({"SIGINT", "SIGTERM", "SIGBREAK"} & set(dir(signal))))
+def test_a_signal_of_the_system_cancels_a_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    signals = [signal.Signals[each] for each in ("SIGINT", "SIGTERM", name)]
+    handlers = {each: signal.getsignal(each) for each in signals}
+    monkeypatch.setattr(batch, "run_job", lambda *_: signal.raise_signal(signal.Signals[name]))
+    try:
+        assert program.run(["batch", str(write_job(tmp_path, 1)), "--workers", "1"]) == 5
+    finally:
+        for each, handler in handlers.items():
+            signal.signal(each, handler)
