@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
-DOUBLINGS = 4  # of a budget, at most; those of a goal for which nothing was accepted end a motion sooner
+DOUBLINGS = 4  # of a budget that ends before a state is accepted, at most; of an unfinished goal, fewer
 DOUBLINGS_UNFINISHED = 2
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
-MAX_IDLE = 10  # repeated solves that settle and gain little, each from where the last one was; then a drag ends
+MAX_POOR = 2  # accepted states in a row that gain little while the mouse rests; then a drag has settled
+MAX_IDLE = 10  # repeated solves that settle and accept nothing, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
@@ -131,7 +132,7 @@ class DragLoop:
         self._refusal = ""
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
-        self._fruitless = self._idle = 0
+        self._fruitless = self._empty = self._idle = self._poor = 0
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._budget = BUDGET
@@ -203,7 +204,7 @@ class DragLoop:
     def _note_motion(self) -> None:
         """Solve for a new goal, without what rest was used for."""
         self._pending, self._settled = True, False
-        self._fruitless = self._idle = 0
+        self._fruitless = self._empty = self._idle = self._poor = 0
         self._moved_at = time.perf_counter()
         if self._task is not None and self._can_cancel:
             self._task.cancel()
@@ -272,7 +273,7 @@ class DragLoop:
             return
         is_new = self._unfinished is None
         self._unfinished = None
-        doublings = min(self._fruitless, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
+        doublings = min(self._empty, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
         budget = (FINAL_BUDGET if self._confirmed else self._budget) * 2**doublings
         steps = self.edit.drag_steps(goal.motion, time_budget=budget)
         can_cancel = is_new and self._fruitless > 0 and not self._confirmed
@@ -294,9 +295,13 @@ class DragLoop:
         self.result, self.transform, self.note = found, goal.transform, self._refusal
         self._refusal = ""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
+        self._empty = self._empty + 1 if nothing_accepted else 0
         self._pending = not self.stopped and (self._may_gain(goal.state, found) or goal.state != self.state)
         self._unfinished = goal if nothing_accepted else None
         self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
+        ends = found.status == "reached" or (found.status == "blocked" and self._fruitless > 0)
+        if not self._pending and (ends or self._poor >= MAX_POOR):
+            self._end_settling()
 
     def _take_settled(self, settled: EditResult) -> None:
         """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
@@ -305,15 +310,18 @@ class DragLoop:
         self._solves += 1
         if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
             self.result, self._unwritten = settled, True
-        at_goal = self.result is not None and self.result.status == "reached"
-        if settled.status != "budget" or self.stopped or at_goal:
+        if settled.status != "budget" or self.stopped:
             return
-        state, least = self._solved
-        gained = settled.energy < GAIN * least
-        self._solved = (state, settled.energy if gained else least)
+        gained = self._has_gained(self._solved[0], settled)
         self._idle = 0 if gained else self._idle + 1
-        self._settled = self._idle >= MAX_IDLE
-        if self._settled and self.result is not None and self.result.status == "budget" and self.result.path:
+        self._settled = False
+        if self._idle >= MAX_IDLE or self._poor >= MAX_POOR:
+            self._end_settling()
+
+    def _end_settling(self) -> None:
+        """End the solves, of which the last ones gained little."""
+        self._settled = True
+        if self.result is not None and self.result.status == "budget" and self.result.path:
             self.result = replace(self.result, status="corrected")
 
     def _is_cancelled(self, found: EditResult | ValueError) -> bool:
@@ -329,15 +337,24 @@ class DragLoop:
 
         While the mouse rests, this makes the final state independent of the number of motions before it.
         """
+        gained = self._has_gained(state, result)
+        self._fruitless = 0 if gained else self._fruitless + 1
+        if result.status == "budget":
+            most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
+            return self._fruitless < most and self._poor < MAX_POOR
+        return result.status == "corrected" and gained
+
+    def _has_gained(self, state: State, result: EditResult) -> bool:
+        """Whether a solve for a state came closer to its goal; counts the accepted ones that did not."""
         solved, least = self._solved
         gained = solved != state or result.energy < GAIN * least
         if gained:
             self._solved = (state, result.energy)
-        self._fruitless = 0 if gained else self._fruitless + 1
-        if result.status == "budget":
-            most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
-            return self._fruitless < most
-        return result.status == "corrected" and gained
+        if gained:
+            self._poor = 0
+        elif len(result.path) > 0 and (self._confirmed or self._rests()):
+            self._poor += 1
+        return gained
 
     def _begin_again(self) -> bool:
         """Begin another edit if the state requests one; returns whether its task has begun.
@@ -375,7 +392,7 @@ class DragLoop:
         self._confirmed = True
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
-            self._pending, self._fruitless = True, 0
+            self._pending, self._fruitless, self._empty = True, 0, 0
         if self.edit is not None or self._settled:
             self.progress = Progress.FINISHING
             self._finish_at_once()

@@ -52,7 +52,8 @@ double longest_displacement(const Positions& from, const Positions& to) {
   return (to - from).rowwise().norm().maxCoeff();
 }
 
-// A stride that took several calls is halved for the next one; any other is doubled.
+// A stride with contacts that took several calls is halved for the next one; any other is doubled. Without contacts, a
+// shorter stride takes as long.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   for (bool arrives = false; !arrives;) {
     const double way = longest_displacement(drag.followed.surface, aim.surface);
@@ -66,6 +67,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
       if (reached) next = std::move(*reached);
     }
     const std::size_t accepted_before = call.report.path.size();
+    const std::int64_t rounds_before = call.execution.counters.rounds;
     try {
       const Controls increment = incremented(call, drag.followed.controls, next.controls);
       if (call.context.stored(increment) != call.accepted.controls)
@@ -73,7 +75,7 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
     } catch (const Interrupted&) {
       if (call.report.path.size() > accepted_before)
         drag.followed = std::move(next);  // else the next call begins with the rest of the stride
-      drag.stride_took_several_calls = true;
+      drag.stride_took_several_calls |= call.execution.counters.rounds > rounds_before;
       throw;
     }
     drag.followed = std::move(next);

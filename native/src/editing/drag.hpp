@@ -17,7 +17,7 @@ struct DragProgress {
   /// Largest displacement of a vertex in an increment of a call with a time budget. It adapts so that each call accepts
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
-  bool stride_took_several_calls = false;
+  bool stride_took_several_calls = false;  ///< and had contacts
   bool is_leaping = false;  ///< the time budget ended a leap, which the next call to the same goal resumes
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing

@@ -94,3 +94,19 @@ TEST_CASE("session: hurried drags accept something on the way into contact, and 
   CHECK(result.status == EditStatus::reached);
   CHECK((session.controls() - scene.controls).cwiseAbs().maxCoeff() < 1e-6);
 }
+
+TEST_CASE("session: drags without contacts, each cut by its time, reach a far goal in a few calls") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene);
+  for (int step = 1; step <= 8; ++step)
+    drag_hurried(session, moved(scene.controls, upper_sheet, Vector3(0, 0, 0.1) * step));
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0, 0, 4));
+  EditResult result;
+  int calls = 0;
+  for (; calls < 500 && (calls == 0 || result.status != EditStatus::reached); ++calls) {
+    Execution execution(1);
+    execution.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
+    result = session.drag(goal, execution);
+  }
+  CHECK(calls <= 4);
+}

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_IDLE, MAX_POOR, MAX_SLOW, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
@@ -48,12 +48,14 @@ def test_motions_are_solved_for_the_latest_only() -> None:
     assert edit.calls == ["drag", "write"]
 
 
-def test_confirming_solves_for_the_last_goal_settles_and_writes() -> None:
-    edit = FakeEdit()
+@pytest.mark.parametrize(("status", "settles"), [("reached", []), ("blocked", ["settle"])])
+def test_confirming_solves_for_the_last_goal_settles_and_writes(status: str, settles: list[str]) -> None:
+    """Of a large object, even finding nothing to settle takes longer than a frame."""
+    edit = FakeEdit(statuses=[status])
     drag = new_drag(edit)
     drag.handle(move_to(30))
     assert drag.handle(Event("LEFTMOUSE")) is Effect.CONFIRM and drag.progress is Progress.FINISHED
-    assert edit.calls == ["drag", "settle", "write"]
+    assert edit.calls == ["drag", *settles, "write"]
     assert edit.shown == drag.transform == 0.3
 
 
@@ -218,7 +220,7 @@ def test_a_goal_not_reached_at_the_confirmation_is_solved_for_repeatedly() -> No
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and edit.calls == [*["drag"] * 4, "settle", "write"]
+    assert drag.progress is Progress.FINISHED and edit.calls == [*["drag"] * 4, "write"]
 
 
 def test_a_goal_that_solves_come_no_closer_to_is_left_until_the_confirmation() -> None:
@@ -248,18 +250,6 @@ def test_settling_that_uses_up_its_budget_is_continued_until_it_has_settled(idle
     assert edit.shown == edit.accepted > 0.4
 
 
-def test_a_reached_goal_is_settled_once() -> None:
-    """Of a large object, even finding nothing to do uses up the budget."""
-    edit = FakeEdit(statuses=["reached"], settling=True)
-    drag = new_drag(edit)
-    drag.handle(move_to(50))
-    drag.tick()
-    edit.statuses, edit.furthest = ["budget"] * 1000, 0.0
-    drag.handle(Event("LEFTMOUSE"))
-    assert drag.progress is Progress.FINISHED and drag.result.status == "reached"
-    assert edit.calls.count("settle") == 1
-
-
 def test_settling_that_gains_no_more_ends_as_deflected() -> None:
     edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, settling=True)
     drag = new_drag(edit)
@@ -268,11 +258,36 @@ def test_settling_that_gains_no_more_ends_as_deflected() -> None:
     while drag.progress is Progress.FINISHING:
         drag.tick()
     assert drag.result.status == "corrected" and edit.shown == edit.accepted == 1.0
-    assert edit.calls.count("settle") == MAX_IDLE
+    assert edit.calls.count("settle") == MAX_POOR
+
+
+def test_settling_that_accepts_nothing_ends(rest: None) -> None:
+    edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, settling=True, furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(500))
+    drag.handle(Event("LEFTMOUSE"))
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.result.status == "blocked" and edit.calls.count("settle") == MAX_IDLE
+
+
+@pytest.mark.parametrize("confirmed", [True, False])
+def test_accepted_states_that_gain_little_settle_a_drag_at_rest(confirmed: bool, rest: None) -> None:
+    """Cages pressed at a wall took seconds for a thousandth of their energy."""
+    edit = FakeEdit(statuses=["budget"] * 1000, settling=True)
+    drag = new_drag(edit)
+    drag.handle(move_to(500))
+    drag.handle(Event("LEFTMOUSE")) if confirmed else None
+    for _ in range(50):
+        drag.tick()
+    assert edit.calls.count("drag") == 1 + MAX_POOR and "settle" not in edit.calls
+    assert drag.result.status == "corrected" and drag.at_rest
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and edit.calls.count("drag") == 1 + MAX_POOR
 
 
 def test_esc_stops_settling_and_keeps_the_accepted_state() -> None:
-    edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, furthest=0.001, delays={"settle": 2}, settling=True)
+    edit = FakeEdit(statuses=["blocked"] + ["budget"] * 1000, furthest=0.005, delays={"settle": 2}, settling=True)
     drag = new_drag(edit)
     drag.handle(move_to(90))
     drag.handle(Event("LEFTMOUSE"))
@@ -284,12 +299,12 @@ def test_esc_stops_settling_and_keeps_the_accepted_state() -> None:
 
 
 def test_a_drag_settles_while_the_mouse_rests_so_that_confirming_solves_nothing(rest: None) -> None:
-    edit = FakeEdit(statuses=["corrected", "corrected", "budget", "corrected"], furthest=0.3, settling=True)
+    edit = FakeEdit(statuses=["corrected", "corrected", "budget", *["corrected"] * 4], furthest=0.3, settling=True)
     drag = new_drag(edit)
-    drag.handle(move_to(90))
+    drag.handle(move_to(500))
     for _ in range(10):
         drag.tick()
-    assert drag.at_rest and edit.shown == edit.accepted == 0.9
+    assert drag.at_rest and edit.shown == edit.accepted == 1.0
     before = list(edit.calls)
     drag.handle(Event("LEFTMOUSE"))
     assert drag.progress is Progress.FINISHED and edit.calls == before and "settle" in before
@@ -355,7 +370,7 @@ def test_an_invalid_value_is_reported_and_can_be_corrected() -> None:
 
 @pytest.mark.parametrize("call", ["drag", "settle", "write"])
 def test_an_exception_anywhere_restores_and_ends(call: str) -> None:
-    edit = FakeEdit(failing={call: RuntimeError("broken")})
+    edit = FakeEdit(statuses=["blocked"], failing={call: RuntimeError("broken")})
     drag = new_drag(edit)
     drag.handle(move_to(40))
     drag.tick()
