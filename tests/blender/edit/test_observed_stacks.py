@@ -119,6 +119,45 @@ def test_the_jacobian_predicts_what_blender_evaluates(name: str) -> None:
     assert error < LOOSE.get(name, 0.25)
 
 
+AFFINE = ["Mirror", "Mirror, Subdivision Surface, Smooth by Angle", "Array", "Armature", "Mesh Deform", "Hook", "Screw"]
+
+
+@pytest.mark.parametrize("name", AFFINE)
+def test_affine_stacks_are_computed_without_blender(name: str) -> None:
+    """Against the object's own evaluation, for a large random motion of each vertex."""
+    ob = STACKS[name]()
+    ob.location, ob.rotation_euler = (0.1, 0.2, 0.3), (0, 0.3, 0)
+    bpy.context.view_layer.update()
+    local, frame = read_cage(ob), as_matrix(ob.matrix_world)
+    world = transform_points(frame, local)
+    with kept_twins():
+        held = find_held_vertices([ob], local.astype(float))
+        block = StackBlock(BlockSettings.read(ob, bpy.context.scene, "shown"), frame, world, held)
+    assert block.affine is not None
+    for modifier in ob.modifiers:
+        modifier.show_viewport &= modifier.name not in block.end_modifiers
+    goal = held.hold(world + np.random.default_rng(2).uniform(-0.05, 2, world.shape) * [-1, 1, 1], world, frame)
+    ob.data.vertices.foreach_set("co", transform_points(np.linalg.inv(frame), goal).astype(np.float32).ravel())
+    ob.data.update()
+    assert np.abs(block.affine.evaluate(goal) - evaluated(ob)).max() < 1e-5
+    assert len(bpy.data.scenes) == 1
+
+
+def test_vertices_that_would_merge_with_their_image_have_no_surface() -> None:
+    ob = mirrored()
+    local, frame = read_cage(ob).astype(float), np.eye(4)
+    with kept_twins():
+        held = find_held_vertices([ob], local)
+        block = StackBlock(BlockSettings.read(ob, bpy.context.scene, "shown"), frame, local, held)
+        for distance in (4e-4, 6e-4):  # of a vertex from the plane: half the merge distance, 0.001, is between them
+            moved = local.copy()
+            moved[1, 0] = -distance
+            ob.data.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+            ob.data.update()
+            is_merged = len(evaluated(ob)) != block.count
+            assert is_merged == (distance < 5e-4) == (block.evaluate(moved) is None)
+
+
 def shrinkwrapped() -> Any:
     ob = add_sheet()
     add_modifier(ob, "SHRINKWRAP", "Wrap", target=add_cube("Target", (0, 0, -4)))

@@ -13,17 +13,31 @@ import bpy
 import numpy as np
 from mathutils.kdtree import KDTree
 
-from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix
+from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, to_local
 
 ON_PLANE = 1e-6  # distance of a vertex from its image, in sizes of the mesh, without merging
 
 
 @dataclass(frozen=True, eq=False)
 class MirrorPlane:
-    """Vertices, (m,) flags, that do not move along a normal, (3,), in local space."""
+    """Vertices, (m,) flags, that do not move along a normal, (3,), in local space.
+
+    Attributes:
+        offset: of the plane: it consists of the points x with normal * x = offset.
+        threshold: distance from the plane up to which a vertex is merged with its image; -1: none is.
+    """
 
     vertices: Flags
     normal: Floats
+    offset: float = 0.0
+    threshold: float = -1.0
+
+    def keeps_apart(self, local: Floats) -> bool:
+        """Are the same vertices merged with their images at local positions, (m, 3), as at the start?"""
+        if self.threshold < 0:
+            return True
+        distances = np.abs(local @ self.normal - self.offset)
+        return bool((distances[~self.vertices] > self.threshold).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +72,13 @@ class HeldVertices:
             limited[plane.vertices] -= across[:, None] * plane.normal
         return limited
 
+    def keeps_apart(self, positions: Floats, start: Floats, frame: Floats) -> bool:
+        """Do Mirror modifiers merge the same vertices at world positions, (m, 3), as at the start?"""
+        if all(plane.threshold < 0 for plane in self.planes):
+            return True
+        local = to_local(frame, self.hold(positions, start, frame))
+        return all(plane.keeps_apart(local) for plane in self.planes)
+
     @property
     def _restricted(self) -> Flags:
         flags = [plane.vertices for plane in self.planes]
@@ -76,7 +97,7 @@ def find_held_vertices(users: Sequence[bpy.types.Object], local: Floats) -> Held
     planes = [_plane(ob, each, axis, local) for ob, each in mirrors for axis in range(3) if each.use_axis[axis]]
     welds = [each for _, each in active if isinstance(each, bpy.types.WeldModifier)]
     leaders = _leaders(local, max((each.merge_threshold for each in welds), default=-1.0))
-    return HeldVertices(tuple(plane for plane in planes if plane.vertices.any()), leaders)
+    return HeldVertices(tuple(plane for plane in planes if plane.vertices.any() or plane.threshold >= 0), leaders)
 
 
 def _plane(ob: bpy.types.Object, modifier: bpy.types.MirrorModifier, axis: int, local: Floats) -> MirrorPlane:
@@ -85,11 +106,13 @@ def _plane(ob: bpy.types.Object, modifier: bpy.types.MirrorModifier, axis: int, 
         mirror = np.linalg.inv(as_matrix(modifier.mirror_object.matrix_world)).astype(np.float64)
         to_mirror = mirror @ as_matrix(ob.matrix_world)
     across = local @ to_mirror[axis, :3] + to_mirror[axis, 3]
-    apart = 2 * np.abs(across) * np.linalg.norm(np.linalg.inv(to_mirror[:3, :3])[:, axis])
+    length = float(np.linalg.norm(to_mirror[axis, :3]))
+    scale = 2 * length * float(np.linalg.norm(np.linalg.inv(to_mirror[:3, :3])[:, axis]))  # from distances to merging
     size = float(np.ptp(local, axis=0).max(initial=0.0))
-    threshold = modifier.merge_threshold if modifier.use_mirror_merge else ON_PLANE * size
-    normal = to_mirror[axis, :3]
-    return MirrorPlane(apart <= threshold, normal / np.linalg.norm(normal))
+    merges = modifier.use_mirror_merge
+    threshold = (modifier.merge_threshold if merges else ON_PLANE * size) / scale
+    near = np.abs(across) / length <= threshold
+    return MirrorPlane(near, to_mirror[axis, :3] / length, -to_mirror[axis, 3] / length, threshold if merges else -1.0)
 
 
 def _leaders(local: Floats, distance: float) -> Indices | None:

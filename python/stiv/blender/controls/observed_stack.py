@@ -92,8 +92,9 @@ class ObservedStack:
         return stiv.compose(*chain) if self._ends is None else stiv.compose(self._ends, *chain)
 
     def renew_jacobian(self) -> None:
-        """Measure the Jacobian at the last evaluation."""
-        self._observed.set_jacobian(self._blocks.jacobian())
+        """Measure the Jacobian at the last evaluation, unless it is constant."""
+        if not self._blocks.are_affine:
+            self._observed.set_jacobian(self._blocks.jacobian())
 
     def _find_ends(self, places: Sequence[int], settings: Sequence[BlockSettings]) -> stiv.Deformation | None:
         """From the vertices of all blocks to those of all surfaces; None if these are the same."""
@@ -117,6 +118,11 @@ class _Blocks:
 
     blocks: list[StackBlock]
 
+    @property
+    def are_affine(self) -> bool:
+        """Is the Jacobian constant?"""
+        return all(block.affine is not None for block in self.blocks)
+
     def evaluate(self, positions: Floats) -> Floats | None:
         """World positions of all blocks, (n, 3), from the vertices' positions in each, stacked; None: infeasible."""
         with kept_twins():
@@ -125,12 +131,17 @@ class _Blocks:
         feasible = [each for each in found if each is not None]
         return np.concatenate(feasible) if len(feasible) == len(found) else None
 
-    def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]]:
-        """One frame for each vertex of all blocks, in rows."""
+    def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]] | stiv.Weights:
+        """One frame for each vertex of all blocks, in rows; weights if each is a multiple of the identity."""
         controls = self.blocks[0].controls
         anchors = [block.anchors + place * controls for place, block in enumerate(self.blocks)]
         count = sum(map(len, anchors))
         with kept_twins():
             frames = np.concatenate([block.frames() for block in self.blocks])
         shape = count, controls * len(self.blocks)
-        return np.arange(count + 1, dtype=np.int32), np.concatenate(anchors).astype(np.int32), frames, shape
+        rows = np.arange(count + 1, dtype=np.int32), np.concatenate(anchors).astype(np.int32)
+        factors = [None if block.affine is None else block.affine.factors() for block in self.blocks]
+        scalars = [each for each in factors if each is not None]
+        if len(scalars) == len(factors):
+            return stiv.Weights(*rows, np.concatenate(scalars), shape)
+        return *rows, frames, shape

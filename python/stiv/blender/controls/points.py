@@ -132,17 +132,11 @@ def to_stored(frame: Floats, world: Floats, original: Singles) -> Singles:
     Coordinates that differ from those at the start, given by `original`, (m, 3), only by rounding keep them exactly:
     conversion loses digits of small coordinates, and locked ones may not change at all.
     """
-    local = to_single(frame, world)
-    resting = _is_rounding(frame, world, original)
-    local[resting] = original[resting]
-    return local
-
-
-def _is_rounding(frame: Floats, world: Floats, original: Singles) -> Flags:
-    """Flags of local coordinates, (m, 3), that differ from the original only by rounding."""
     inverse = np.linalg.inv(frame).astype(np.float64)
+    exact = transform_points(inverse, world)
     sizes = (np.abs(world) + np.abs(frame[:3, 3])) @ np.abs(inverse[:3, :3]).T
-    return np.asarray(np.abs(transform_points(inverse, world) - original) <= ROUNDING * sizes)
+    resting = np.abs(exact - original) <= ROUNDING * sizes
+    return np.asarray(np.where(resting, original, exact), np.float32)
 
 
 def to_single(frame: Floats, world: Floats) -> Singles:

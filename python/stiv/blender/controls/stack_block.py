@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 import stiv
+from stiv.blender.controls.affine_stack import TRIALS, AffineMap, find_affine_map, may_be_affine
 from stiv.blender.controls.held_vertices import HeldVertices
 from stiv.blender.controls.points import to_single, to_stored
 from stiv.blender.controls.stack_jacobian import find_anchors, find_frames
@@ -18,7 +19,7 @@ from stiv.blender.scene.arrays import Floats, Singles, as_matrix, transform_poin
 from stiv.blender.scene.evaluations import is_active, modifier_signature
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.modifier_stack import StackEnd, SubdivisionStage, read_end
-from stiv.blender.scene.position_test import random_moves
+from stiv.blender.scene.position_test import keep_positions, random_moves
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import StackTwin, different_objects, kept_twin, kept_twins
 
@@ -78,6 +79,7 @@ class StackBlock:
         controls: number of vertices of the mesh.
         count: number of evaluated vertices.
         anchors: the vertex that each of them follows, (n,).
+        affine: what takes the place of the evaluation; None if Blender evaluates the block during the edit.
     """
 
     def __init__(self, settings: BlockSettings, frame: Floats, positions: Floats, held: HeldVertices) -> None:
@@ -99,6 +101,7 @@ class StackBlock:
         self.anchors = anchors if held.leaders is None else held.leaders[anchors]
         self._last = positions
         self._frames = np.broadcast_to(np.eye(3), (self.count, 3, 3))
+        self.affine = self._find_affine_map()
 
     @property
     def end_modifiers(self) -> tuple[str, ...]:
@@ -109,6 +112,9 @@ class StackBlock:
         """World positions of the evaluated vertices, (n, 3); None if their topology differs from that at the start."""
         if np.abs(positions - self._rest).max(initial=0.0) > self._furthest:
             return None
+        if self.affine is not None:
+            is_apart = self._held.keeps_apart(positions, self._rest, self._frame)
+            return self.affine.evaluate(positions) if is_apart else None
         points = self._observe(positions)
         if points is not None:
             self._last = positions
@@ -116,6 +122,8 @@ class StackBlock:
 
     def frames(self) -> Floats:
         """How each evaluated vertex moves with all vertices, (n, 3, 3): at the last positions, if it is known there."""
+        if self.affine is not None:
+            return self.affine.frames
         with kept_twins():
             found = find_frames(self._observe, self._last, self._step)
         self._frames = self._frames if found is None else found
@@ -134,6 +142,19 @@ class StackBlock:
         if not shown.has_topology_of(self._start) or not np.isfinite(shown.positions).all():
             return None
         return transform_points(self._shown_frame, shown.positions)
+
+    def _find_affine_map(self) -> AffineMap | None:
+        ob, evaluation = self._settings.reference.find(), self._settings.evaluation
+        block = [
+            each for each in ob.modifiers if is_active(each, ob, evaluation) and each.name not in self.end_modifiers
+        ]
+        others = [each.name for number, each in enumerate(block) if not may_be_affine(each, number == 0)]
+        if (block and len(others) == len(block)) or (
+            others and not keep_positions(ob, bpy.context.scene, evaluation, others)
+        ):
+            return None
+        trials = [transform_points(self._frame, each) for each in random_moves(self._local, TRIALS)]
+        return find_affine_map(self._observe, self._rest, self.anchors, trials)
 
     def _stored(self, positions: Floats) -> Singles:
         """Local positions, (m, 3), as they are written."""

@@ -91,7 +91,7 @@ class Verifier:
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
     def _keeps_diagonals(self, number: int, placed: EvaluatedPositions | None) -> bool:
-        if any(modifier.type in SPLITTING for modifier in self.assembly.meshes[number].owner.find().modifiers):
+        if _may_split(self.assembly.meshes[number].owner.find()):
             return False
         if number not in self._diagonals:
             self._diagonals[number] = QuadDiagonals.of(self.assembly.meshes[number])
@@ -132,6 +132,16 @@ class Verifier:
         if not pairs:
             return Verification(False, (), "surfaces come too close in Blender; use a larger minimum distance")
         return Verification(False, pairs, _intersection_message(pairs), flips)
+
+
+def _may_split(ob: bpy.types.Object) -> bool:
+    """May modifiers split the quads that are shown? A subdivision makes quads again."""
+    for modifier in reversed(ob.modifiers):
+        if isinstance(modifier, bpy.types.SubsurfModifier) and modifier.show_viewport and modifier.levels:
+            return False
+        if modifier.type in SPLITTING:
+            return True
+    return False
 
 
 def _objects(pair: FacePair) -> frozenset[str]:
