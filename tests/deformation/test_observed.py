@@ -227,6 +227,18 @@ def test_a_twisted_sheet_dragged_into_a_wall() -> None:
     assert evaluate.threads == {threading.get_ident()}
 
 
+def test_a_jacobian_that_is_far_too_small_throws_nothing_away() -> None:
+    """A tapered curve flew 100 units away from a wall, and came back beyond it."""
+    surface, _, wall = over_a_wall(lambda p: p)
+    observed = stiv.observed(lambda p: p, 0.01 * np.eye(len(REST)))
+    whole = stiv.concatenate([(observed, np.arange(len(REST), dtype=np.int32))], np.concatenate([REST, wall]))
+    session = stiv.EditSession(surface, whole, REST)
+    for depth in (0.5, 1.5, 2.5):
+        goal = REST - [0.3, 0, depth]
+        session.drag(goal)
+        assert np.abs(session.controls - goal).max() < 1
+
+
 def test_the_last_value_is_stored() -> None:
     evaluate = Counted(limit=1.0)
     deformation = stiv.observed(evaluate, twist_jacobian(REST))

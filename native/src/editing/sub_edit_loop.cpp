@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "editing/acceptance_search.hpp"
 #include "editing/control_interpolation.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int max_cuts = 256;               // fractions of a motion that is too large for one search
 constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
+constexpr double largest_growth = 4;        // of the energy to the goal of a sub-edit: twice the distance
 constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
 /// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted. Without a surface
@@ -46,6 +48,7 @@ class SubEditLoop {
   double energy_of(const State& state) const { return energy(state.surface, aim_.surface); }
   RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
   RoundOutcome first_answer();
+  bool strays(const State& state) const;
   Acceptance accept(const RoundOutcome& outcome, bool is_first);
   void report(RoundOutcome& outcome, const Acceptance& acceptance);
 
@@ -80,12 +83,22 @@ RoundOutcome SubEditLoop::first_answer() {
   return other.clear && energy_of(other.candidate) < energy_of(accumulated.candidate) ? other : accumulated;
 }
 
+/// Is a state so far from the goal of the sub-edit that it cannot be a projection of it? Nearly linear constraints,
+/// which the accepted state satisfies, never lead further away than that state is.
+bool SubEditLoop::strays(const State& state) const {
+  if (moves_pinned_controls(call_.context.options(), call_.accepted.controls, aim_.controls)) return false;
+  const std::optional<State> goal = feasible_state(call_.context, aim_.controls, call_.execution);
+  return goal && energy(state.surface, goal->surface) > largest_growth * energy(call_.accepted.surface, goal->surface);
+}
+
 /// Accepts a fraction of the step to the outcome. If no fraction of the first step is accepted, tries the straight step
 /// to the goal.
 Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
   // A first solution that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
   const bool may_raise_energy = is_first && outcome.clear && !aim_.must_improve;
-  const auto is_agreeable = [&](const State& state) { return may_raise_energy || energy_of(state) < energy_before_; };
+  const auto is_agreeable = [&](const State& state) {
+    return energy_of(state) < energy_before_ || (may_raise_energy && !strays(state));
+  };
   Acceptance acceptance = accept_largest_fraction(call_, outcome, is_agreeable);
   const bool cannot_improve = outcome.clear && aim_.must_improve;
   if (acceptance.fraction > 0 || !is_first || cannot_improve) return acceptance;
