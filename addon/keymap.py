@@ -7,7 +7,7 @@ import bpy
 KEYS = {"stiv.move": "M", "stiv.rotate": "R", "stiv.scale": "E", "stiv.check": "C"}
 PIE_OPERATOR, PIE_MENU, PIE_KEY = "wm.call_menu_pie", "STIV_MT_pie", "Q"
 # Keymaps of modes precede that of the 3D view.
-KEYMAPS = ("Object Mode", "Mesh", "Lattice", "Curve")  # the last one also of NURBS surfaces
+KEYMAPS = ("Object Mode", "Mesh", "Lattice", "Curve", "Pose")  # the last one also of NURBS surfaces
 
 _added: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 

@@ -13,7 +13,7 @@ from .operators.repair.guard_revert import STIV_OT_guard_revert
 from .operators.repair.repair import STIV_OT_repair
 
 # Object > Transform; the menus Transform of all edit modes are one menu.
-MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform")
+MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform", "VIEW3D_MT_transform_armature")
 # Blender's search (F3) finds an operator only through a menu.
 TOOL_MENUS = (
     "VIEW3D_MT_object",
@@ -24,6 +24,8 @@ TOOL_MENUS = (
     "VIEW3D_MT_edit_curve",
     "VIEW3D_MT_edit_curve_context_menu",
     "VIEW3D_MT_edit_surface",
+    "VIEW3D_MT_pose",
+    "VIEW3D_MT_pose_context_menu",
 )
 TOOLS = (
     *TRANSFORMS,

@@ -10,6 +10,7 @@ import bmesh
 import bpy
 import numpy as np
 
+from .. import stiv_blender
 from ..transform.frame import Frame, pivot_of
 from ..transform.view import Vector, View
 from .orientations import axes_of
@@ -74,7 +75,9 @@ def moved_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 def selected_elements(obj: bpy.types.Object) -> list[Vector]:
     """Selected vertices or points of an object in Edit Mode, in world space."""
-    if obj.type == "MESH":
+    if obj.type == "ARMATURE":
+        positions = [bone.head[:] for bone in stiv_blender.moved_bones(obj)]
+    elif obj.type == "MESH":
         positions = [vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
     elif obj.type in {"CURVE", "SURFACE"}:
         positions = [position for spline in obj.data.splines for position in _selected_on(spline)]
@@ -104,6 +107,9 @@ def active_point(context: bpy.types.Context) -> Vector | None:
         return None
     if context.mode == "OBJECT":
         return np.array(obj.matrix_world.translation)
+    if context.mode == "POSE":
+        bone = context.active_pose_bone
+        return None if bone is None else np.array(obj.matrix_world @ bone.head)
     if obj.type != "MESH":
         return None
     active = bmesh.from_edit_mesh(obj.data).select_history.active

@@ -26,8 +26,16 @@ def is_supported(name: str) -> bool:
 
 
 def active_axes(context: bpy.types.Context) -> Vector:
-    """The axes of the active object."""
-    return _object_axes(context.active_object)
+    """The axes of the active object, or of the active bone in Pose Mode."""
+    return (
+        _bone_axes(context, context.active_pose_bone) if context.mode == "POSE" else _object_axes(context.active_object)
+    )
+
+
+def _bone_axes(context: bpy.types.Context, bone: bpy.types.PoseBone | None) -> Vector:
+    if bone is None:
+        return _object_axes(context.active_object)
+    return orthonormal(np.array(bone.id_data.matrix_world @ bone.matrix)[:3, :3])
 
 
 def _object_axes(obj: bpy.types.Object | None) -> Vector:
@@ -44,6 +52,8 @@ def _cursor(context: bpy.types.Context) -> Vector:
 
 
 def _parent(context: bpy.types.Context) -> Vector:
+    if context.mode == "POSE":
+        return _bone_axes(context, getattr(context.active_pose_bone, "parent", None))
     return _object_axes(getattr(context.active_object, "parent", None))
 
 

@@ -153,7 +153,7 @@ def read_proportional(context: bpy.types.Context) -> Proportional:
     """Proportional editing by the settings of the scene; available in Edit Mode."""
     tools = context.scene.tool_settings
     return Proportional(
-        context.mode != "OBJECT",
+        context.mode.startswith("EDIT"),
         tools.use_proportional_edit,
         max(getattr(tools, _size_property(tools)), 1e-6),
         tools.proportional_edit_falloff,
@@ -182,11 +182,13 @@ def unsupported_settings(context: bpy.types.Context) -> list[str]:
     tools = context.scene.tool_settings
     if context.mode == "OBJECT" and tools.use_proportional_edit_objects:
         notes.append(translate("proportional editing of objects is not supported"))
-    if context.mode != "OBJECT" and tools.use_proportional_edit:
+    if context.mode.startswith("EDIT") and tools.use_proportional_edit:
         if tools.use_proportional_projected:
             notes.append(translate("projected proportional editing is not supported; using distance in space"))
         if tools.transform_pivot_point == "INDIVIDUAL_ORIGINS":
             notes.append(translate("Individual Origins are not supported with proportional editing; using the median"))
     if context.mode != "OBJECT" and tools.use_snap and tools.use_snap_align_rotation:
         notes.append(translate("aligning rotation to the snap target is not supported"))
+    if context.mode == "POSE" and any(rig.pose.use_mirror_x or rig.pose.use_auto_ik for rig in context.objects_in_mode):
+        notes.append(translate("X-Axis Mirror and Auto IK are not supported"))
     return notes

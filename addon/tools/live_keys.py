@@ -15,6 +15,7 @@ KEYMAPS = (
     "Mesh",
     "Lattice",
     "Curve",
+    "Pose",
     "3D View",
     "3D View Tool: Move",
     "3D View Tool: Rotate",

@@ -7,7 +7,7 @@ import bpy
 
 from ..operators.transform.start_drag import BLENDER_OPERATORS
 
-TOOL_MODES = ("OBJECT", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE")
+TOOL_MODES = ("OBJECT", "POSE", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE")
 KINDS = ("move", "rotate", "scale")
 DESCRIPTIONS = {
     "move": "Move the selection; surfaces collide instead of intersecting",

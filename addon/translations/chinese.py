@@ -411,6 +411,7 @@ MESSAGES = {
     "Weights": "权重",
     "Weld": "焊接",
     "Which side moves out of the way": "哪一侧让开",
+    "X-Axis Mirror and Auto IK are not supported": "不支持 X 轴镜像和自动 IK",
     "Yields": "退让",
     "Yields as a rigid object, as the scene's Response lets it": "作为刚体退让，取决于场景的响应方式",
     "Yields with the vertices of its cage or the points of its lattice": "以笼的顶点或晶格的点退让",

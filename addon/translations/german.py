@@ -411,6 +411,7 @@ MESSAGES = {
     "Weights": "Gewichte",
     "Weld": "Verschmelzen",
     "Which side moves out of the way": "Welche Seite aus dem Weg geht",
+    "X-Axis Mirror and Auto IK are not supported": "X-Achsen-Spiegelung und Auto-IK werden nicht unterstützt",
     "Yields": "Weicht aus",
     "Yields as a rigid object, as the scene's Response lets it": "Weicht als starres Objekt aus, wie das Verhalten der Szene es zulässt",
     "Yields with the vertices of its cage or the points of its lattice": "Weicht mit den Vertices des Käfigs oder den Punkten des Gitters aus",

@@ -411,6 +411,7 @@ MESSAGES = {
     "Weights": "ウェイト",
     "Weld": "溶接",
     "Which side moves out of the way": "どちらの側が避けるか",
+    "X-Axis Mirror and Auto IK are not supported": "X軸ミラーと自動IKはサポートされていません",
     "Yields": "避ける側",
     "Yields as a rigid object, as the scene's Response lets it": "シーンの応答に従い剛体として避けます",
     "Yields with the vertices of its cage or the points of its lattice": "ケージの頂点またはラティスのポイントで避けます",

@@ -411,6 +411,7 @@ MESSAGES = {
     "Weights": "웨이트",
     "Weld": "용접",
     "Which side moves out of the way": "비키는 쪽",
+    "X-Axis Mirror and Auto IK are not supported": "X축 미러와 자동 IK는 지원되지 않음",
     "Yields": "비킴",
     "Yields as a rigid object, as the scene's Response lets it": "씬의 반응 설정에 따라 강체로 비킴",
     "Yields with the vertices of its cage or the points of its lattice": "케이지의 버텍스나 래티스의 점으로 비킴",

@@ -44,7 +44,7 @@ from .move import STIV_OT_move
 from .options import changed_options, make_influence
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
-from .transform_operator import TransformOperator, apply_values, begin_drag, make_motion
+from .transform_operator import TransformOperator, apply_values, begin_drag, insert_keyframes, make_motion
 
 TICK = 1.0 / 60.0  # least seconds between two solves
 NO_POINTER = Pointer.at((0.0, 0.0))
@@ -228,6 +228,7 @@ class DragOperator(Mixin):
         )
         edit, result, report = drag.edit, drag.result, drag.report
         if edit is not None and result is not None and report is not None:
+            insert_keyframes(context, edit)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)

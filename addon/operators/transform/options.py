@@ -82,7 +82,7 @@ class TransformOptions:
         if name in ("responders", "response"):
             return self.request(context.scene).interference and (name == "responders" or context.mode == "OBJECT")
         if name.startswith("proportional"):
-            return context.mode != "OBJECT" and (name == "proportional" or self.proportional)
+            return context.mode.startswith("EDIT") and (name == "proportional" or self.proportional)
         return True
 
     def influence(self) -> stiv_blender.Influence | None:

@@ -36,12 +36,18 @@ class StartsDrag(NeedsNativeModule):
         release = event.type if confirms and event.type in MOUSE_BUTTONS else ""
         try:
             if may_collide(context):
-                bpy.ops.stiv.drag("INVOKE_DEFAULT", kind=self.kind, axis=self.axis, plane=self.plane, release=release)
+                kind = self._possible_kind(context)
+                bpy.ops.stiv.drag("INVOKE_DEFAULT", kind=kind, axis=self.axis, plane=self.plane, release=release)
             else:
                 self._start_blender(release)
         except RuntimeError as error:
             return report_raised(self, error)
         return {"CANCELLED"}
+
+    def _possible_kind(self, context: bpy.types.Context) -> str:
+        """Rotate for connected bones, which cannot move, as Blender does."""
+        rotates = context.mode == "POSE" and self.kind == "move" and not stiv_blender.has_movable_bones(context)
+        return "rotate" if rotates else str(self.kind)
 
     def _start_blender(self, release: str) -> None:
         start = getattr(bpy.ops.transform, BLENDER_OPERATORS[self.kind])
@@ -79,6 +85,8 @@ def may_collide(context: bpy.types.Context) -> bool:
 
     Transforms of origins, or of parents without their children, are Blender's own.
     """
+    if context.mode == "POSE":
+        return stiv_blender.poses_surface(context)
     if context.mode != "OBJECT":
         return True
     if any(getattr(context.scene.tool_settings, name) for name in ONLY_BLENDER):

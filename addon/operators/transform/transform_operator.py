@@ -26,7 +26,7 @@ from . import drag_results, redo_limit
 from .constraint import Constraint, free_directions
 from .options import TransformOptions
 
-MODES = {"OBJECT", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
+MODES = {"OBJECT", "POSE", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
 
 
 class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
@@ -36,7 +36,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
-        """In Object Mode, and in Edit Mode of a mesh, a lattice or a curve, while no edit runs."""
+        """In Object Mode, Pose Mode, and Edit Mode of a mesh, a lattice or a curve, while no edit runs."""
         if obstacle := running.obstacle():
             cls.poll_message_set(obstacle)
         return context.mode in MODES and not obstacle
@@ -120,6 +120,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
     ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
         result = self._run(context, steps)
         report = edit.write()
+        insert_keyframes(context, edit)
         return report.result or result, report
 
     def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
@@ -139,6 +140,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         edit, result = yield from apply_values(self, context, request, self.requested(), self._motion)
         try:
             report = edit.write()
+            insert_keyframes(context, edit)
         except Exception as error:
             restore_after_error(edit, error)
             raise
@@ -156,9 +158,16 @@ def _reused(
         return None
     report = edit.write()
     if report.passed:
+        insert_keyframes(bpy.context, edit)
         return dragged.result, report
     edit.restore()
     return None
+
+
+def insert_keyframes(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
+    """Insert keyframes for posed bones if Auto Keying is on."""
+    if context.mode == "POSE" and context.scene.tool_settings.use_keyframe_insert_auto:
+        edit.insert_keyframes(context)
 
 
 def make_motion(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edits, tests and repairs scenes in Blender; the only part of STIV that imports `bpy`."""
 
+from stiv.blender.controls.bone_set import has_movable_bones, poses_surface
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Alignment, Influence, Motion
@@ -40,6 +41,7 @@ from stiv.blender.repair.separation import SeparationReport, separate, separate_
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
+from stiv.blender.scene.pose_bones import moved_bones
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
 from stiv.blender.scene.stack_twin import kept_twins
@@ -127,14 +129,17 @@ __all__ = [
     "follow",
     "guard_result",
     "guard_result_steps",
+    "has_movable_bones",
     "intersection_text",
     "kept_twins",
     "may_have_surface",
     "morph",
     "movable_keys",
+    "moved_bones",
     "nearest_pair",
     "object_pair",
     "place",
+    "poses_surface",
     "push_apart",
     "read_snap_targets",
     "read_state",

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.bone_set import make_bone_set
 from stiv.blender.controls.cage import make_cage_set
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.curve_points import make_curve_set
@@ -45,6 +46,10 @@ def make_control_sets(
     kind: str,
 ) -> tuple[list[ControlSet], list[RigidGroup]]:
     """Make all control sets and rigid groups. Raises InputError for what cannot be moved, with nothing changed."""
+    if any(each.role == "bones" for each in participants):
+        posed = make_bone_set(context, participants, meshes, settings, kind)
+        _check_surface(posed, meshes)
+        return [posed], []
     participants = drop_locked(participants, kind)
     groups = find_rigid_groups(participants, evaluations_of(meshes), kind)
     by_lattice = {

@@ -15,13 +15,14 @@ from stiv.seams import Seams
 if TYPE_CHECKING:
     from stiv.blender.controls.observed_stack import ObservedStack
     from stiv.blender.controls.placed_stack import PlacedStack
+    from stiv.blender.controls.posed_surface import PosedSurface
 
 
 @dataclass(frozen=True)
 class Participant:
     """An object with controls; the goal moves it if it is `selected`.
 
-    Its role is "cage", "soft", "lattice", "curve" or "rigid".
+    Its role is "cage", "soft", "lattice", "curve", "bones" or "rigid".
     """
 
     reference: ObjectReference
@@ -79,7 +80,7 @@ class ControlSet:
 
     Attributes:
         names: the objects that are written.
-        role: "cage", "soft", "lattice", "curve" or "rigid".
+        role: "cage", "soft", "lattice", "curve", "bones" or "rigid".
         surfaces: indices of the visible meshes that the controls move, in the order of the deformation.
         deformation: from the controls to the world positions of these meshes, without duplicates on seams.
         controls: (m, 3) at the start.
@@ -95,6 +96,7 @@ class ControlSet:
         kept: controls that are left of mirrored groups, by their former numbers, (m,); None without mirrored editing.
         observed: the stack of modifiers that Blender evaluates during the edit; None if all are known.
         placed: the same for objects that move as a whole; None if they keep their shape.
+        posed: the same for bones; None for all other controls.
     """
 
     names: tuple[str, ...]
@@ -114,6 +116,7 @@ class ControlSet:
     kept: Indices | None = None
     observed: "ObservedStack | None" = None
     placed: "PlacedStack | None" = None
+    posed: "PosedSurface | None" = None
 
     def values_at_controls(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values at the controls, (m, ...), from values at all vertices of the object, (n, ...)."""

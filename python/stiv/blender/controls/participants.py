@@ -7,6 +7,7 @@ import bpy
 
 from stiv import InputError
 from stiv.blender.controls.automatic_responders import find_automatic_responders
+from stiv.blender.controls.bone_set import find_posed_rigs
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_active, is_visible
 from stiv.blender.scene.references import ObjectReference, type_name
@@ -23,6 +24,8 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     Raises InputError for unsupported modes and unknown names, and if nothing movable is selected.
     """
     _check_names(context, settings)
+    if context.mode == "POSE":
+        return find_posed_rigs(context)
     objects = [
         ob for ob in context.view_layer.objects if is_visible(context, ob) and settings.cage_of(ob.name) == ob.name
     ]

@@ -33,7 +33,9 @@ def assemble_with_controls(
             mobility[index] = "rigid" if control_set.role == "rigid" and control_set.placed is None else "deformable"
         for index, each in zip(control_set.surfaces, control_set.seams, strict=False):
             seams[index] = each
-    return assemble(meshes, mobility, together, settings.ignored_pairs, seams)
+    posed = {meshes[index].owner.name for each in control_sets if each.role == "bones" for index in each.surfaces}
+    ignored = (*settings.ignored_pairs, *((name, name) for name in sorted(posed)))  # skin folds at joints
+    return assemble(meshes, mobility, together, ignored, seams)
 
 
 def make_session(

@@ -71,7 +71,8 @@ class EditSolver:
     def _renew_jacobians(self) -> None:
         """Renew the Jacobians of observed stacks sometimes, and after a blocked call, at the accepted state."""
         self._calls += 1
-        observed = [each for control_set in self.control_sets for each in (control_set.observed, control_set.placed)]
+        sets = self.control_sets
+        observed = [each for made in sets for each in (made.observed, made.placed, made.posed)]
         stacks = [each for each in observed if each is not None]
         if stacks and (self._blocked or self._calls % CALLS == 0):
             self.deformation.surface(self.session.controls)

@@ -14,6 +14,7 @@ import bpy
 
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.rig_followers import find_driver_targets
 
 NAME = "STIV Evaluation"
 COPIED_TYPES = ("CURVE", "SURFACE", "FONT", "META")  # their data holds the resolution
@@ -97,13 +98,20 @@ class EvaluationCopies:
 
     def _replace_references(self, twin: bpy.types.Object) -> None:
         """Replace the references of a copy by references to copies."""
-        for owner in (*twin.modifiers, *twin.constraints):
+        bones = [] if twin.pose is None else twin.pose.bones
+        for owner in (*twin.modifiers, *twin.constraints, *(each for bone in bones for each in bone.constraints)):
             for item in owner.bl_rna.properties:
                 if item.type == "POINTER" and not item.is_readonly:
                     self._replace_reference(owner, item.identifier, getattr(owner, item.identifier), setattr)
             if isinstance(owner, bpy.types.NodesModifier):
                 for key, value in list(owner.items()):
                     self._replace_reference(owner, key, value, lambda where, name, new: where.__setitem__(name, new))
+            if isinstance(owner, bpy.types.ArmatureConstraint):
+                for target in owner.targets:
+                    self._replace_reference(target, "target", target.target, setattr)
+        copied = [] if twin.data not in self._made else [twin.data, getattr(twin.data, "shape_keys", None)]
+        for target in (each for owner in (twin, *copied) for each in find_driver_targets(owner)):
+            self._replace_reference(target, "id", target.id, setattr)
         if twin.parent is not None and twin.parent.session_uid in self._copies:
             twin.parent = self._copies[twin.parent.session_uid]
         if twin.instance_collection is not None:

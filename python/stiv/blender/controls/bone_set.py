@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the control set of selected pose bones: their free channels move all meshes that follow the rigs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from stiv import InputError
+from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels
+from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.motion import Motion
+from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
+from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluations import SURFACE_TYPES, is_visible
+from stiv.blender.scene.pose_bones import is_hidden, moved_bones, selected_bones
+from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.rig_followers import find_driver_cycle, find_followers
+from stiv.blender.settings import EditSettings
+
+CHANNELS = {"move": (LOCATION,), "rotate": (ROTATION,), "scale": (SCALE,)}  # that respond
+MOVED = {"move": (LOCATION,), "rotate": (LOCATION, ROTATION), "scale": (LOCATION, SCALE)}  # by the goal
+
+
+def poses_surface(context: bpy.types.Context) -> bool:
+    """Do the armatures in Pose Mode move a visible surface?"""
+    names = find_followers(context.scene, {rig.name for rig in context.objects_in_mode})
+    return any(
+        ob.type in SURFACE_TYPES and ob.name in names and is_visible(context, ob) for ob in context.scene.objects
+    )
+
+
+def has_movable_bones(context: bpy.types.Context) -> bool:
+    """Is a selected bone free to move, rather than connected to its parent?"""
+    bones = [bone for rig in context.objects_in_mode for bone in moved_bones(rig)]
+    return any(bone.parent is None or not bone.bone.use_connect for bone in bones)
+
+
+def find_posed_rigs(context: bpy.types.Context) -> list[Participant]:
+    """The armatures in Pose Mode with selected bones. Raises InputError by name."""
+    rigs = [ob for ob in context.objects_in_mode if selected_bones(ob)]
+    for rig in rigs:
+        check_rig(rig)
+    if not rigs:
+        raise InputError("no bone is selected; select one")
+    return [Participant(ObjectReference.of(rig), "bones", True) for rig in rigs]
+
+
+def make_bone_set(
+    context: bpy.types.Context,
+    participants: Sequence[Participant],
+    meshes: Sequence[VisibleMesh],
+    settings: EditSettings,
+    kind: str,
+) -> ControlSet:
+    """Make the control set of the selected bones of all rigs. Raises InputError by name."""
+    rigs = [each.reference.find() for each in participants]
+    individual = context.scene.tool_settings.transform_pivot_point == "INDIVIDUAL_ORIGINS"
+    bones = []
+    for rig in rigs:
+        moved = _moved_bones(rig, kind, individual)
+        bones += moved
+        if settings.responders != "selected":
+            bones += _other_bones(rig, {each.name for each in moved})
+    followers = find_followers(context.scene, {rig.name for rig in rigs})
+    surfaces = tuple(index for index, mesh in enumerate(meshes) if mesh.owner.name in followers)
+    if not surfaces:
+        raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
+    posed = PosedSurface(bones, frozenset(followers), [meshes[index] for index in surfaces])
+    scalars = BoneScalars(tuple(bones))
+    weights = scalars.of([_weights(bone, kind, settings) for bone in bones])
+    return ControlSet(
+        tuple(rig.name for rig in rigs),
+        "bones",
+        surfaces,
+        posed.deformation,
+        posed.deformation.controls(posed.start),
+        weights,
+        weights,
+        None,
+        BoneGoal(scalars),
+        BoneWriter(scalars, MOVED[kind]),
+        posed=posed,
+    )
+
+
+def check_rig(rig: bpy.types.Object) -> None:
+    """Refuse a rig whose pose cannot be changed, or depends on itself. Raises InputError by name."""
+    if not rig.is_editable or (rig.override_library is not None and rig.override_library.is_system_override):
+        raise InputError(f"{rig.name}: it is linked; make a library override of it")
+    if rig.data.pose_position == "REST":
+        raise InputError(f"{rig.name}: it shows its rest position; choose Pose Position")
+    if driven := find_driver_cycle(rig):
+        raise InputError(f"{rig.name}: a driver of {driven} depends on itself; remove it")
+
+
+def _moved_bones(rig: bpy.types.Object, kind: str, individual: bool) -> list[BoneChannels]:
+    """The bones that the goal moves, as Blender chooses them. Raises InputError if all their channels are locked."""
+    selected = moved_bones(rig, individual and kind == "rotate")
+    bones = [BoneChannels.read(rig, bone, True).limited_to(*MOVED[kind]) for bone in selected]
+    able = [bone for bone in bones if len(bone.limited_to(*CHANNELS[kind]).free)]
+    if bones and not able:
+        raise InputError(_locked_message(rig, rig.pose.bones[bones[0].name], kind))
+    return able
+
+
+def _locked_message(rig: bpy.types.Object, bone: bpy.types.PoseBone, kind: str) -> str:
+    if kind == "move" and bone.parent is not None and bone.bone.use_connect:
+        return f"{rig.name}: {bone.name} is connected to its parent; rotate it"
+    if kind == "move":
+        return f"{rig.name}: the location of {bone.name} is locked; unlock it"
+    if kind == "rotate":
+        return f"{rig.name}: the rotation of {bone.name} is locked; unlock it"
+    return f"{rig.name}: the scale of {bone.name} is locked; unlock it"
+
+
+def _other_bones(rig: bpy.types.Object, moved: set[str]) -> list[BoneChannels]:
+    """The other visible bones that can rotate."""
+    others = [bone for bone in rig.pose.bones if bone.name not in moved and not is_hidden(bone)]
+    found = [BoneChannels.read(rig, bone, False).limited_to(ROTATION) for bone in others]
+    return [bone for bone in found if len(bone.free)]
+
+
+def _weights(bone: BoneChannels, kind: str, settings: EditSettings) -> Floats:
+    """Response weights of the channels, (10,): channels of another kind follow the goal exactly."""
+    weights = np.zeros(10)
+    for channels in CHANNELS[kind] if bone.selected else (ROTATION,):
+        weights[channels] = settings.response_weight(bone.selected)
+    return weights
+
+
+@dataclass(frozen=True)
+class BoneGoal:
+    """How the free channels of bones follow a motion of the selection."""
+
+    scalars: BoneScalars
+
+    @property
+    def moves(self) -> bool:
+        """Is a bone selected?"""
+        return any(bone.selected for bone in self.scalars.bones)
+
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of the controls, (k, 3)."""
+        found = [
+            bone.goal(before, motion) if bone.selected else bone.start
+            for bone, before in self.scalars.channels(last[:, 0])
+        ]
+        return as_controls(self.scalars.of(found))
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """Nothing depends on the motion."""
+        return ()
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """The control set itself."""
+        return control_set
+
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """0: the rotation of a bone is part of its goal."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class BoneWriter:
+    """Writes the free channels of bones. `keyed`: those of the bones that the goal moves, by range."""
+
+    scalars: BoneScalars
+    keyed: tuple[slice, ...]
+
+    def write(self, controls: Floats) -> None:
+        """Write controls, (k, 3). Raises SceneChangedError if a bone is gone."""
+        for bone, channels in self.scalars.channels(controls[:, 0]):
+            bone.write(channels, bone.find())
+
+    def restore(self) -> None:
+        """Restore the start to the last bit."""
+        self.write(as_controls(self.scalars.start))
+
+    def insert_keyframes(self, context: bpy.types.Context) -> None:
+        """Insert keyframes for the bones that the goal moves, and for others that have changed."""
+        options = keyframe_options(context)
+        for each in self.scalars.bones:
+            bone = each.find()
+            for channels, name, has_changed in each.properties(bone):
+                if has_changed or (each.selected and channels == self.keyed[-1]):
+                    bone.keyframe_insert(name, group=bone.name, options=options)
+
+
+def keyframe_options(context: bpy.types.Context) -> set[str]:
+    """How Auto Keying inserts keyframes, by the preferences and tool settings."""
+    edit, tools = context.preferences.edit, context.scene.tool_settings
+    chosen = {
+        "INSERTKEY_NEEDED": getattr(edit, "use_auto_keyframe_insert_needed", False),
+        "INSERTKEY_AVAILABLE": getattr(edit, "use_keyframe_insert_available", False),
+        "INSERTKEY_VISUAL": edit.use_visual_keying,
+        "INSERTKEY_REPLACE": tools.auto_keying_mode == "REPLACE_KEYS",
+        "INSERTKEY_CYCLE_AWARE": tools.use_keyframe_cycle_aware,
+    }
+    return {name for name, is_on in chosen.items() if is_on}
+
+
+def as_controls(scalars: Floats) -> Floats:
+    """Controls, (k, 3), of scalars, (k,)."""
+    controls = np.zeros((len(scalars), 3))
+    controls[:, 0] = scalars
+    return controls

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surface of all meshes that rigs move, which Blender evaluates on hidden copies of rigs and meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+import stiv
+from stiv.blender.controls.bone_channels import BoneChannels
+from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
+from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluation_copies import EvaluationCopies
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
+from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
+
+STEP = 0.01  # of the differences for a Jacobian: radians, factors, and diagonals of the surface
+
+
+class PosedSurface:
+    """The surface of meshes from the free channels of bones.
+
+    Attributes:
+        deformation: infeasible where the topology of a mesh differs from that at the start.
+        start: scalars at the start, (k,).
+    """
+
+    def __init__(self, bones: Sequence[BoneChannels], followers: frozenset[str], meshes: Sequence[VisibleMesh]) -> None:
+        """followers: names of all objects that move with the rigs. meshes: those of them that are visible."""
+        self._poses = _Poses(BoneScalars(tuple(bones)), followers, meshes)
+        scalars = self._poses.scalars
+        self.start = scalars.start
+        with kept_twins():
+            self.deformation = stiv.scalars(
+                self._poses.evaluate,
+                self._poses.jacobian(),
+                lower=scalars.of([each.lower for each in bones]),
+                upper=scalars.of([each.upper for each in bones]),
+                longest_step=scalars.of([each.longest_steps for each in bones]),
+            )
+
+    def renew_jacobian(self) -> None:
+        """Measure the Jacobian at the last evaluation."""
+        with kept_twins():
+            self.deformation.set_jacobian(self._poses.jacobian())
+
+
+@dataclass(frozen=True)
+class BoneScalars:
+    """The free channels of bones as scalars, (k,)."""
+
+    bones: tuple[BoneChannels, ...]
+
+    @property
+    def start(self) -> Floats:
+        """Scalars at the start."""
+        return self.of([bone.start for bone in self.bones])
+
+    def of(self, channels: Sequence[Floats]) -> Floats:
+        """The scalars of the channels of each bone, (10,)."""
+        free = [values[bone.free] for bone, values in zip(self.bones, channels, strict=True)]
+        return np.concatenate([np.empty(0), *free])
+
+    def channels(self, scalars: Floats) -> Iterator[tuple[BoneChannels, Floats]]:
+        """Each bone with its channels, (10,)."""
+        first = 0
+        for bone in self.bones:
+            values = bone.start.copy()
+            values[bone.free] = scalars[first : first + len(bone.free)]
+            first += len(bone.free)
+            yield bone, values
+
+
+class _Poses:
+    """Apart from `PosedSurface`, as the core holds `evaluate`: no cycle of references."""
+
+    def __init__(self, scalars: BoneScalars, followers: frozenset[str], meshes: Sequence[VisibleMesh]) -> None:
+        self.scalars, self._followers = scalars, followers
+        self._owners = [(each.read_from, each.owner) for each in meshes]
+        self._counts = [len(each.local) for each in meshes]
+        self._last = scalars.start
+        self._size = float(np.linalg.norm(np.ptp(np.concatenate([each.world() for each in meshes]), axis=0))) or 1.0
+        with kept_twins():
+            self._start = self._observe(scalars.start)
+
+    def evaluate(self, values: Floats) -> Floats | None:
+        """World positions, (n, 3), at scalars, (k,); None if the topology of a mesh differs."""
+        with kept_twins():
+            found = self._observe(values)
+        if not all(mesh.is_like(start) for mesh, start in zip(found, self._start, strict=True)):
+            return None
+        self._last = values
+        return np.concatenate([each.world() for each in found])
+
+    def jacobian(self) -> Floats:
+        """One-sided differences at the last evaluation, (n, 3, k); 0 where the topology changes."""
+        last = self._last.copy()
+        here = self.evaluate(last)
+        result = np.zeros((sum(self._counts), 3, len(last)))
+        for k, step in enumerate(self._steps):
+            moved = last.copy()
+            moved[k] += step
+            there = self.evaluate(moved)
+            if here is not None and there is not None:
+                result[:, :, k] = (there - here) / step
+        self._last = last
+        return result
+
+    @property
+    def _steps(self) -> Floats:
+        lengths = np.full(10, STEP)
+        lengths[:3] = STEP * self._size
+        return self.scalars.of([lengths] * len(self.scalars.bones))
+
+    def _observe(self, values: Floats) -> list[_PosedMesh]:
+        """All meshes at scalars, (k,), in their order."""
+        shown: dict[tuple[str, ObjectReference], list[_PosedMesh]] = {}
+        for evaluation in dict.fromkeys(read_from for read_from, _ in self._owners):
+            twin = kept_twin((self, evaluation), lambda e=evaluation: self._make_twin(e))  # type: ignore[misc]
+            for owner, mesh in twin.evaluate(self.scalars.channels(values)):
+                shown.setdefault((evaluation, owner), []).append(mesh)
+        waiting = {key: iter(found) for key, found in shown.items()}
+        missing = _PosedMesh.missing()
+        return [next(waiting.get(key, iter(())), missing) for key in self._owners]
+
+    def _make_twin(self, evaluation: str) -> RigTwin:
+        rigs = [each.rig for each in self.scalars.bones]
+        return RigTwin(rigs, self._followers, {owner for _, owner in self._owners}, evaluation)
+
+
+@dataclass(frozen=True)
+class _PosedMesh:
+    """A mesh and its matrix in a pose."""
+
+    stack: EvaluatedStack
+    matrix: Floats
+
+    @classmethod
+    def missing(cls) -> _PosedMesh:
+        """A mesh that is not shown."""
+        none = np.empty(0, np.int32)
+        return cls(EvaluatedStack(np.empty((0, 3), np.float32), none, none), np.eye(4))
+
+    def is_like(self, start: _PosedMesh) -> bool:
+        """Has it the topology of the start, and finite positions?"""
+        points = self.stack.positions
+        return self.stack.has_topology_of(start.stack) and bool(np.isfinite(points).all() and len(points) > 0)
+
+    def world(self) -> Floats:
+        """World positions, (n, 3)."""
+        return transform_points(self.matrix, self.stack.positions)
+
+
+class RigTwin:
+    """Copies of rigs and of all objects that move with them, in a scene of their own."""
+
+    def __init__(
+        self,
+        rigs: Sequence[ObjectReference],
+        followers: frozenset[str],
+        shown: set[ObjectReference],
+        evaluation: str,
+    ) -> None:
+        """shown: the owners of the meshes that are read."""
+        scene = bpy.context.scene
+        objects = [ob for ob in scene.objects if ob.name in followers]
+        own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
+        wanted = {each.session_uid for each in (*shown, *rigs)}
+        self._copies = EvaluationCopies(scene, evaluation, own_data)
+        try:
+            self._copies.fill(objects, lambda ob: ob.session_uid in wanted)
+            self._rigs = {each.session_uid: self._copies.copy_of(each) for each in rigs}
+            self._shown = {each.session_uid for each in shown}
+            for ob in objects:
+                self._stop_animation(self._copies.copy_of(ObjectReference.of(ob)), ob)
+        except BaseException:
+            self._copies.remove()
+            raise
+
+    def evaluate(self, pose: Iterator[tuple[BoneChannels, Floats]]) -> Iterator[tuple[ObjectReference, _PosedMesh]]:
+        """The meshes in a pose, with their owners."""
+        for bone, channels in pose:
+            bone.write(channels, self._rigs[bone.rig.session_uid].pose.bones[bone.name])
+        graph = self._copies.depsgraph
+        graph.update()
+        for instance in graph.object_instances:
+            if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
+                continue
+            copy = instance.parent.original if instance.is_instance else instance.object.original
+            owner = self._copies.owner(copy)
+            if owner.session_uid in self._shown:
+                with evaluated_mesh(instance.object) as mesh:
+                    stack = EvaluatedStack(read_positions(mesh), *read_corners(mesh))
+                yield ObjectReference.of(owner), _PosedMesh(stack, as_matrix(instance.matrix_world))
+
+    def remove(self) -> None:
+        """Remove the copies and their scene."""
+        self._copies.remove()
+
+    @staticmethod
+    def _stop_animation(copy: bpy.types.Object, ob: bpy.types.Object) -> None:
+        """Keep the present values of a copy: a pose without keyframes is not that of the action."""
+        for owner in (copy, *(() if copy.data == ob.data else (copy.data, getattr(copy.data, "shape_keys", None)))):
+            animation = getattr(owner, "animation_data", None)
+            if animation is not None:
+                animation.action, animation.use_nla = None, False
+
+
+def has_drivers(owner: bpy.types.ID | None) -> bool:
+    """Has an ID drivers?"""
+    animation = getattr(owner, "animation_data", None)
+    return animation is not None and len(animation.drivers) > 0

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pose bones as controls: they stop at contact within locks and limits, as Blender evaluates their meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from building import add_cube, add_modifier, evaluated, shift, stretch, turn
+from characters import make_character, select_bones
+from oracles import rational
+
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, Motion, WriteReport
+
+SETTINGS = EditSettings(separation=0.01)
+SHOULDER = (0.5, 0, 1.35)
+
+
+def apply(kind: str, matrix: Any, settings: EditSettings = SETTINGS, **motion: Any) -> tuple[Any, WriteReport, Any]:
+    """An edit by a matrix: the result, the report, and the edit."""
+    edit = BlenderEdit.begin(bpy.context, settings, kind)
+    result = edit.apply(Motion(matrix, motion.pop("pivot", np.zeros(3)), **motion))
+    return result, edit.write(), edit
+
+
+def triangles(ob: Any) -> np.ndarray:
+    """Triangles of Blender's evaluation, (t, 3, 3)."""
+    points = evaluated(ob)
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = shown.to_mesh()
+    mesh.calc_loop_triangles()
+    corners = np.array([list(each.vertices) for each in mesh.loop_triangles])
+    shown.to_mesh_clear()
+    return points[corners]
+
+
+def intersecting(first: Any, second: Any) -> int:
+    """Number of pairs of triangles of two objects that intersect, by exact rational arithmetic."""
+    a, b = triangles(first), triangles(second)
+    overlap = (a.min(1)[:, None] <= b.max(1)[None]).all(2) & (b.min(1)[None] <= a.max(1)[:, None]).all(2)
+    pairs = np.argwhere(overlap).tolist()
+    return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.concatenate([a[i], b[j]])) for i, j in pairs)
+
+
+def box_below_hand(voxel: float = 0.1, **properties: Any) -> tuple[Any, Any, Any]:
+    """A character with a box below its left forearm: rig, body and box."""
+    rig, body = make_character(voxel)
+    box = add_cube("Box", (1.3, 0, 0.6), 0.3)
+    bone = rig.pose.bones["Arm.L"]
+    for name, value in properties.items():
+        setattr(bone, name, value)
+    select_bones(rig, "Arm.L")
+    return rig, body, box
+
+
+def lowest(body: Any) -> float:
+    """Height of the left forearm above the box."""
+    points = evaluated(body)
+    return float(points[(points[:, 0] > 1.05) & (np.abs(points[:, 1]) < 0.3), 2].min()) - 0.9
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "ZXY", "AXIS_ANGLE"])
+def test_a_rotated_arm_stops_at_a_box_in_each_rotation_mode(mode: str) -> None:
+    _, body, box = box_below_hand(rotation_mode=mode)
+    result, report, _ = apply("rotate", turn(np.radians(60), "Y", SHOULDER))
+    assert result.status == "corrected" and report.passed
+    assert intersecting(body, box) == 0 and 0.005 < lowest(body) < 0.03
+    back, report, _ = apply("rotate", turn(np.radians(-20), "Y", SHOULDER))
+    assert back.status == "reached" and report.passed
+
+
+def test_goals_are_those_of_blender() -> None:
+    """Without contact, bones end where Blender's own operators put them."""
+    rig, _, box = box_below_hand()
+    bpy.data.objects.remove(box)
+    matrices: list[list[Any]] = []
+    for own in (False, True):
+        for bone in rig.pose.bones:
+            bone.matrix_basis.identity()
+            bone.location, bone.rotation_quaternion, bone.scale = (0, 0, 0), (1, 0, 0, 0), (1, 1, 1)
+        select_bones(rig, "Arm.L")
+        head = np.array(rig.pose.bones["Arm.L"].head)
+        found = []
+        for kind, matrix in (
+            ("move", shift(0.1, 0.05, 0.2)),
+            ("rotate", turn(0.5, "Z", head + np.array([0.1, 0.05, 0.2]))),
+            ("scale", stretch(1.2, head + np.array([0.1, 0.05, 0.2]))),
+        ):
+            bpy.context.view_layer.update()
+            if own:
+                apply(kind, matrix)
+            elif kind == "move":
+                bpy.ops.transform.translate(value=(0.1, 0.05, 0.2))
+            elif kind == "rotate":
+                bpy.ops.transform.rotate(value=-0.5, orient_axis="Z")  # negative without a view
+            else:
+                bpy.ops.transform.resize(value=(1.2, 1.2, 1.2))
+            bpy.context.view_layer.update()
+            found.append(np.array(rig.pose.bones["Forearm.L"].matrix))
+        matrices.append(found)
+    for theirs, mine in zip(*matrices, strict=True):
+        assert mine == pytest.approx(theirs, abs=1e-5) or np.allclose(mine, theirs, atol=1e-5)
+
+
+def test_locks_and_limits_of_inverse_kinematics_hold() -> None:
+    rig, body, box = box_below_hand(rotation_mode="XYZ", lock_rotation=(False, True, False))
+    bone = rig.pose.bones["Arm.L"]
+    bone.use_ik_limit_z, bone.ik_min_z, bone.ik_max_z = True, -0.02, 0.02
+    bone.lock_location = (True, True, True)
+    apply("rotate", turn(np.radians(60), "Y", SHOULDER) @ turn(0.4, "Z", SHOULDER) @ turn(0.4, "X", SHOULDER))
+    assert bone.rotation_euler[1] == 0 and tuple(bone.location) == (0, 0, 0)
+    assert abs(bone.rotation_euler[2]) <= np.float32(0.02)
+    assert abs(bone.rotation_euler[0]) > 0.1
+    assert intersecting(body, box) == 0
+
+
+def test_inverse_kinematics_and_constraints_act_as_blender_evaluates_them() -> None:
+    """A target outside the body moves the hand by inverse kinematics; it stops above the box."""
+    rig, body, box = box_below_hand()
+    bpy.ops.object.mode_set(mode="EDIT")
+    target = rig.data.edit_bones.new("Target")
+    target.head, target.tail = (1.5, 0, 1.35), (1.7, 0, 1.35)
+    bpy.ops.object.mode_set(mode="POSE")
+    constraint = rig.pose.bones["Forearm.L"].constraints.new("IK")
+    constraint.target, constraint.subtarget, constraint.chain_count = rig, "Target", 2
+    select_bones(rig, "Target")
+    result, report, _ = apply("move", shift(-0.1, 0, -0.7))
+    assert result.status in ("corrected", "blocked") and report.passed
+    assert rig.pose.bones["Target"].location.length > 0.2
+    assert intersecting(body, box) == 0
+
+
+def test_all_that_the_rig_moves_is_the_surface() -> None:
+    """A child of a bone, a mesh with a driven shape key, and subdivision after the armature collide too."""
+    rig, body, box = box_below_hand(0.14)
+    add_modifier(body, "SUBSURF", levels=1, render_levels=1)
+    club = add_cube("Club", (0, 0, 0), 0.05)
+    club.parent, club.parent_type, club.parent_bone = rig, "BONE", "Forearm.L"
+    club.matrix_world.translation = (1.3, 0, 1.1)
+    bump = body.shape_key_add(name="Basis") and body.shape_key_add(name="Bump")
+    for point in bump.data:
+        if point.co[0] > 1.05:
+            point.co[2] -= 0.15
+    driver = bump.driver_add("value").driver
+    driver.type = "SUM"
+    variable = driver.variables.new()
+    variable.type = "TRANSFORMS"
+    variable.targets[0].id, variable.targets[0].bone_target = rig, "Arm.L"
+    variable.targets[0].transform_type, variable.targets[0].transform_space = "ROT_Y", "LOCAL_SPACE"
+    for axis in ("ROT_X", "ROT_Z"):
+        variable = driver.variables.new()
+        variable.name, variable.type = f"turn_{axis}", "TRANSFORMS"
+        variable.targets[0].id, variable.targets[0].bone_target = rig, "Arm.L"
+        variable.targets[0].transform_type, variable.targets[0].transform_space = axis, "LOCAL_SPACE"
+    result, report, _ = apply("rotate", turn(np.radians(60), "Y", SHOULDER))
+    assert result.status == "corrected" and report.passed, report.message
+    assert intersecting(body, box) == intersecting(club, box) == 0
+    assert evaluated(club)[:, 2].min() == pytest.approx(0.91, abs=0.03)
+
+
+def test_individual_origins_curl_a_chain() -> None:
+    rig, _, _ = box_below_hand()
+    bpy.context.scene.tool_settings.transform_pivot_point = "INDIVIDUAL_ORIGINS"
+    select_bones(rig, "Arm.L", "Forearm.L")
+    result, report, _ = apply("rotate", turn(np.radians(-40), "Y"), individual=True)
+    assert result.status == "reached" and report.passed
+    for name in ("Arm.L", "Forearm.L"):
+        assert rig.pose.bones[name].rotation_quaternion.angle == pytest.approx(np.radians(40), abs=1e-5)
+
+
+def test_other_bones_yield_if_asked() -> None:
+    """The arm follows its goal exactly, and other bones turn away from the box."""
+    rig, body, box = box_below_hand()
+    settings = EditSettings(separation=0.01, responders="unselected")
+    _, report, _ = apply("rotate", turn(np.radians(25), "Y", SHOULDER), settings)
+    assert report.passed and intersecting(body, box) == 0
+    assert rig.pose.bones["Arm.L"].rotation_quaternion.angle > np.radians(22)
+    assert any(bone.rotation_quaternion.angle > 0.05 for bone in rig.pose.bones if bone.name != "Arm.L")
+
+
+def test_random_poses_never_intersect() -> None:
+    """Random rotations of random bones among obstacles: after each, the exact test finds nothing."""
+    random = np.random.default_rng(7)
+    rig, body, _ = box_below_hand()
+    places = [
+        (-1.2, 0.1, 0.95),
+        (0.25, -0.45, -1.2),
+        (0.2, 0.75, 1.2),
+        (1.3, 0.5, 1.4),
+        (-1.3, -0.5, 1.4),
+        (0, -0.8, 0.7),
+    ]
+    obstacles = [bpy.data.objects["Box"], *(add_cube(f"Box {place}", place, 0.2) for place in places)]
+    bones = ["Arm.L", "Forearm.L", "Arm.R", "Forearm.R", "Thigh.L", "Shin.L", "Chest", "Spine"]
+    statuses = []
+    for _ in range(25):
+        name = str(random.choice(bones))
+        select_bones(rig, name)
+        axis = random.choice(list("XYZ"))
+        head = np.array(rig.pose.bones[name].head)
+        result, report, _ = apply("rotate", turn(random.uniform(-1.2, 1.2), axis, head))
+        statuses.append(result.status)
+        assert report.passed, report.message
+        assert sum(intersecting(body, each) for each in obstacles) == 0
+    assert 5 < statuses.count("reached") < 20 and statuses.count("blocked") < 8, statuses
+
+
+def test_cancelling_restores_the_pose_to_the_last_bit() -> None:
+    rig, _, _ = box_below_hand(rotation_quaternion=(0.9, 0.1, 0.02, 0.3))
+    bone = rig.pose.bones["Arm.L"]
+    before = [*bone.rotation_quaternion, *bone.location]
+    _, _, edit = apply("rotate", turn(0.5, "Z", SHOULDER))
+    assert [*bone.rotation_quaternion, *bone.location] != before
+    edit.restore()
+    assert [*bone.rotation_quaternion, *bone.location] == before
+    assert "STIV Evaluation" not in bpy.data.scenes
+
+
+def unskinned(rig: Any, body: Any) -> None:
+    body.parent = None
+    body.modifiers.clear()
+
+
+def cyclic(rig: Any, body: Any) -> None:
+    driver = rig.pose.bones["Arm.L"].driver_add("location", 0).driver
+    variable = driver.variables.new()
+    variable.type = "TRANSFORMS"
+    variable.targets[0].id, variable.targets[0].bone_target = rig, "Forearm.L"
+
+
+def at_rest(rig: Any, body: Any) -> None:
+    rig.data.pose_position = "REST"
+
+
+def nothing(rig: Any, body: Any) -> None:
+    select_bones(rig)
+
+
+def locked(rig: Any, body: Any) -> None:
+    rig.pose.bones["Arm.L"].lock_rotation = (True, True, True)
+    rig.pose.bones["Arm.L"].lock_rotations_4d = False
+
+
+@pytest.mark.parametrize(
+    ("prepare", "message"),
+    [
+        (unskinned, "Rig: it deforms no visible mesh; parent one to it"),
+        (cyclic, r"Rig: a driver of Arm.L depends on itself; remove it"),
+        (at_rest, "Rig: it shows its rest position; choose Pose Position"),
+        (nothing, "no bone is selected; select one"),
+        (locked, "Rig: the rotation of Arm.L is locked; unlock it"),
+    ],
+)
+def test_what_cannot_be_posed_is_refused_by_name(prepare: Callable[[Any, Any], None], message: str) -> None:
+    rig, body, _ = box_below_hand()
+    prepare(rig, body)
+    before = evaluated(body)
+    with pytest.raises(stiv.InputError, match=message):
+        apply("rotate", turn(0.5, "Y", SHOULDER))
+    assert np.array_equal(evaluated(body), before)
+
+
+def test_connected_bones_cannot_move() -> None:
+    rig, _, _ = box_below_hand()
+    select_bones(rig, "Forearm.L")
+    with pytest.raises(stiv.InputError, match=r"Rig: Forearm\.L is connected to its parent; rotate it"):
+        apply("move", shift(z=-0.1))
+
+
+def test_a_linked_rig_without_an_override_is_refused(tmp_path: Any) -> None:
+    rig, _, _ = box_below_hand()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "character.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(tmp_path / "character.blend"), link=True) as (source, wanted):
+        wanted.objects = source.objects
+    for ob in wanted.objects:
+        bpy.context.scene.collection.objects.link(ob)
+    rig = bpy.data.objects["Rig"]
+    bpy.context.view_layer.objects.active = rig
+    with pytest.raises(stiv.InputError, match="Rig: it is linked; make a library override"):
+        stiv.blender.controls.bone_set.check_rig(rig)
