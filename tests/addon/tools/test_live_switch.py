@@ -97,14 +97,14 @@ def test_the_switch_takes_over_the_users_keys_and_puts_them_back(addon: None) ->
     assert bpy.context.scene.stiv.live_guard
     bpy.context.window_manager.keyconfigs.update()  # in a window, Blender does so
     user = bpy.context.window_manager.keyconfigs.user.keymaps
-    for name, key in (("Object Mode", "G"), ("Mesh", "W"), ("Lattice", "G"), ("Curve", "G")):
+    for name, key in (("Object Mode", "G"), ("Mesh", "W"), ("Lattice", "G"), ("Curve", "G"), ("Pose", "G")):
         first = next(item for item in user[name].keymap_items if item.type == key and not item.shift)
         assert (first.idname, first.properties.kind) == (live_keys.OPERATOR, "move")
     taken = {(item.type, item.properties.kind) for item in user["Lattice"].keymap_items if is_ours(item)}
     assert taken == {("G", "move"), ("R", "rotate"), ("S", "scale"), ("LEFTMOUSE", "move")}
     tool = next(item for item in user["3D View Tool: Rotate"].keymap_items if is_ours(item))
     assert tool.properties.kind == "rotate" and tool.properties.release_confirm
-    assert not any(is_ours(item) for item in user["Pose"].keymap_items)
+    assert not any(is_ours(item) for item in user["Armature"].keymap_items)
     assert not any(is_ours(item) for item in user["3D View"].keymap_items), "the key of the 3D cursor"
     bpy.context.scene.stiv.live_transforms = False
     assert keys() == before

@@ -45,7 +45,7 @@ def _driver_targets(ob: bpy.types.Object) -> Iterator[bpy.types.DriverTarget]:
 
 
 def find_driver_targets(owner: bpy.types.ID | None) -> Iterator[bpy.types.DriverTarget]:
-    """What the drivers of an ID read."""
+    """The targets of the drivers of an ID."""
     animation = getattr(owner, "animation_data", None)
     for curve in () if animation is None else animation.drivers:
         yield from (target for variable in curve.driver.variables for target in variable.targets)
