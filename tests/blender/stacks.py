@@ -136,6 +136,13 @@ def thick_and_triangulated() -> Any:
     return ob
 
 
+def triangulated_and_pushed() -> Any:
+    ob = pushed_by_nodes()
+    add_modifier(ob, "TRIANGULATE")
+    ob.modifiers.move(1, 0)
+    return ob
+
+
 def bevelled() -> Any:
     ob = add_block()
     add_modifier(ob, "BEVEL", width=0.05, segments=2, limit_method="NONE")
@@ -316,6 +323,7 @@ STACKS = {
     "Bevel, Smooth by Angle": bevelled,
     "Bevel, Subdivision Surface": bevelled_and_smooth,
     "Geometry Nodes": pushed_by_nodes,
+    "Triangulate, Geometry Nodes": triangulated_and_pushed,
     "Geometry Nodes, Subdivision Surface": pushed_and_smooth,
     "Armature": posed,
     "Armature, Subdivision Surface": posed_and_smooth,

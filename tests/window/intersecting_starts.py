@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags whose start intersects: the popup and its buttons, and an object that intersects itself."""
+"""Drags that cannot start: the popups and their buttons. And an object that intersects itself."""
 
 from __future__ import annotations
 
@@ -74,6 +74,30 @@ def start_suzanne(window: Window) -> Steps:
     assert max(vertex.co.x for vertex in vertices) > 0.9
 
 
+def start_refused_modifier(window: Window) -> Steps:
+    """A box whose Triangulate modifier flips quads below a subdivision: the popup fixes them, and the drag works."""
+
+    def build() -> None:
+        box = scenes.add_box()
+        box.modifiers.new("Triangulate", "TRIANGULATE")
+        box.modifiers.new("Subdivision", "SUBSURF")
+        bpy.context.scene.stiv.object_response = "deform"
+
+    yield from prepared(window, build, "Box")
+    window.key("M", shift=True, alt=True)
+    yield from window.settle()
+    assert not window.dragging()
+    window.picture("start_refused_modifier")
+    window.key("F")
+    yield from window.settle()
+    assert bpy.data.objects["Box"].modifiers["Triangulate"].quad_method == "FIXED"
+    yield from start(window)
+    yield from window.glide(window.pixel((-0.5, 0.0, 0.0)))
+    yield from click(window)
+    assert min(vertex.co.x for vertex in bpy.data.objects["Box"].data.vertices) < -0.7
+
+
 INTERSECTING_STARTS = {
-    scenario.__name__: scenario for scenario in (start_popup_separate, start_popup_let_pass, start_suzanne)
+    scenario.__name__: scenario
+    for scenario in (start_popup_separate, start_popup_let_pass, start_suzanne, start_refused_modifier)
 }

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The popup that offers the ways out where the start of an edit intersects."""
+"""The popup that offers the ways out where an edit cannot start: the start intersects, or a modifier is the cause."""
 
 from __future__ import annotations
 
 import bpy
 
 from ... import stiv_blender
+from . import refusals
 from .passing import STIV_OT_let_pass
 from .repair import STIV_OT_repair
 from .separate import STIV_OT_separate
@@ -14,14 +15,14 @@ MAX_PAIRS = 5  # pairs of objects in the popup
 
 
 def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Exception) -> set[str]:
-    """Show the popup if objects intersect each other, and report the first pair.
+    """Show the popup if objects intersect each other, or a modifier is the cause, and report the first line.
 
     Returns the operator's result; nothing without a window, or for any other error.
     """
     if bpy.app.background or context.window is None:
         return set()
     if not isinstance(error, stiv_blender.ObjectsIntersectError) or not error.objects:
-        return set()
+        return refusals.offer(operator, context, error)
     lines = [stiv_blender.intersection_text(*pair) for pair in error.objects]
 
     def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

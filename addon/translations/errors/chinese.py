@@ -26,6 +26,7 @@ MESSAGES = {
     "deforms the lattice; apply it": "使晶格变形；请应用它",
     "excluded, because they may pass through each other: {}": "已排除，因为允许相互穿过：{}",
     "face {} has {} corners; triangulate the cage": "面 {} 有 {} 个角；请三角化笼",
+    "flips quads; set Quad Method to Fixed": "会翻转对角线；请将四边面方法设为固定",
     "follows the moving lattice; apply it": "位于移动的晶格之后；请应用它",
     "has no effect; change its vertex group": "没有效果；请更改其顶点组",
     "has no faces; add triangles": "没有面；请添加三角形",

@@ -26,6 +26,7 @@ MESSAGES = {
     "deforms the lattice; apply it": "verformt das Gitter; anwenden",
     "excluded, because they may pass through each other: {}": "ausgenommen, weil sie einander durchdringen dürfen: {}",
     "face {} has {} corners; triangulate the cage": "Fläche {} hat {} Ecken; den Käfig triangulieren",
+    "flips quads; set Quad Method to Fixed": "dreht Diagonalen; die Quad-Methode auf Fest stellen",
     "follows the moving lattice; apply it": "folgt auf das bewegte Gitter; anwenden",
     "has no effect; change its vertex group": "hat keine Wirkung; die Vertexgruppe ändern",
     "has no faces; add triangles": "hat keine Flächen; Dreiecke hinzufügen",

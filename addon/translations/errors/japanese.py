@@ -26,6 +26,7 @@ MESSAGES = {
     "deforms the lattice; apply it": "がラティスを変形しています。適用してください",
     "excluded, because they may pass through each other: {}": "通過が許可されているため除外: {}",
     "face {} has {} corners; triangulate the cage": "面 {} の角は {} 個です。ケージを三角形化してください",
+    "flips quads; set Quad Method to Fixed": "が対角線を変えます。四角面の方式を固定にしてください",
     "follows the moving lattice; apply it": "が動くラティスの後にあります。適用してください",
     "has no effect; change its vertex group": "は効果がありません。頂点グループを変えてください",
     "has no faces; add triangles": "面がありません。三角形を追加してください",

@@ -26,6 +26,7 @@ MESSAGES = {
     "deforms the lattice; apply it": "이(가) 래티스를 변형함; 적용하세요",
     "excluded, because they may pass through each other: {}": "서로 통과할 수 있어 제외됨: {}",
     "face {} has {} corners; triangulate the cage": "면 {}의 모서리가 {}개임; 케이지를 삼각화하세요",
+    "flips quads; set Quad Method to Fixed": "이(가) 대각선을 뒤집음; 쿼드 방법을 고정으로 설정하세요",
     "follows the moving lattice; apply it": "이(가) 움직이는 래티스 뒤에 있음; 적용하세요",
     "has no effect; change its vertex group": "효과가 없음; 버텍스 그룹을 바꾸세요",
     "has no faces; add triangles": "면이 없음; 삼각형을 추가하세요",

@@ -41,6 +41,7 @@ from stiv.blender.repair.separation import SeparationReport, separate, separate_
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
+from stiv.blender.scene.modifier_stack import UnsupportedStackError
 from stiv.blender.scene.pose_bones import moved_bones
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
@@ -107,6 +108,7 @@ __all__ = [
     "Steps",
     "Task",
     "ToolCorrection",
+    "UnsupportedStackError",
     "WeightGroup",
     "WriteReport",
     "add_refined",

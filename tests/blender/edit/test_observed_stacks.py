@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot
 from stack_trials import WAYS, open_piece, run_random_trial, run_trial
-from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin
+from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin, subdivided
 
 import stiv
 from stiv.blender import (
@@ -92,7 +92,8 @@ def small_motion(points: np.ndarray) -> np.ndarray:
     return 0.01 * np.stack([0.3 * y + 0.2 * z**2, 0.4 * x - 0.2 * y, 0.5 * np.cos(x) + 0.3 * y * x], axis=1)
 
 
-LOOSE = {"Mirror, Solidify, Bevel, Smooth by Angle": 0.5, "Corrective Smooth": 0.5, "Multiresolution": 0.5}
+LOOSE = {"Mirror, Solidify, Bevel, Smooth by Angle": 0.5, "Corrective Smooth": 0.5, "Multiresolution": 0.5,
+         "Triangulate, Geometry Nodes": 0.5}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", STACKS)
@@ -179,11 +180,19 @@ def with_modifier(kind: str, **settings: Any) -> Any:
     return ob
 
 
+def triangulated_and_smooth() -> Any:
+    ob = add_sheet()
+    add_modifier(ob, "TRIANGULATE", "It")
+    subdivided(ob)
+    return ob
+
+
 REFUSED = {
     'Piece: Shrinkwrap "Wrap" projects onto "Target"; edit that': shrinkwrapped,
     'Piece: Cloth "Fall" simulates it; go to its start frame': simulated,
     'Piece: Decimate "It" changes topology; apply it': lambda: with_modifier("DECIMATE", ratio=0.5),
     'Piece: Edge Split "It" changes topology; apply it': lambda: with_modifier("EDGE_SPLIT", split_angle=0.1),
+    'Piece: Triangulate "It" flips quads; set Quad Method to Fixed': triangulated_and_smooth,
     'Piece: Ocean "It" hides edits; disable it': lambda: with_modifier("OCEAN", resolution=2),
 }
 
@@ -197,9 +206,19 @@ def test_what_no_edit_can_follow_is_refused(message: str, mode: str) -> None:
     with pytest.raises(stiv.InputError) as raised:
         begin()
     assert str(raised.value) == message and len(message) <= 80
+    assert (raised.value.owner, raised.value.modifier) == ("Piece", message.split('"')[1])
     assert snapshot() == before
     if mode == "OBJECT" and "projects" not in message:
         BlenderEdit.begin(bpy.context, EditSettings(), "move")  # it moves as a whole
+
+
+def test_the_way_out_of_turning_diagonals_is_one() -> None:
+    ob = triangulated_and_smooth()
+    ob.modifiers["It"].quad_method = "FIXED"
+    select(ob)
+    edit = begin()
+    edit.drag(shift(0, 0, 0.2))
+    assert edit.write().passed
 
 
 def test_an_edit_stops_where_the_topology_changes() -> None:

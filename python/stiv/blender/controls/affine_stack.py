@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Modifiers below which each evaluated vertex is an affine function of one vertex of the mesh.
 
-Such a stack has an exact derivative, and Blender need not evaluate it during the edit.
+Their derivative is exact, and Blender does not evaluate them during the edit.
 """
 
 from __future__ import annotations

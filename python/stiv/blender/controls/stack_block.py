@@ -21,7 +21,7 @@ from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.modifier_stack import StackEnd, SubdivisionStage, read_end
 from stiv.blender.scene.position_test import keep_positions, random_moves
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.stack_twin import StackTwin, different_objects, kept_twin, kept_twins
+from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin, different_objects, kept_twin, kept_twins
 
 STEP = 0.03  # of the differences for a Jacobian, in lengths of an edge
 FURTHEST = 1e6  # motion that is evaluated, in sizes of the mesh: beyond it, single precision loses the shape
@@ -94,7 +94,8 @@ class StackBlock:
         self.controls = len(positions)
         self._step = STEP * _edge_length(ob, positions)
         self._furthest = FURTHEST * (float(np.ptp(positions, axis=0).max(initial=0.0)) or 1.0)
-        check_twin(ob, twin, [self._stored(transform_points(frame, each)) for each in random_moves(self._local, SMALL)])
+        moves = [self._stored(transform_points(frame, each)) for each in random_moves(self._local, SMALL)]
+        check_twin(ob, twin, moves, self._agree)
         self._start = twin.evaluate(self._local)
         self.count = len(self._start.positions)
         anchors = find_anchors(twin, self._start, self._local, STEP * _edge_length(ob, self._local))
@@ -139,9 +140,15 @@ class StackBlock:
     def _observe(self, positions: Floats) -> Floats | None:
         with kept_twins():
             shown = self._settings.open_twin().evaluate(self._stored(positions))
-        if not shown.has_topology_of(self._start) or not np.isfinite(shown.positions).all():
+        if not self._agree(shown, self._start) or not np.isfinite(shown.positions).all():
             return None
         return transform_points(self._shown_frame, shown.positions)
+
+    def _agree(self, one: EvaluatedStack, other: EvaluatedStack) -> bool:
+        """Have two evaluations the same topology? Diagonals matter only to a subdivision."""
+        if self._settings.end.subdivision is not None:
+            return one.has_topology_of(other)
+        return one.corresponds_to(other)
 
     def _find_affine_map(self) -> AffineMap | None:
         ob, evaluation = self._settings.reference.find(), self._settings.evaluation

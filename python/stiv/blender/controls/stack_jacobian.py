@@ -56,7 +56,7 @@ def _measured(twin: StackTwin, start: EvaluatedStack, local: Singles, step: floa
     size = float(np.abs(local).max(initial=0.0)) or 1.0
     scales = [np.ones(len(local)), *(local.T / size)]
     moves = [twin.evaluate((local + step * np.outer(scale, PROBE)).astype(np.float32)) for scale in scales]
-    if not all(each.has_topology_of(start) for each in moves):
+    if not all(each.corresponds_to(start) for each in moves):
         return np.zeros((len(start.positions), 3))
     whole, *others = (each.positions.astype(np.float64) - start.positions for each in moves)
     norm = (whole**2).sum(axis=1) + 1e-30

@@ -15,6 +15,7 @@ from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin
 
 SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 SMALL = (0.0, 0.001, 0.003)  # moves that may not change the topology, in sizes of the mesh
+Comparison = Callable[[EvaluatedStack, EvaluatedStack], bool]
 NO_EFFECT = 1e-6  # greatest motion of a surface without controls, relative to that of all vertices
 
 
@@ -26,26 +27,30 @@ def check_projections(ob: bpy.types.Object, evaluation: str) -> None:
             raise modifier_error(ob, modifier.name, "projects", modifier.target.name)
 
 
-def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles]) -> None:
+def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agree: Comparison) -> None:
     """Refuse a stack whose topology changes with small moves, or that ignores its vertices. Raises InputError.
 
-    twin: of the object. moves: local positions of the vertices, (m, 3), at the start and moved by `SMALL`.
+    twin: of the object. moves: local positions of the vertices, (m, 3), at the start and moved by `SMALL`. agree: do
+    two evaluations have the same topology?
     """
-    if not _keeps_topology(found := [twin.evaluate(move) for move in moves]):
-        raise modifier_error(ob, _first(twin, moves, lambda each: not _keeps_topology(each)), "changes topology")
+    if not _keeps_topology(found := [twin.evaluate(move) for move in moves], agree):
+        name = _first(twin, moves, lambda each: not _keeps_topology(each))
+        turns = ob.modifiers[name].type == "TRIANGULATE"
+        raise modifier_error(ob, name, "turns diagonals" if turns else "changes topology")
     if not _has_effect(found, moves):
         name = _first(twin, moves, lambda each: not _has_effect(each, moves))
         raise modifier_error(ob, name, "simulated" if ob.modifiers[name].type in SIMULATIONS else "ignores vertices")
 
 
-def _keeps_topology(found: list[EvaluatedStack]) -> bool:
-    return all(each.has_topology_of(found[0]) for each in found)
+def _keeps_topology(found: list[EvaluatedStack], agree: Comparison = EvaluatedStack.has_topology_of) -> bool:
+    return all(agree(each, found[0]) for each in found)
 
 
 def _has_effect(found: list[EvaluatedStack], moves: list[Singles]) -> bool:
     """Does the surface move with the vertices, as far as the topology stays?"""
     moved = np.abs(moves[-1] - moves[0]).max(initial=0.0)
-    shown = found[-1].positions - found[0].positions if _keeps_topology(found) else moves[-1]
+    alike = all(len(each.positions) == len(found[0].positions) for each in found)
+    shown = found[-1].positions - found[0].positions if alike else moves[-1]
     return bool(np.abs(shown).max(initial=0.0) > NO_EFFECT * moved)
 
 

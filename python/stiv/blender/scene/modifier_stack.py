@@ -30,6 +30,7 @@ MODIFIER_REASONS = {
     "same lattice": 'uses "{other}" again; apply it',
     "second subdivision": "is the second; apply the first",
     "simulated": "simulates it; go to its start frame",
+    "turns diagonals": "flips quads; set Quad Method to Fixed",
     "unsupported": "is not supported; apply it",
 }
 
@@ -117,14 +118,24 @@ def _last_preserving(modifiers: Sequence[bpy.types.Modifier]) -> tuple[str, ...]
 
 
 class UnsupportedStackError(InputError):
-    """A modifier stack without a list of stages."""
+    """A modifier stack without a list of stages.
+
+    Attributes:
+        owner: name of the object; "" if no modifier is the cause.
+        modifier: name of the modifier that is the cause.
+    """
+
+    def __init__(self, message: str, owner: str = "", modifier: str = "") -> None:
+        super().__init__(message)
+        self.owner, self.modifier = owner, modifier
 
 
 def modifier_error(ob: bpy.types.Object, modifier: str, reason: str, other: str = "") -> InputError:
     """The error for a modifier by its name; reason: a key of MODIFIER_REASONS, other: the object that it mentions."""
     found = ob.modifiers[modifier]
     kind = found.bl_rna.properties["type"].enum_items[found.type].name
-    return UnsupportedStackError(f'{ob.name}: {kind} "{modifier}" {MODIFIER_REASONS[reason].format(other=other)}')
+    text = MODIFIER_REASONS[reason].format(other=other)
+    return UnsupportedStackError(f'{ob.name}: {kind} "{modifier}" {text}', ob.name, modifier)
 
 
 def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:
@@ -143,9 +154,14 @@ def _refusal(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str
 
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
     """The error for a modifier that is not shown now; short enough for the status bar."""
+    names = ob.name, modifier.name
     if evaluation == VIEWPORT:
-        return UnsupportedStackError(f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode')
-    return UnsupportedStackError(f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport')
+        return UnsupportedStackError(
+            f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode', *names
+        )
+    return UnsupportedStackError(
+        f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport', *names
+    )
 
 
 def _subdivision(

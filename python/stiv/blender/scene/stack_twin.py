@@ -10,6 +10,7 @@ from typing import Protocol, TypeVar, cast
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles, read_collection
 from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
@@ -36,6 +37,23 @@ class EvaluatedStack:
             and np.array_equal(self.corners, other.corners)
             and np.array_equal(self.starts, other.starts)
         )
+
+    def corresponds_to(self, other: EvaluatedStack) -> bool:
+        """Do both have the same vertices, and the same faces up to the diagonals of triangulated ones?"""
+        if len(self.positions) != len(other.positions) or not np.array_equal(self.starts, other.starts):
+            return False
+        sizes = np.diff(self.starts)
+        changed = np.unique(np.repeat(np.arange(len(sizes)), sizes)[self.corners != other.corners])
+        if len(changed) == 0:
+            return True
+        lost = np.setdiff1d(self._triangle_edges(changed), other._triangle_edges(changed))
+        return bool((sizes[changed] == 3).all()) and len(lost) < len(changed)
+
+    def _triangle_edges(self, faces: Indices) -> NDArray[np.int64]:
+        """A number for each edge of triangular faces."""
+        rows = self.corners[self.starts[faces][:, None] + np.arange(3)].astype(np.int64)
+        ends = np.stack([rows, np.roll(rows, -1, axis=1)])
+        return np.unique(ends.min(axis=0) * len(self.positions) + ends.max(axis=0))
 
     def equals(self, other: EvaluatedStack) -> bool:
         """Do both agree to the last bit?"""
