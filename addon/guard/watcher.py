@@ -19,6 +19,7 @@ from .problem import Problem, listed
 from .record import Record
 
 STEP_NAME = "Live Guard"
+SWITCHES = ("live_transforms", "live_guard")  # in this order: the first sets the second
 FIRST_WAIT = 0.1  # seconds that a correction may take before its progress is shown
 WAIT = 0.02  # seconds of each further look at it
 
@@ -58,6 +59,8 @@ class _Correction:
 
 
 _watch = Watch()
+_switches: dict[tuple[str, str], bool] = {}  # of scenes by name, before undo or redo
+_restores_switches = False
 
 
 def problem() -> Problem | None:
@@ -95,6 +98,8 @@ def is_on(context: bpy.types.Context) -> bool:
 
 def switched(context: bpy.types.Context) -> None:
     """Called when the guard is turned on or off: start with the current scene, or stop."""
+    if _restores_switches:
+        return
     restart()
     if is_on(context):
         _start_timer()
@@ -300,7 +305,27 @@ def _on_frame(scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
 
 
 @persistent
+def _before_history(*_unused: object) -> None:
+    _switches.clear()
+    for scene in bpy.data.scenes:
+        _switches.update({(scene.name, name): getattr(scene.stiv, name) for name in SWITCHES})
+
+
+def _restore_switches() -> None:
+    """Undo and redo leave the switches as they are, as they do with Blender's snapping."""
+    global _restores_switches
+    _restores_switches = True
+    for (scene_name, name), before in _switches.items():
+        scene = bpy.data.scenes.get(scene_name)
+        if scene is not None and getattr(scene.stiv, name) != before:
+            setattr(scene.stiv, name, before)
+    _switches.clear()
+    _restores_switches = False
+
+
+@persistent
 def _on_history(*_unused: object) -> None:
+    _restore_switches()
     if is_on(bpy.context) and not _watch.working:
         _watch.guard = _watch.guard.after_history(undo_steps.active_step())
         _note_change()
@@ -314,6 +339,8 @@ def _on_load(*_unused: object) -> None:
 HANDLERS = {
     "depsgraph_update_post": _on_update,
     "frame_change_post": _on_frame,
+    "undo_pre": _before_history,
+    "redo_pre": _before_history,
     "undo_post": _on_history,
     "redo_post": _on_history,
     "load_post": _on_load,

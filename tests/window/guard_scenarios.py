@@ -42,9 +42,10 @@ def with_tool(window: Window, key: str, target: tuple[float, float, float], conf
 
 
 def steps() -> list[str]:
-    """Names of all undo steps."""
-    undo_steps = extension.module("guard.undo_steps")
-    return [line.split("name=")[1] for line in undo_steps._printed().splitlines() if "name=" in line]
+    """Names of all undo steps, without those that Blender skips."""
+    printed = extension.module("guard.undo_steps")._printed()
+    names = [line.split("name=")[1] for line in printed.splitlines() if "name=" in line]
+    return [name for name in names if not name.startswith("'MemFile Internal")]
 
 
 def guard_move(window: Window) -> Steps:

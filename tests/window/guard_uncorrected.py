@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard where it cannot correct: a mirrored mesh moved into the wall, named in red, taken back by a click."""
+"""The live guard where it cannot correct: a projected mesh moved into the wall, named in red, taken back by a click."""
 
 from __future__ import annotations
 
+import bmesh
 import bpy
 import extension
 import scenes
@@ -15,19 +16,20 @@ from simulation import Steps, Window
 BUTTON = "Restore Before Collision"
 
 
-def add_mirrored_box() -> object:
-    """A box above y = 0.1, and its image below."""
+def add_projected_box() -> object:
+    """A box with a projection onto another object, which edits refuse, of a thousandth of a vertex."""
     box = scenes.add_box()
-    for vertex in box.data.vertices:
-        vertex.co.y += 0.6
-    box.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+    box.vertex_groups.new(name="Wrapped").add([0], 0.001, "REPLACE")
+    mould = scenes.add_mesh("Mould", lambda content: bmesh.ops.create_cube(content, size=0.2), (-2.0, 0.0, 0.0))
+    projection = box.modifiers.new("Shrinkwrap", "SHRINKWRAP")
+    projection.target, projection.vertex_group = mould, "Wrapped"
     return box
 
 
-def guard_mirrored(window: Window) -> Steps:
+def guard_uncorrected(window: Window) -> Steps:
     """Moved in Edit Mode: the result stays, everything says so, and a click in the status bar takes it back."""
     watcher = extension.module("guard.watcher")
-    yield from guarded(window, add_mirrored_box, "Box", "EDIT")
+    yield from guarded(window, add_projected_box, "Box", "EDIT")
     with window.override():
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.ed.undo_push(message="selected")
@@ -38,12 +40,12 @@ def guard_mirrored(window: Window) -> Steps:
     assert watcher.problem().names == ["Box", "Wall"], watcher.problem()
     assert watcher.uncorrected() == 1, watcher.uncorrected()
     assert xs() != before, "the result of the tool is gone"
-    window.picture("guard_mirrored")
+    window.picture("guard_uncorrected")
     yield from click_in_status_bar(window, lambda: watcher.problem() is None)
     assert xs() == before, xs()
     assert steps() == [*named, "'Move'", f"'{BUTTON}'"], (named, steps())
     expect_free(window)
-    window.picture("guard_mirrored_taken_back")
+    window.picture("guard_uncorrected_taken_back")
     yield from window.undo()
     yield from at_rest(window)
     assert watcher.problem().names == ["Box", "Wall"], watcher.problem()
@@ -74,4 +76,4 @@ def xs() -> list[float]:
     return [vertex.co.x for vertex in box.data.vertices]
 
 
-GUARD_UNCORRECTED = {"guard_mirrored": guard_mirrored}
+GUARD_UNCORRECTED = {"guard_uncorrected": guard_uncorrected}

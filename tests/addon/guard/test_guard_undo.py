@@ -55,6 +55,26 @@ def test_an_uncorrected_state_restored_by_undo_is_corrected_without_an_undo_step
     assert names_of_steps() == ["start", "Move", "Move"]
 
 
+def test_undo_and_redo_leave_the_switches_as_they_are() -> None:
+    settings = bpy.context.scene.stiv
+    settings.live_guard = False
+    bpy.ops.ed.undo_push(message="off")
+    settings.live_transforms = True
+    bpy.ops.ed.undo_push(message="on")
+    move(1.0)
+    look()
+    for _ in range(2):
+        bpy.ops.ed.undo()
+    settings = bpy.context.scene.stiv
+    assert settings.live_transforms and settings.live_guard
+    move(7.0)
+    look()
+    assert box().location.x == pytest.approx(FURTHEST, abs=0.02)
+    settings.live_transforms = False
+    bpy.ops.ed.undo()
+    assert not bpy.context.scene.stiv.live_transforms and not bpy.context.scene.stiv.live_guard
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
