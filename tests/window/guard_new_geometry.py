@@ -149,7 +149,7 @@ def guard_added(window: Window) -> Steps:
             add()
             bpy.ops.ed.undo_push(message=f"Add {name}")
         yield from at_rest(window)
-        assert state() == "guarded", (name, state())
+        assert state() == "guarded", (name, state(), extension.module("guard.watcher").problem())
         expect_free(window)
     window.picture("guard_added")
 

@@ -10,6 +10,7 @@ import pytest
 from building import CUBE, add_cube, edit_mode, evaluated, select
 
 from stiv.blender import AcceptedScene, EditSettings, check_scene, find_intersections, guard_result
+from stiv.blender.guard import free_place
 
 WALL = 3.0  # where its face is, along x
 
@@ -214,6 +215,13 @@ def test_the_nearest_free_place_is_outside_closed_surfaces() -> None:
     outcome = guarded(lambda: bpy.ops.mesh.primitive_ico_sphere_add(radius=0.3, subdivisions=3, location=(3.75, 0, 0)))
     sphere = bpy.data.objects[outcome.placed[0]]
     assert sphere.location.x == pytest.approx(4.3, abs=0.01) and pairs() == set()
+
+
+def test_a_slow_machine_finds_a_free_place_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(free_place, "TIME_LIMIT", 0.0)
+    add_wall()
+    outcome = guarded(lambda: bpy.ops.mesh.primitive_uv_sphere_add(location=(2.8, 0, 0)))
+    assert len(outcome.placed) == 1 and pairs() == set()
 
 
 def test_objects_added_together_stay_together() -> None:

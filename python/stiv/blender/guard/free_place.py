@@ -29,7 +29,7 @@ DIRECTIONS = sorted(
 FIRST_STEP, GROWTH = 1 / 64, 1.5  # of the new objects' diagonal; each step out is longer
 BISECTIONS = 8
 MARGIN = 1e-3  # added to the shortest free distance
-TIME_LIMIT = 2.0  # seconds; then the best place so far is returned
+TIME_LIMIT = 2.0  # seconds; then the best place so far is returned, or the first one found later
 
 
 def find_free_place(
@@ -98,7 +98,8 @@ class _Search:
             yield None
             low, step = high, step * GROWTH
             high += step
-            if low > min(limit, self.extent) or time.monotonic() > deadline:
+            is_late = np.isfinite(limit) and time.monotonic() > deadline
+            if is_late or low > min(limit, self.extent):
                 return float("inf")
         for _ in range(BISECTIONS):
             yield None
