@@ -57,13 +57,74 @@ def run_trial(make: Callable[[], Any], way: str, seed: int, edits: int) -> Outco
         edit.drag(down @ turn(0.1 * random.normal(), "XYZ"[number % 3]))
         report = edit.write()
         assert report.passed, report.message
-    assert edit.settle().status != "cancelled"
+    settled = edit.settle()
+    assert settled.status != "cancelled"
     assert edit.write().passed
     assert len(bpy.data.scenes) == 1
     moved = (evaluated(piece) - start)[:, 2].min()
     bpy.ops.object.mode_set(mode="OBJECT")
     met = _met(is_clear)
-    return Outcome("met", met) if met else Outcome("followed" if moved < -TO_CONTACT else "stuck", f"{moved:.2f}")
+    is_followed = moved < -TO_CONTACT or settled.status in ("reached", "unchanged")
+    return Outcome("met", met) if met else Outcome("followed" if is_followed else "stuck", f"{moved:.2f}")
+
+
+def kept_motion(make: Callable[[], Any], way: str) -> tuple[float, float]:
+    """The fraction of a motion down that an edit keeps, and that of Blender's own Move up to the first intersection.
+
+    Zero, twice, if the edit is refused, or the start intersects.
+    """
+    piece = make()
+    add_body()
+    if check_scene(bpy.context).pairs:
+        return 0.0, 0.0
+    open_piece(piece, way)
+    down = np.array([0.0, 0.0, -DEPTH])
+    start, selected = _placed(piece, way)
+    try:
+        edit = BlenderEdit.begin(bpy.context, settings_of(way), "move")
+    except (stiv.InputError, stiv.StartIntersectsError):
+        return 0.0, 0.0
+    for number in range(1, 7):
+        edit.drag(shift(*down * number / 6))
+        assert edit.write().passed
+    edit.settle()
+    assert edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    moved = (_placed(piece, way)[0] - start)[selected]
+    first = next((number for number in range(1, 17) if _touches(piece, way, start, selected, number / 16)), 17)
+    low, high = (first - 1) / 16, first / 16
+    while high - low > 0.01:
+        middle = (low + high) / 2
+        low, high = (low, middle) if _touches(piece, way, start, selected, middle) else (middle, high)
+    return float((moved @ down).mean() / (down @ down)), min(low, 1.0)
+
+
+def _placed(piece: Any, way: str) -> tuple[np.ndarray, np.ndarray]:
+    """What a way to edit moves: the object's location, or the local positions of its vertices; and flags of these."""
+    piece.update_from_editmode()
+    if way == "whole":
+        return np.array([piece.location]), np.array([True])
+    vertices = piece.data.vertices
+    flags = [way != "edit mode" or vertex.select for vertex in vertices]
+    return np.array([vertex.co for vertex in vertices]), np.array(flags)
+
+
+def _touches(piece: Any, way: str, start: np.ndarray, selected: np.ndarray, fraction: float) -> bool:
+    """Does anything intersect after Blender's own Move by a fraction of the motion down?"""
+    positions = start + fraction * selected[:, None] * [0.0, 0.0, -DEPTH]
+    if way == "whole":
+        piece.location = positions[0]
+    else:
+        piece.data.vertices.foreach_set("co", positions.astype(np.float32).ravel())
+        piece.data.update()
+    hidden = [each for each in piece.modifiers if way == "edit mode" and not each.show_in_editmode]
+    for is_shown in (True, False) if hidden else (True,):  # in Object Mode, and as Edit Mode shows it
+        for modifier in hidden:
+            modifier.show_viewport = is_shown
+        bpy.context.view_layer.update()
+        if meet(piece.name, "Body") or check_scene(bpy.context).pairs:
+            return True
+    return False
 
 
 def run_random_trial(seed: int) -> tuple[Outcome, list[str]]:

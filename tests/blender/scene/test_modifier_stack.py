@@ -280,7 +280,7 @@ def test_messages_fit_the_status_bar() -> None:
     of_reason = {reason: [kinds["LATTICE"]] for reason in lattice_reasons}
     of_reason |= {"before subdivision": [kinds["TRIANGULATE"]], "second subdivision": [kinds["SUBSURF"]]}
     of_reason |= {"projects": [kinds["SHRINKWRAP"]], "simulated": [kinds[kind] for kind in SIMULATIONS]}
-    of_reason["turns diagonals"] = [kinds["TRIANGULATE"]]
+    of_reason["flips quads"] = [kinds["TRIANGULATE"]]
     of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
     messages = [
         f'{NAME}: {kind} "{NAME}" {text.format(other=NAME)}'

@@ -13,7 +13,7 @@ from stiv.blender.controls.affine_stack import TRIALS, AffineMap, find_affine_ma
 from stiv.blender.controls.held_vertices import HeldVertices
 from stiv.blender.controls.points import to_single, to_stored
 from stiv.blender.controls.stack_jacobian import find_anchors, find_frames
-from stiv.blender.controls.stack_refusals import SMALL, check_twin
+from stiv.blender.controls.stack_refusals import LARGE, SMALL, check_diagonals, check_twin
 from stiv.blender.controls.subdivision import subdivide
 from stiv.blender.scene.arrays import Floats, Singles, as_matrix, transform_points
 from stiv.blender.scene.evaluations import is_active, modifier_signature
@@ -94,8 +94,11 @@ class StackBlock:
         self.controls = len(positions)
         self._step = STEP * _edge_length(ob, positions)
         self._furthest = FURTHEST * (float(np.ptp(positions, axis=0).max(initial=0.0)) or 1.0)
-        moves = [self._stored(transform_points(frame, each)) for each in random_moves(self._local, SMALL)]
-        check_twin(ob, twin, moves, self._agree)
+        start, *moves = [
+            self._stored(transform_points(frame, each)) for each in random_moves(self._local, (*SMALL, LARGE))
+        ]
+        check_twin(ob, twin, [start, *moves[:-1]], self._agree)
+        check_diagonals(ob, twin, [start, moves[-1]], self._agree)
         self._start = twin.evaluate(self._local)
         self.count = len(self._start.positions)
         anchors = find_anchors(twin, self._start, self._local, STEP * _edge_length(ob, self._local))

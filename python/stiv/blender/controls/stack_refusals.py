@@ -16,6 +16,8 @@ from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin
 SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 SMALL = (0.0, 0.001, 0.003)  # moves that may not change the topology, in sizes of the mesh
 Comparison = Callable[[EvaluatedStack, EvaluatedStack], bool]
+LARGE = 0.1  # moves that may not flip quads, as a drag will
+FIXED_DIAGONALS = ("FIXED", "FIXED_ALTERNATE")
 NO_EFFECT = 1e-6  # greatest motion of a surface without controls, relative to that of all vertices
 
 
@@ -27,6 +29,21 @@ def check_projections(ob: bpy.types.Object, evaluation: str) -> None:
             raise modifier_error(ob, modifier.name, "projects", modifier.target.name)
 
 
+def check_diagonals(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agree: Comparison) -> None:
+    """Refuse a Triangulate modifier that changes the topology with large moves. Raises InputError.
+
+    twin: of the object. moves: local positions of the vertices, (m, 3), at the start and moved by `LARGE`. agree: do
+    two evaluations have the same topology?
+    """
+    flipping = [
+        each.name for each in twin.ob.modifiers
+        if isinstance(each, bpy.types.TriangulateModifier)
+        and each.show_viewport and each.quad_method not in FIXED_DIAGONALS
+    ]  # fmt: skip
+    if flipping and not _keeps_topology([twin.evaluate(move) for move in moves], agree):
+        raise modifier_error(ob, flipping[0], "flips quads")
+
+
 def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agree: Comparison) -> None:
     """Refuse a stack whose topology changes with small moves, or that ignores its vertices. Raises InputError.
 
@@ -35,8 +52,8 @@ def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agre
     """
     if not _keeps_topology(found := [twin.evaluate(move) for move in moves], agree):
         name = _first(twin, moves, lambda each: not _keeps_topology(each))
-        turns = ob.modifiers[name].type == "TRIANGULATE"
-        raise modifier_error(ob, name, "turns diagonals" if turns else "changes topology")
+        flips = ob.modifiers[name].type == "TRIANGULATE"
+        raise modifier_error(ob, name, "flips quads" if flips else "changes topology")
     if not _has_effect(found, moves):
         name = _first(twin, moves, lambda each: not _has_effect(each, moves))
         raise modifier_error(ob, name, "simulated" if ob.modifiers[name].type in SIMULATIONS else "ignores vertices")

@@ -24,13 +24,13 @@ MODIFIER_REASONS = {
     "before subdivision": "precedes a subdivision; apply it",
     "changes topology": "changes topology; apply it",
     "deformed lattice": 'deforms it; select "{other}" instead',
+    "flips quads": "flips quads; set Quad Method to Fixed",
     "ignores vertices": "hides edits; disable it",
     "of lattice": "deforms the lattice; apply it",
     "projects": 'projects onto "{other}"; edit that',
     "same lattice": 'uses "{other}" again; apply it',
     "second subdivision": "is the second; apply the first",
     "simulated": "simulates it; go to its start frame",
-    "turns diagonals": "flips quads; set Quad Method to Fixed",
     "unsupported": "is not supported; apply it",
 }
 
