@@ -18,7 +18,7 @@ from stiv.surface import Surface
 
 EDITS = 40
 TRIANGLE_PAIRS = 100_000
-EXPECTED_EDITS = "2454ccbe144dac38"
+EXPECTED_EDITS = "512c1afd65afd2f0"
 EXPECTED_INTERSECTIONS = "ea94f96df0f5ceb3"
 
 # Corners are extraordinary vertices: their weights depend on sines and cosines.

@@ -19,6 +19,8 @@ constexpr int max_pulls_of_drag = 12;
 constexpr double shortest_stride = 0.25;           // in pull distances
 constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round of a pull; below it the pull is poor
 constexpr double growing_rate = 1.5;               // of the rate of the pull before
+constexpr double least_detour_gain = 0.1;          // relative drop of the energy
+constexpr double missing_growth = 2;               // of the way to the goal, until a drag tries a detour again
 
 /// The accepted controls, plus the motion of the goal since it was last followed; the goal itself if it was reached
 /// then.
@@ -44,6 +46,51 @@ double energy_drop_rate(EditCall& call, const Aim& aim, double distance) {
   const double after = energy(call.accepted.surface, aim.surface);
   const auto rounds = static_cast<double>(std::max<std::int64_t>(counters.rounds - rounds_before, 1));
   return before > 0 ? (1 - after / before) / rounds : 0;
+}
+
+bool is_far(const EditCall& call, const Aim& aim) {
+  return longest_displacement(call.accepted.surface, aim.surface) > call.context.far_distance();
+}
+
+/// The part of a displacement along which a control responds.
+Vector3 free_part(const EditOptions& options, Index control, Index controls, const Vector3& displacement) {
+  if (options.weights.size() == 0) return displacement;
+  const Index values = static_cast<Index>(options.weights.size()) / controls;
+  if (values == 1) return options.weights[control] > 0 ? displacement : Vector3(Vector3::Zero());
+  const bool has_axes = !options.weight_axes.empty();
+  const Eigen::Matrix3d axes =
+      has_axes ? options.weight_axes[at(control)] : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  const Vector3 along = axes.transpose() * displacement;
+  return axes * Vector3((options.weights.segment<3>(3 * control).array() > 0).select(along, 0));
+}
+
+/// The accepted controls, with the points that the goal moves displaced as far as they respond.
+Controls displaced(const EditCall& call, const Controls& goal, const Vector3& offset) {
+  Controls controls = call.accepted.controls;
+  const std::vector<Index> turning = call.context.deformation().rotation_rows();
+  const auto count = static_cast<Index>(controls.rows());
+  for (Index k = 0; k < count; ++k) {
+    const bool turns = std::find(turning.begin(), turning.end(), k) != turning.end();
+    if (!turns && controls.row(k) != goal.row(k))
+      controls.row(k) += free_part(call.context.options(), k, count, offset).transpose();
+  }
+  return call.context.limits().nearest(controls);
+}
+
+/// Goes aside and leaps. If the energy is not clearly lower than before, returns to the start and false.
+bool passes_aside(EditCall& call, const Aim& aim, const Vector3& offset) {
+  const Controls goal = displaced(call, aim.controls, offset);
+  std::optional<State> aside = feasible_state(call.context, goal, call.execution);
+  if (!aside || goal == call.accepted.controls) return false;
+  const State from = call.accepted;
+  const std::size_t steps = call.report.path.size();
+  run_sub_edits(call, {goal, std::move(aside->surface), false});
+  pull(call, aim, std::numeric_limits<double>::infinity());
+  const double before = energy(from.surface, aim.surface), after = energy(call.accepted.surface, aim.surface);
+  if (after < (1 - least_detour_gain) * before) return true;
+  call.accepted = from;
+  call.report.path.resize(steps);
+  return false;
 }
 
 }  // namespace
@@ -86,10 +133,13 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   }
 }
 
-PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim) {
+int poor_pulls_before_end(const Execution& execution) { return execution.has_time_budget() ? 1 : 2; }
+
+PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
+                               const Execution& execution) {
   const double increment = longest_displacement(drag.followed.surface, aim.surface);
   const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
-  return {.distance = context.pull_distance(), .pulls = static_cast<int>(pulls)};
+  return {context.pull_distance(), static_cast<int>(pulls), poor_pulls_before_end(execution)};
 }
 
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits) {
@@ -105,8 +155,7 @@ void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits
 
 void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
   const EditContext& context = call.context;
-  const bool is_far = longest_displacement(call.accepted.surface, aim.surface) > context.far_distance();
-  if (!is_far || context.pull_distance() == 0 || drag.leapt_from == call.accepted.controls) return;
+  if (!is_far(call, aim) || context.pull_distance() == 0 || drag.leapt_from == call.accepted.controls) return;
   const bool was_blocked = call.report.blocked;
   const Controls from = call.accepted.controls;
   drag.is_leaping = true;
@@ -114,6 +163,27 @@ void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
   drag.is_leaping = false;
   if (call.accepted.controls == from) drag.leapt_from = from;
   call.report.blocked = was_blocked && call.report.blocked;
+}
+
+bool detour(EditCall& call, const Aim& aim) {
+  if (!is_far(call, aim) || call.context.deformation().rotation_rows().empty() || call.execution.has_time_budget())
+    return false;
+  const EditReport report = call.report;
+  const Vector3 way = (aim.surface - call.accepted.surface).colwise().sum().transpose().normalized();
+  const Vector3 across = way.unitOrthogonal(), up = way.cross(across);
+  for (const double distance : {2 * call.context.far_distance(), 4 * call.context.far_distance()})
+    for (const Vector3& direction : {across, up, Vector3(-across), Vector3(-up)})
+      if (passes_aside(call, aim, distance * direction)) return true;
+  call.report = report;
+  return false;
+}
+
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag) {
+  const double missing = longest_displacement(call.accepted.surface, aim.surface);
+  if (!(missing > missing_growth * drag.missing_at_detour)) return false;
+  const bool passes = detour(call, aim);
+  drag.missing_at_detour = passes || !is_far(call, aim) ? 0 : missing;
+  return passes;
 }
 
 }  // namespace stiv

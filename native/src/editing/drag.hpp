@@ -18,7 +18,8 @@ struct DragProgress {
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_several_calls = false;  ///< and had contacts
-  bool is_leaping = false;  ///< the time budget ended a leap, which the next call to the same goal resumes
+  bool is_leaping = false;       ///< the time budget ended a leap, which the next call to the same goal resumes
+  double missing_at_detour = 0;  ///< way to the goal when the last detour failed; 0: none did
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
 };
@@ -32,9 +33,13 @@ struct PullLimits {
   int poor_pulls = 1;  ///< consecutive pulls that lower the energy too little, after which no other begins
 };
 
+/// Consecutive poor pulls that end a call. One, if a time budget ends most calls after a pull at most.
+int poor_pulls_before_end(const Execution& execution);
+
 /// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
 /// returns from deep inside a wall lifts the shape off the wall, and pulls move it back.
-PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim);
+PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
+                               const Execution& execution);
 
 /// Pulls until the energy no longer falls enough for the rounds that it takes, or not at all. Each pull is one sub-edit
 /// that accepts only a state with lower energy. A pull that gains clearly more than the one before is never poor: a
@@ -44,6 +49,14 @@ void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits
 /// Pulls toward a far goal without a limit on its motion. Short pulls cannot take a shape around an obstacle that the
 /// goal has passed. A leap that fails does not block the call, and is not repeated.
 void leap(EditCall& call, const Aim& aim, DragProgress& drag);
+
+/// Moves rigid bodies that an obstacle keeps far from their goal aside, across the way to it, and lets them leap from
+/// there. Ends where it began if no way aside lowers the energy clearly. Returns whether one did. Does nothing near the
+/// goal, without rotations among the controls, or with a time budget. (mathematics.md, "Deep goals")
+bool detour(EditCall& call, const Aim& aim);
+
+/// The same for a drag, which tries a detour again only when the way to the goal has doubled since one failed.
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag);
 
 /// The longest displacement of a vertex between two surfaces.
 double longest_displacement(const Positions& from, const Positions& to);

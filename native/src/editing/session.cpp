@@ -15,9 +15,6 @@ namespace stiv {
 
 namespace {
 
-/// Consecutive poor pulls that end an edit or settling. One, if a time budget ends most calls after a pull at most.
-int poor_pulls_before_end(const Execution& execution) { return execution.has_time_budget() ? 1 : 2; }
-
 /// Whether a goal counts as followed when the time budget ends its call.
 enum class FollowedGoal {
   after_any_acceptance,
@@ -67,16 +64,17 @@ class EditSession::Implementation {
   EditResult edit(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
+      drag_.missing_at_detour = 0;
       forget_leaps();
       if (longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance() ||
           context_.options().max_sub_edits == 1) {
         run_sub_edits_by_steps(call, aim);
       } else {
-        const State start = accepted_;
+        const Controls start = accepted_.controls;
         approach_by_sub_goals(call, aim);
         refine(call, aim);
-        if (stays_far(call, aim)) retry_directly(call, aim, start);
-        if (!moves_pinned_controls(context_.options(), start.controls, aim.controls)) return_to_best(call, aim);
+        if (detour(call, aim)) refine(call, aim);
+        if (!moves_pinned_controls(context_.options(), start, aim.controls)) return_to_best(call, aim);
       }
     });
   }
@@ -84,12 +82,13 @@ class EditSession::Implementation {
   EditResult drag(const Controls& goal, Execution& execution) {
     return carry_out(goal, execution, FollowedGoal::as_the_work_recorded, [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
-      const PullLimits limits = pull_limits_of_drag(context_, drag_, aim);
+      const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
       if (aim.controls != drag_.followed.controls) forget_leaps();
       if (drag_.is_leaping) leap(call, aim, drag_);
       follow_goal(call, aim, drag_);
       pull_until_settled(call, aim, limits);
       leap(call, aim, drag_);
+      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
     });
   }
 
@@ -100,7 +99,9 @@ class EditSession::Implementation {
       if (is_dragging_) limits.distance = context_.pull_distance();
       if (drag_.is_leaping) leap(call, aim, drag_);
       pull_until_settled(call, aim, limits);
-      if (is_dragging_) leap(call, aim, drag_);
+      if (!is_dragging_) return;
+      leap(call, aim, drag_);
+      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
     });
   }
 
@@ -158,18 +159,6 @@ class EditSession::Implementation {
         call, aim,
         {.pulls = 2 * context_.options().max_sub_edits, .poor_pulls = poor_pulls_before_end(call.execution)});
     call.report.blocked = was_blocked && call.report.blocked;
-  }
-
-  /// Repeats the edit from its start without sub-goals, and uses the better result.
-  void retry_directly(EditCall& call, const Aim& aim, const State& start) {
-    State found = std::exchange(accepted_, start);
-    EditReport report = std::exchange(call.report, {});
-    queries_.clear_cache();
-    run_sub_edits_by_steps(call, aim);
-    refine(call, aim);
-    if (energy(accepted_.surface, aim.surface) < energy(found.surface, aim.surface)) return;
-    accepted_ = std::move(found);
-    call.report = std::move(report);
   }
 
   /// Wraps every call: checks, interruption and the result. A call that is cancelled or throws changes nothing.

@@ -48,7 +48,7 @@ class SubEditLoop {
   double energy_of(const State& state) const { return energy(state.surface, aim_.surface); }
   RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
   RoundOutcome first_answer();
-  bool strays(const State& state) const;
+  bool diverges(const State& state) const;
   Acceptance accept(const RoundOutcome& outcome, bool is_first);
   void report(RoundOutcome& outcome, const Acceptance& acceptance);
 
@@ -85,7 +85,7 @@ RoundOutcome SubEditLoop::first_answer() {
 
 /// Is a state so far from the goal of the sub-edit that it cannot be a projection of it? Nearly linear constraints,
 /// which the accepted state satisfies, never lead further away than that state is.
-bool SubEditLoop::strays(const State& state) const {
+bool SubEditLoop::diverges(const State& state) const {
   if (moves_pinned_controls(call_.context.options(), call_.accepted.controls, aim_.controls)) return false;
   const std::optional<State> goal = feasible_state(call_.context, aim_.controls, call_.execution);
   return goal && energy(state.surface, goal->surface) > largest_growth * energy(call_.accepted.surface, goal->surface);
@@ -97,7 +97,7 @@ Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
   // A first solution that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
   const bool may_raise_energy = is_first && outcome.clear && !aim_.must_improve;
   const auto is_agreeable = [&](const State& state) {
-    return energy_of(state) < energy_before_ || (may_raise_energy && !strays(state));
+    return energy_of(state) < energy_before_ || (may_raise_energy && !diverges(state));
   };
   Acceptance acceptance = accept_largest_fraction(call_, outcome, is_agreeable);
   const bool cannot_improve = outcome.clear && aim_.must_improve;

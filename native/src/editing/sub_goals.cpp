@@ -42,11 +42,6 @@ void approach_by_sub_goals(EditCall& call, const Aim& aim) {
   run_sub_edits_by_steps(call, aim);
 }
 
-bool stays_far(const EditCall& call, const Aim& aim) {
-  return !call.context.deformation().rotation_rows().empty() && !call.execution.has_time_budget() &&
-         longest_displacement(call.accepted.surface, aim.surface) > call.context.far_distance();
-}
-
 void return_to_best(EditCall& call, const Aim& aim) {
   std::vector<Controls>& path = call.report.path;
   double least = energy(call.accepted.surface, aim.surface);

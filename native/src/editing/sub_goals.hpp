@@ -11,10 +11,6 @@ namespace stiv {
 /// the rounds. (mathematics.md, "The loop")
 void approach_by_sub_goals(EditCall& call, const Aim& aim);
 
-/// Is a goal that rotates still far after the sub-goals, so that the direct way is worth a try? A rigid body has few
-/// controls, so either way may end in a corner.
-bool stays_far(const EditCall& call, const Aim& aim);
-
 /// Ends the edit at the accepted state of its path with the least energy. A sub-edit can raise the energy, because it
 /// aims at a sub-goal or at a rotation step.
 void return_to_best(EditCall& call, const Aim& aim);

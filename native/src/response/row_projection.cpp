@@ -10,6 +10,9 @@ namespace stiv {
 
 namespace {
 
+constexpr int max_sweeps = 300;         // of thousands of nearly dependent rows, which hardly ever settle
+constexpr int sweeps_per_full_one = 8;  // the others visit only rows with a positive multiplier
+
 void make_as_long(Eigen::VectorXd& multipliers, Eigen::Index size) {
   const Eigen::Index given = std::min(size, multipliers.size());
   multipliers.conservativeResize(size);
@@ -17,21 +20,71 @@ void make_as_long(Eigen::VectorXd& multipliers, Eigen::Index size) {
   multipliers.tail(size - given).setZero();
 }
 
-/// One sweep over all rows, of length 1 in the metric. Returns the largest change of a multiplier.
-double sweep(const std::vector<ControlConstraint>& constraints, Controls& p, Eigen::VectorXd& multipliers) {
-  double largest_change = 0;
-  Eigen::Index r = 0;
-  for (const ControlConstraint& constraint : constraints) {
-    double& multiplier = multipliers[r++];
-    const double slack = dot(constraint.row, p) - constraint.bound;
-    const double change = std::max(0.0, multiplier - slack) - multiplier;
-    if (change == 0) continue;
-    multiplier += change;
-    add_scaled(p, change, constraint.step);
-    largest_change = std::max(largest_change, std::abs(change));
+/// Sparse fields one after another: a sweep reads them in order, and fields of their own are scattered in memory.
+class FieldList {
+ public:
+  FieldList(const std::vector<ControlConstraint>& constraints, SparseField ControlConstraint::*field) {
+    for (const ControlConstraint& constraint : constraints) {
+      const SparseField& entries = constraint.*field;
+      index_.insert(index_.end(), entries.index.begin(), entries.index.end());
+      value_.insert(value_.end(), entries.value.begin(), entries.value.end());
+      end_.push_back(index_.size());
+    }
   }
-  return largest_change;
-}
+
+  double dot(std::size_t field, const Controls& p) const {
+    double sum = 0;
+    for (std::size_t k = begin(field); k < end_[field]; ++k) sum += value_[k].dot(p.row(index_[k]).transpose());
+    return sum;
+  }
+
+  void add_scaled(Controls& p, double factor, std::size_t field) const {
+    for (std::size_t k = begin(field); k < end_[field]; ++k) p.row(index_[k]) += factor * value_[k].transpose();
+  }
+
+ private:
+  std::size_t begin(std::size_t field) const { return field == 0 ? 0 : end_[field - 1]; }
+
+  std::vector<Index> index_;
+  std::vector<Vector3> value_;
+  std::vector<std::size_t> end_;
+};
+
+/// Constraints of length 1 in the metric, for sweeps.
+class SweptRows {
+ public:
+  explicit SweptRows(const std::vector<ControlConstraint>& constraints)
+      : rows_(constraints, &ControlConstraint::row), steps_(constraints, &ControlConstraint::step) {
+    for (const ControlConstraint& constraint : constraints) bounds_.push_back(constraint.bound);
+  }
+
+  void move(Controls& p, const Eigen::VectorXd& multipliers) const {
+    for (std::size_t r = 0; r < bounds_.size(); ++r) {
+      const double multiplier = multipliers[static_cast<Eigen::Index>(r)];
+      if (multiplier > 0) steps_.add_scaled(p, multiplier, r);
+    }
+  }
+
+  /// One sweep over all rows, or those with a positive multiplier. Returns the largest change of a multiplier.
+  double sweep(Controls& p, Eigen::VectorXd& multipliers, bool all) const {
+    double largest_change = 0;
+    for (std::size_t r = 0; r < bounds_.size(); ++r) {
+      double& multiplier = multipliers[static_cast<Eigen::Index>(r)];
+      if (!all && multiplier == 0) continue;
+      const double slack = rows_.dot(r, p) - bounds_[r];
+      const double change = std::max(0.0, multiplier - slack) - multiplier;
+      if (change == 0) continue;
+      multiplier += change;
+      steps_.add_scaled(p, change, r);
+      largest_change = std::max(largest_change, std::abs(change));
+    }
+    return largest_change;
+  }
+
+ private:
+  FieldList rows_, steps_;
+  std::vector<double> bounds_;
+};
 
 }  // namespace
 
@@ -45,13 +98,18 @@ std::size_t sweep_cost(const std::vector<ControlConstraint>& constraints) {
 Controls project_by_rows(const std::vector<ControlConstraint>& constraints, const Controls& from,
                          Eigen::VectorXd& multipliers, const LcpOptions& options) {
   make_as_long(multipliers, static_cast<Eigen::Index>(constraints.size()));
+  const SweptRows rows(constraints);
   Controls p = from;
-  for (Eigen::Index r = 0; r < multipliers.size(); ++r)
-    if (multipliers[r] > 0) add_scaled(p, multipliers[r], constraints[at(r)].step);
-  for (int k = 0; k < options.max_sweeps; ++k) {
+  rows.move(p, multipliers);
+  const int most = std::min(options.max_sweeps, max_sweeps);
+  bool all = true;
+  for (int k = 0; k < most; ++k) {
     if (options.execution != nullptr) options.execution->check();
-    const double change = sweep(constraints, p, multipliers);
-    if (change <= options.tolerance * (multipliers.size() > 0 ? multipliers.maxCoeff() : 0)) break;
+    all = all || k % sweeps_per_full_one == 0;
+    const double change = rows.sweep(p, multipliers, all);
+    const bool settled = change <= options.tolerance * (multipliers.size() > 0 ? multipliers.maxCoeff() : 0);
+    if (settled && all) break;
+    all = settled;
   }
   return p;
 }
