@@ -161,6 +161,15 @@ class StivSceneSettings(bpy.types.PropertyGroup):
     guard: EnumProperty(
         name="Guard", description="Evaluation that stays free of intersections", items=GUARDS, default="auto"
     )
+    joint_region: FloatProperty(
+        name="Joint Region",
+        description="Skin around joints that may fold into itself, in radii of the limb; 0 for none",
+        default=2.0,
+        min=0.0,
+        soft_max=5.0,
+        step=10,
+        precision=2,
+    )
     smoothness: FloatProperty(
         name="Smoothness",
         description="Higher spreads the response smoothly, lower follows the goal more tightly",

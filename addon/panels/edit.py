@@ -37,7 +37,7 @@ class STIV_PT_edit(SidebarPanel, bpy.types.Panel):
         settings.prop(context.scene.stiv, "interference")
         scene = context.scene.stiv
         draw_automatic(settings, scene, "separation", "automatic_separation", "Minimum Distance", LABEL_WIDTH)
-        for name in SETTINGS:
+        for name in (*SETTINGS, *(("joint_region",) if context.mode == "POSE" else ())):
             settings.prop(context.scene.stiv, name)
         draw_lines(settings, automatic_guard(context))
         draw_lines(self.layout, context.window_manager.stiv_check.left_out)

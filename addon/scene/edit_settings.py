@@ -27,6 +27,7 @@ def edit_settings(
         responders=chosen.responders if request is None else request.responders,
         object_response=chosen.object_response if request is None else request.response,
         slide_out_of_axis=chosen.slide_out_of_axis,
+        joint_region=chosen.joint_region,
         guard=chosen.guard,
         smoothness=round(chosen.smoothness, 6),  # single precision: 0.1 becomes the core's 0.1
         constraints=chosen.constraints,

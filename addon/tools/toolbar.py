@@ -24,6 +24,8 @@ def draw_settings(context: bpy.types.Context, layout: bpy.types.UILayout, tool: 
     layout.prop(settings, "responders")
     if context.mode == "OBJECT":
         layout.prop(settings, "object_response")
+    elif context.mode == "POSE":
+        layout.prop(settings, "joint_region")
     if settings.automatic_separation:
         layout.row(heading="Minimum Distance").prop(settings, "automatic_separation", text="Auto", toggle=True)
     else:

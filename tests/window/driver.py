@@ -46,6 +46,7 @@ class Driver:
         from latency import LATENCIES
         from layout_scenarios import LAYOUT
         from measuring import MEASURES
+        from posing_drags import POSING_DRAGS
         from proportional_editing import PROPORTIONAL_EDITING
         from real_events import REAL_EVENTS
         from redo_panel import REDO_PANEL
@@ -61,7 +62,7 @@ class Driver:
         self.window = Window(output)
         guard = GUARD | GUARD_NEW_GEOMETRY | GUARD_EDIT_MODE | GUARD_SCULPTING | GUARD_SWITCH | GUARD_UNCORRECTED
         guard |= GUARD_LONG_CORRECTION
-        drags = DRAGS | FINISHING | DEFORMING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
+        drags = DRAGS | FINISHING | DEFORMING_DRAGS | POSING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | SNAPPING_BESIDE_BLENDER | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES
         usual |= GETTING_STARTED

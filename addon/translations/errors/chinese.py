@@ -127,6 +127,7 @@ MESSAGES = {
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",
     '{} depends on "{}"; select both': "{}依赖于“{}”；请同时选择两者",
+    "{} faces at joints may fold into each other": "关节处的 {} 个面可以相互折叠",
     "{} has a coordinate that is not finite; change it": "{} 有非有限坐标；请更改",
     "{} has another active shape key": "{} 的活动形态键已改变",
     "{} has left {} Mode": "{} 已离开 {} 模式",

@@ -163,6 +163,8 @@ class EditSettings(SharedOptions):
             same name twice for an object with itself.
         excluded: pairs of faces that intersect already. Those of one object may continue to, those of two objects may
             overlap no more than at the start.
+        joint_region: skin around joints that turn, which may fold: its distance from the joint in radii of the limb. It
+            is not tested against itself and its neighbours. 0 tests all skin.
         guard: the evaluations that stay free of intersections: "viewport" (in Edit Mode also what Object Mode shows),
             "render" or "both"; "auto" is "both" where they differ and the surface is small enough.
     """
@@ -179,12 +181,15 @@ class EditSettings(SharedOptions):
     roles: Mapping[str, str] = field(default_factory=dict)
     ignored_pairs: tuple[tuple[str, str], ...] = ()
     excluded: Exclusions = field(default_factory=Exclusions)
+    joint_region: float = 2.0
     guard: str = "auto"
 
     def __post_init__(self) -> None:
         """Refuse unknown choices."""
         _require("responders", self.responders, RESPONDERS)
         _require("guard", self.guard, GUARDS)
+        if not 0 <= self.joint_region < float("inf"):
+            raise InputError(f"joint_region: {self.joint_region!r} must be a finite number of at least 0")
         response = FORMER_RESPONSES.get(self.object_response, self.object_response)
         object.__setattr__(self, "object_response", response)
         _require("object_response", self.object_response, OBJECT_RESPONSES)

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`stiv.move`, `stiv.rotate` and `stiv.scale` in Pose Mode: contact, undo, Auto Keying, and what they refuse."""
 
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy")
-sys.path.insert(0, str(Path(__file__).parents[2] / "blender"))
-
-from building import add_cube  # noqa: E402
-from characters import make_character, select_bones  # noqa: E402
+from blend_fixtures.characters import make_character, select_bones  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -22,7 +17,10 @@ def rig() -> Any:
     """A character with a box below its left forearm."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     rig, _ = make_character(0.12)
-    add_cube("Box", (1.3, 0, 0.6), 0.3)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.mesh.primitive_cube_add(size=0.6, location=(1.3, 0, 0.6))
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="POSE")
     select_bones(rig, "Arm.L")
     bpy.context.scene.stiv.separation = 0.01
     return rig

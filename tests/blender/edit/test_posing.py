@@ -10,10 +10,10 @@ import bpy
 import numpy as np
 import pytest
 from building import add_cube, add_modifier, evaluated, shift, stretch, turn
-from characters import make_character, select_bones
 from oracles import rational
 
 import stiv
+from blend_fixtures.characters import make_character, select_bones
 from stiv.blender import BlenderEdit, EditSettings, Motion, WriteReport
 
 SETTINGS = EditSettings(separation=0.01)
@@ -40,7 +40,11 @@ def triangles(ob: Any) -> np.ndarray:
 
 def intersecting(first: Any, second: Any) -> int:
     """Number of pairs of triangles of two objects that intersect, by exact rational arithmetic."""
-    a, b = triangles(first), triangles(second)
+    return pairs_of(triangles(first), triangles(second))
+
+
+def pairs_of(a: np.ndarray, b: np.ndarray) -> int:
+    """Number of pairs of triangles, (s, 3, 3) and (t, 3, 3), that intersect."""
     overlap = (a.min(1)[:, None] <= b.max(1)[None]).all(2) & (b.min(1)[None] <= a.max(1)[:, None]).all(2)
     pairs = np.argwhere(overlap).tolist()
     return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.concatenate([a[i], b[j]])) for i, j in pairs)
@@ -183,6 +187,67 @@ def test_other_bones_yield_if_asked() -> None:
     assert any(bone.rotation_quaternion.angle > 0.05 for bone in rig.pose.bones if bone.name != "Arm.L")
 
 
+def limbs(body: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles, (t, 3, 3), of the left arm, and of the body without arms; those at the shoulder are in neither."""
+    names = [group.name for group in body.vertex_groups]
+    share = np.zeros(len(body.data.vertices))
+    for vertex in body.data.vertices:
+        share[vertex.index] = sum(each.weight for each in vertex.groups if names[each.group] in ("Arm.L", "Forearm.L"))
+    body.data.calc_loop_triangles()
+    corners = np.array([list(each.vertices) for each in body.data.loop_triangles])
+    points, rest = evaluated(body), np.array([vertex.co for vertex in body.data.vertices])
+    arm = (share[corners] == 1).all(1) & (rest[corners][:, :, 0] > 0.85).all(1)
+    trunk = (share[corners] == 0).all(1) & (rest[corners][:, :, 0] > -0.45).all(1)
+    return points[corners[arm]], points[corners[trunk]]
+
+
+def turned(bone: Any) -> float:
+    return float(np.degrees(bone.rotation_quaternion.angle))
+
+
+def test_an_arm_collides_with_its_own_body() -> None:
+    """Without collisions it would enter the chest; with them it stops there, and the shoulder folds."""
+    rig, body, box = box_below_hand()
+    bpy.data.objects.remove(box)
+    down = turn(np.radians(115), "Y", SHOULDER)
+    _, _, edit = apply("rotate", down, EditSettings(interference=False))
+    assert pairs_of(*limbs(body)) > 0
+    edit.restore()
+    result, report, edit = apply("rotate", down)
+    assert result.status in ("corrected", "blocked") and report.passed
+    assert 80 < turned(rig.pose.bones["Arm.L"]) < 105
+    assert pairs_of(*limbs(body)) == 0
+    assert any("Body: " in note and "faces at joints may fold" in note for note in edit.start_notes)
+
+
+def test_the_region_of_a_joint_is_adjustable() -> None:
+    angles = []
+    for region in (0.0, 1.2, 2.0):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        rig, _, box = box_below_hand()
+        bpy.data.objects.remove(box)
+        select_bones(rig, "Forearm.L")
+        settings = EditSettings(separation=0.01, joint_region=region)
+        apply("rotate", turn(np.radians(-150), "Z", (1, 0, 1.35)), settings)
+        angles.append(turned(rig.pose.bones["Forearm.L"]))
+    assert angles[0] < angles[1] < angles[2] and angles[2] > 110, angles
+    with pytest.raises(stiv.InputError, match=r"joint_region: -1\.0 must be a finite number of at least 0"):
+        EditSettings(joint_region=-1.0)
+
+
+def test_limbs_that_cut_at_the_start_do_not_get_worse() -> None:
+    _, body, box = box_below_hand()
+    bpy.data.objects.remove(box)
+    apply("rotate", turn(np.radians(100), "Y", SHOULDER), EditSettings(interference=False))
+    before = pairs_of(*limbs(body))
+    assert before > 0
+    _, report, edit = apply("rotate", turn(np.radians(15), "Y", SHOULDER))
+    assert report.passed and 0 < pairs_of(*limbs(body)) <= before
+    assert any("Body intersects itself" in note for note in edit.start_notes)
+    result, report, _ = apply("rotate", turn(np.radians(-40), "Y", SHOULDER))
+    assert result.status == "reached" and report.passed and pairs_of(*limbs(body)) == 0
+
+
 def test_random_poses_never_intersect() -> None:
     """Random rotations of random bones among obstacles: after each, the exact test finds nothing."""
     random = np.random.default_rng(7)
@@ -206,7 +271,7 @@ def test_random_poses_never_intersect() -> None:
         result, report, _ = apply("rotate", turn(random.uniform(-1.2, 1.2), axis, head))
         statuses.append(result.status)
         assert report.passed, report.message
-        assert sum(intersecting(body, each) for each in obstacles) == 0
+        assert sum(intersecting(body, each) for each in obstacles) == pairs_of(*limbs(body)) == 0
     assert 5 < statuses.count("reached") < 20 and statuses.count("blocked") < 8, statuses
 
 

@@ -67,16 +67,15 @@ def make_bone_set(
         if settings.responders != "selected":
             bones += _other_bones(rig, {each.name for each in moved})
     followers = find_followers(context.scene, {rig.name for rig in rigs})
-    surfaces = tuple(index for index, mesh in enumerate(meshes) if mesh.owner.name in followers)
-    if not surfaces:
+    if not any(mesh.owner.name in followers for mesh in meshes):
         raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
-    posed = PosedSurface(bones, frozenset(followers), [meshes[index] for index in surfaces])
+    posed = PosedSurface(bones, frozenset(followers), meshes, settings.joint_region)
     scalars = BoneScalars(tuple(bones))
     weights = scalars.of([_weights(bone, kind, settings) for bone in bones])
     return ControlSet(
         tuple(rig.name for rig in rigs),
         "bones",
-        surfaces,
+        posed.surfaces,
         posed.deformation,
         posed.deformation.controls(posed.start),
         weights,
@@ -84,6 +83,7 @@ def make_bone_set(
         None,
         BoneGoal(scalars),
         BoneWriter(scalars, MOVED[kind]),
+        note=posed.note,
         posed=posed,
     )
 

@@ -48,7 +48,8 @@ def make_control_sets(
     """Make all control sets and rigid groups. Raises InputError for what cannot be moved, with nothing changed."""
     if any(each.role == "bones" for each in participants):
         posed = make_bone_set(context, participants, meshes, settings, kind)
-        _check_surface(posed, meshes)
+        assert posed.posed is not None
+        _check_surface(posed, posed.posed.meshes)
         return [posed], []
     participants = drop_locked(participants, kind)
     groups = find_rigid_groups(participants, evaluations_of(meshes), kind)

@@ -11,13 +11,15 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.bone_channels import BoneChannels
-from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
+from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
+from stiv.blender.scene.arrays import Floats, Indices, as_matrix, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
 
+TURNED = 1e-5  # change of a matrix above which a bone turns against its parent
 STEP = 0.01  # of the differences for a Jacobian: radians, factors, and diagonals of the surface
 
 
@@ -27,26 +29,62 @@ class PosedSurface:
     Attributes:
         deformation: infeasible where the topology of a mesh differs from that at the start.
         start: scalars at the start, (k,).
+        meshes: all meshes of the scene; those that the bones bend are divided at joints.
+        surfaces: indices of those that the bones move.
+        untested: pairs of parts that are not tested against each other, with the name of the object.
+        note: on the faces at joints; "" without any.
     """
 
-    def __init__(self, bones: Sequence[BoneChannels], followers: frozenset[str], meshes: Sequence[VisibleMesh]) -> None:
-        """followers: names of all objects that move with the rigs. meshes: those of them that are visible."""
-        self._poses = _Poses(BoneScalars(tuple(bones)), followers, meshes)
-        scalars = self._poses.scalars
+    def __init__(
+        self,
+        bones: Sequence[BoneChannels],
+        followers: frozenset[str],
+        meshes: Sequence[VisibleMesh],
+        joint_region: float,
+    ) -> None:
+        """followers: names of all objects that move with the rigs. joint_region: as in EditSettings."""
+        scalars = BoneScalars(tuple(bones))
+        moved = [mesh for mesh in meshes if mesh.owner.name in followers]
         self.start = scalars.start
         with kept_twins():
-            self.deformation = stiv.scalars(
-                self._poses.evaluate,
-                self._poses.jacobian(),
-                lower=scalars.of([each.lower for each in bones]),
-                upper=scalars.of([each.upper for each in bones]),
-                longest_step=scalars.of([each.longest_steps for each in bones]),
-            )
+            self._poses = _Poses(scalars, followers, moved)
+            jacobian = self._poses.jacobian()
+            regions = divide_all(moved, self._poses.weights(), self._poses.joints(), jacobian, joint_region)
+        waiting = iter(regions)
+        divided = [next(waiting).parts if mesh.owner.name in followers else (mesh,) for mesh in meshes]
+        self.meshes = tuple(part for parts in divided for part in parts)
+        self.surfaces = tuple(k for k, mesh in enumerate(self.meshes) if mesh.owner.name in followers)
+        pairs = zip(moved, regions, strict=True)
+        self.untested = frozenset((mesh.owner.name, a, b) for mesh, each in pairs for a, b in each.untested)
+        self.note = joint_note(moved, regions)
+        rows = self._rows = _rows_of(moved, [self.meshes[k] for k in self.surfaces])
+        poses = self._poses
+
+        def evaluate(values: Floats) -> Floats | None:
+            found = poses.evaluate(values)
+            return None if found is None else found[rows]
+
+        self.deformation = stiv.scalars(
+            evaluate,
+            jacobian[rows],
+            lower=scalars.of([each.lower for each in bones]),
+            upper=scalars.of([each.upper for each in bones]),
+            longest_step=scalars.of([each.longest_steps for each in bones]),
+        )
 
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation."""
         with kept_twins():
-            self.deformation.set_jacobian(self._poses.jacobian())
+            self.deformation.set_jacobian(self._poses.jacobian()[self._rows])
+
+
+def _rows_of(meshes: Sequence[VisibleMesh], parts: Sequence[VisibleMesh]) -> Indices:
+    """For each vertex of the parts, in turn, its number in the meshes, in turn."""
+    starts = np.cumsum([0, *(len(mesh.local) for mesh in meshes)])
+    firsts = np.cumsum([part.part == 0 for part in parts]) - 1
+    own = [np.arange(len(part.local)) if part.cropped is None else part.cropped.vertices for part in parts]
+    found = [starts[first] + vertices for first, vertices in zip(firsts, own, strict=True)]
+    return np.concatenate(found).astype(np.int32)
 
 
 @dataclass(frozen=True)
@@ -84,6 +122,7 @@ class _Poses:
         self._counts = [len(each.local) for each in meshes]
         self._last = scalars.start
         self._size = float(np.linalg.norm(np.ptp(np.concatenate([each.world() for each in meshes]), axis=0))) or 1.0
+        self._turned: dict[tuple[int, str], bool] | None = None  # bones, and whether the goal turns them
         with kept_twins():
             self._start = self._observe(scalars.start)
 
@@ -100,6 +139,9 @@ class _Poses:
         """One-sided differences at the last evaluation, (n, 3, k); 0 where the topology changes."""
         last = self._last.copy()
         here = self.evaluate(last)
+        before = self._twin().local_matrices() if self._turned is None else {}
+        turned: dict[tuple[int, str], bool] = {}
+        given = self.scalars.of([np.full(10, bone.selected, float) for bone in self.scalars.bones])
         result = np.zeros((sum(self._counts), 3, len(last)))
         for k, step in enumerate(self._steps):
             moved = last.copy()
@@ -107,8 +149,34 @@ class _Poses:
             there = self.evaluate(moved)
             if here is not None and there is not None:
                 result[:, :, k] = (there - here) / step
+            if self._turned is None:
+                after = self._twin().local_matrices()
+                for bone in (each for each, old in before.items() if np.abs(old - after[each]).max() > TURNED):
+                    turned[bone] = turned.get(bone, False) or bool(given[k])
+        self._turned = turned if self._turned is None else self._turned
         self._last = last
         return result
+
+    def joints(self) -> list[Joint]:
+        """The bones that turn against their parents as the scalars change."""
+        found = []
+        for (number, name), is_given in sorted((self._turned or {}).items()):
+            rig = next(each.rig for each in self.scalars.bones if each.rig.session_uid == number).find()
+            bone = rig.pose.bones[name]
+            names = frozenset({name, *(each.name for each in bone.children_recursive)})
+            found.append(Joint(np.array(rig.matrix_world @ bone.head), names, not is_given))
+        return found
+
+    def weights(self) -> list[tuple[list[str], Floats]]:
+        """Names of bones, and their weights at the vertices of each mesh, (n, g)."""
+        return [
+            self._twin(evaluation).weights(owner, count)
+            for (evaluation, owner), count in zip(self._owners, self._counts, strict=True)
+        ]
+
+    def _twin(self, evaluation: str = "") -> RigTwin:
+        chosen = evaluation or self._owners[0][0]
+        return kept_twin((self, chosen), lambda: self._make_twin(chosen))
 
     @property
     def _steps(self) -> Floats:
@@ -120,8 +188,7 @@ class _Poses:
         """All meshes at scalars, (k,), in their order."""
         shown: dict[tuple[str, ObjectReference], list[_PosedMesh]] = {}
         for evaluation in dict.fromkeys(read_from for read_from, _ in self._owners):
-            twin = kept_twin((self, evaluation), lambda e=evaluation: self._make_twin(e))  # type: ignore[misc]
-            for owner, mesh in twin.evaluate(self.scalars.channels(values)):
+            for owner, mesh in self._twin(evaluation).evaluate(self.scalars.channels(values)):
                 shown.setdefault((evaluation, owner), []).append(mesh)
         waiting = {key: iter(found) for key, found in shown.items()}
         missing = _PosedMesh.missing()
@@ -196,6 +263,30 @@ class RigTwin:
                 with evaluated_mesh(instance.object) as mesh:
                     stack = EvaluatedStack(read_positions(mesh), *read_corners(mesh))
                 yield ObjectReference.of(owner), _PosedMesh(stack, as_matrix(instance.matrix_world))
+
+    def local_matrices(self) -> dict[tuple[int, str], Floats]:
+        """The matrix of each bone relative to its parent, by rig and name."""
+        graph, found = self._copies.depsgraph, {}
+        for number, rig in self._rigs.items():
+            for bone in rig.evaluated_get(graph).pose.bones:
+                if bone.parent is not None:
+                    found[number, bone.name] = as_matrix(bone.parent.matrix.inverted_safe() @ bone.matrix)
+        return found
+
+    def weights(self, owner: ObjectReference, count: int) -> tuple[list[str], Floats]:
+        """Names of the bones that have vertex groups, and their weights, (n, g), at n evaluated vertices."""
+        bones = {bone.name for rig in self._rigs.values() for bone in rig.data.bones}
+        shown = self._copies.evaluated(owner)
+        names = [group.name for group in shown.vertex_groups if group.name in bones] if shown.type == "MESH" else []
+        result = np.zeros((count, len(names)))
+        column = {shown.vertex_groups[name].index: k for k, name in enumerate(names)}
+        with evaluated_mesh(shown) as mesh:
+            if names and len(mesh.vertices) == count:
+                for row, vertex in enumerate(mesh.vertices):
+                    for group in vertex.groups:
+                        if group.group in column:
+                            result[row, column[group.group]] = group.weight
+        return names, result
 
     def remove(self) -> None:
         """Remove the copies and their scene."""

@@ -33,9 +33,8 @@ def assemble_with_controls(
             mobility[index] = "rigid" if control_set.role == "rigid" and control_set.placed is None else "deformable"
         for index, each in zip(control_set.surfaces, control_set.seams, strict=False):
             seams[index] = each
-    posed = {meshes[index].owner.name for each in control_sets if each.role == "bones" for index in each.surfaces}
-    ignored = (*settings.ignored_pairs, *((name, name) for name in sorted(posed)))  # skin folds at joints
-    return assemble(meshes, mobility, together, ignored, seams)
+    untested = {pair for each in control_sets if each.posed is not None for pair in each.posed.untested}
+    return assemble(meshes, mobility, together, settings.ignored_pairs, seams, untested)
 
 
 def make_session(
@@ -57,7 +56,7 @@ def make_session(
         weights=weights_of_all([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
-        overlapping=excluded_bodies(settings.excluded, assembly.surface),
+        overlapping=excluded_bodies(settings.excluded, assembly),
         single_precision=bool(frames),
         storage=frames,
     )

@@ -71,14 +71,15 @@ def take_snapshot(
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     found, groups = make_control_sets(context, participants, solid, settings, kind)
     control_sets = tuple(adapt(mirror_controls(each, solid)) for each in found)
+    divided = next((each.posed.meshes for each in control_sets if each.posed is not None), solid)
     if not any(each.rule.moves for each in control_sets):
         raise _nothing_moves(participants, solid)
     moving = {each.reference.name for each in participants}.union(
         *(group.members for group in groups),
-        (solid[index].owner.name for control_set in control_sets for index in control_set.surfaces),
+        (divided[index].owner.name for control_set in control_sets for index in control_set.surfaces),
     )
     still, carried = _static_strands(context, scene.meshes, moving)
-    meshes = [*solid, *still]
+    meshes = [*divided, *still]
     assembly = assemble_with_controls(meshes, control_sets, [group.members for group in groups], settings)
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]

@@ -201,7 +201,7 @@ def _make_session(
         pair_separations=body_separations(assembly, settings),
         weights=weights,
         exclude=find_excluded_triangles(excluded, assembly, assembly.positions, settings.threads),
-        overlapping=excluded_bodies(excluded, assembly.surface),
+        overlapping=excluded_bodies(excluded, assembly),
     )
     return stiv.EditSession(assembly.surface, deformation, controls, options)
 

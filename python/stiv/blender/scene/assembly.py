@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """All visible meshes as one surface, with lookup from its triangles to objects and faces."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,8 @@ from stiv.seams import Seams, find_seams
 
 ROUNDING = 2.0**-19  # of an object's extent; Blender computes the copies of a seam separately, in single precision
 
-_Body = tuple[str, str, frozenset[str], frozenset[str]]  # object, mobility, evaluations, roots of strands
+_Body = tuple[str, str, frozenset[str], frozenset[str], int]  # object, mobility, evaluations, roots of strands, part
+Untested = Collection[tuple[str, int, int]]  # an object, and two parts of its mesh
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Assembly:
     def face(self, triangle: int) -> Element:
         """The face of a triangle of the surface."""
         mesh, number = self._locate(triangle, [len(each.triangles) for each in self.meshes])
-        return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from)
+        return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
     def loose_edge(self, edge: int) -> Element:
         """The edge of a loose edge of the surface."""
@@ -68,7 +69,7 @@ class Assembly:
         if mesh.strands is not None:
             return Element(mesh.owner.name, "strand", int(mesh.strands[number]), mesh.read_from)
         first = number if seams is None else int(seams.first[number])
-        return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_from)
+        return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_from, mesh.part)
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)
@@ -104,20 +105,22 @@ def assemble(
     together: Sequence[frozenset[str]] = (),
     ignored: Sequence[tuple[str, str]] = (),
     seams: Sequence[Seams | None] = (),
+    untested: Untested = (),
 ) -> Assembly:
     """Assemble meshes into one surface.
 
     mobility: "fixed", "rigid" or "deformable" for each mesh. together: sets of names of objects that move together;
     rigid ones are not tested against each other. ignored: pairs of names that are not tested. seams: vertices to merge
-    in each mesh; empty for none. Meshes that no evaluation shows together are not tested against each other, nor
-    strands against their roots.
+    in each mesh; empty for none. untested: parts that are not tested against each other.
+
+    Meshes that no evaluation shows together are not tested against each other, nor strands against their roots.
     """
     joins = tuple(seams) or (None,) * len(meshes)
     counts = [len(mesh.local) if each is None else len(each.first) for mesh, each in zip(meshes, joins, strict=True)]
     starts = np.cumsum([0, *counts]).astype(np.int32)
     bodies: dict[_Body, int] = {}
     body = [
-        bodies.setdefault((mesh.owner.name, m, mesh.shown_in, mesh.rooted_in), len(bodies))
+        bodies.setdefault((mesh.owner.name, m, mesh.shown_in, mesh.rooted_in, mesh.part), len(bodies))
         for mesh, m in zip(meshes, mobility, strict=True)
     ]
     surface = stiv.Surface(
@@ -126,7 +129,7 @@ def assemble(
         _renumber([mesh.loose_edges for mesh in meshes], starts, joins, 2),
         np.repeat(np.array(body, np.int32), np.diff(starts)),
         [stiv.Body(name, kind) for name, kind, *_ in bodies] or None,
-        _ignored_bodies(bodies, together, ignored),
+        _ignored_bodies(bodies, together, ignored, frozenset(untested)),
     )
     world = [_merge_seams(each, mesh.world()) for mesh, each in zip(meshes, joins, strict=True)]
     return Assembly(tuple(meshes), starts, surface, np.concatenate([np.empty((0, 3)), *world]), joins)
@@ -150,15 +153,21 @@ def _merge_seams(seams: Seams | None, points: Floats) -> Floats:
 
 
 def _ignored_bodies(
-    bodies: Mapping[_Body, int], together: Sequence[frozenset[str]], ignored: Sequence[tuple[str, str]]
+    bodies: Mapping[_Body, int],
+    together: Sequence[frozenset[str]],
+    ignored: Sequence[tuple[str, str]],
+    untested: frozenset[tuple[str, int, int]],
 ) -> list[tuple[int, int]]:
     pairs = set()
-    for (first, kind, here, roots), a in bodies.items():
-        for (second, other, there, grown), b in bodies.items():
+    for (first, kind, here, roots, part), a in bodies.items():
+        for (second, other, there, grown, part_of_other), b in bodies.items():
             if b < a:
                 continue
             rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
             rooted = first in grown or second in roots
-            if rigid or rooted or not here & there or (first, second) in ignored or (second, first) in ignored:
+            folds = first == second and not untested.isdisjoint(
+                {(first, part, part_of_other), (first, part_of_other, part)}
+            )
+            if rigid or rooted or folds or not here & there or (first, second) in ignored or (second, first) in ignored:
                 pairs.add((a, b))
     return sorted(pairs)

@@ -6,18 +6,27 @@ from dataclasses import dataclass, field
 
 from stiv.blender.scene.evaluations import SHOWN
 
+PART = "\t"  # between the name of an object and the number of a part
+
 
 @dataclass(frozen=True)
 class Element:
     """A face, edge or vertex of an object's evaluated mesh, or a strand; `kind` says which.
 
     evaluation: "shown", or "viewport" (Object Mode) or "render" for elements that are not shown now.
+    part: of a mesh that an edit divides.
     """
 
     object: str
     kind: str
     number: int
     evaluation: str = SHOWN
+    part: int = 0
+
+    @property
+    def side(self) -> str:
+        """Name of the object; extended for all parts of a divided mesh but the first."""
+        return f"{self.object}{PART}{self.part}" if self.part else self.object
 
 
 @dataclass(frozen=True)

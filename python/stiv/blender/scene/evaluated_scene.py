@@ -63,6 +63,7 @@ class VisibleMesh:
         shown_in: the evaluations that show exactly this mesh.
         strands: strand of each vertex, (n,), of curves and hair; None for meshes.
         rooted_in: names of the objects that carry the strands, and are not tested against them.
+        part: number of the part, if a mesh is divided into several that follow each other.
     """
 
     owner: ObjectReference
@@ -78,6 +79,7 @@ class VisibleMesh:
     shown_in: frozenset[str] = frozenset(EVALUATIONS)
     strands: Indices | None = None
     rooted_in: frozenset[str] = frozenset()
+    part: int = 0
 
     @property
     def is_instance(self) -> bool:
@@ -97,6 +99,15 @@ class VisibleMesh:
     def vertex_number(self, vertex: int) -> int:
         """Number of a vertex in Blender's mesh."""
         return vertex if self.cropped is None else int(self.cropped.vertices[vertex])
+
+    def own_triangles(self, triangles: Indices, faces: Indices) -> tuple[Indices, Indices]:
+        """Those of all triangles of Blender's mesh that belong to this one, and their faces."""
+        if self.cropped is None:
+            return triangles, faces
+        place = np.full(self.size, -1, np.int32)
+        place[self.cropped.vertices] = np.arange(len(self.local), dtype=np.int32)
+        rows = np.isin(faces, self.faces)
+        return place[triangles[rows]], faces[rows]
 
     @property
     def size(self) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.elements import PART, Element, FacePair
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
 from stiv.blender.settings import Exclusions, FaceKey
@@ -62,7 +62,7 @@ def intersection_notes(excluded: Exclusions) -> tuple[str, ...]:
     """A note for each object that intersects itself, and for each pair of excluded objects."""
     faces: dict[tuple[str, str], set[FaceKey]] = {}
     for pair in excluded.pairs:
-        first, second = sorted(name.partition("\n")[0] for name, _ in pair)
+        first, second = sorted(name.partition("\n")[0].partition(PART)[0] for name, _ in pair)
         faces.setdefault((first, second), set()).update(pair)
     return tuple(_intersection_note(*names, len(keys)) for names, keys in sorted(faces.items()))
 
@@ -99,21 +99,23 @@ def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats,
         return np.empty((0, 2), np.int32)
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
     faces = [(assembly.face(a), assembly.face(b)) for a, b in found.tolist()]
-    rows = [a.object == b.object and _key(a, b) in excluded.pairs for a, b in faces]
+    rows = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in faces]
     chosen: Indices = found[np.array(rows, bool)]
     return chosen
 
 
-def excluded_bodies(excluded: Exclusions, surface: stiv.Surface) -> list[tuple[str | int, str | int]]:
-    """Pairs of bodies of different objects with excluded faces."""
-    bodies: dict[str, list[int]] = {}
-    for number, body in enumerate(surface.bodies):
-        bodies.setdefault(body.name, []).append(number)
+def excluded_bodies(excluded: Exclusions, assembly: Assembly) -> list[tuple[str | int, str | int]]:
+    """Pairs of bodies of different objects, or parts of an object, with excluded faces."""
+    bodies: dict[str, set[int]] = {}
+    for mesh, start, end in zip(assembly.meshes, assembly.starts, assembly.starts[1:], strict=False):
+        if end > start:
+            side = Element(mesh.owner.name, "face", 0, part=mesh.part).side
+            bodies.setdefault(side, set()).add(int(assembly.surface.vertex_body[start]))
     return [
         (a, b)
         for first, second in sorted(excluded.objects)
-        for a in bodies.get(first, [])
-        for b in bodies.get(second, [])
+        for a in sorted(bodies.get(first, ()))
+        for b in sorted(bodies.get(second, ()))
     ]
 
 
@@ -129,15 +131,13 @@ def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[F
 
 
 def _is_excluded(excluded: Exclusions, first: Element, second: Element) -> bool:
-    a, b = sorted((first.object, second.object))
+    a, b = sorted((first.side, second.side))
     return (a, b) in excluded.objects if a != b else _key(first, second) in excluded.pairs
 
 
 def _key(first: Element, second: Element) -> tuple[FaceKey, FaceKey]:
     """Both elements in ascending order. Loose elements get a number that no face has."""
-    a, b = (
-        (_name(each.object, each.evaluation), each.number if each.kind == "face" else -1) for each in (first, second)
-    )
+    a, b = ((_name(each.side, each.evaluation), each.number if each.kind == "face" else -1) for each in (first, second))
     return (a, b) if a <= b else (b, a)
 
 

@@ -70,7 +70,7 @@ def find_flips(
         if not is_deformable(assembly, number) or certain(number):
             continue
         with evaluated_mesh(source.evaluated(mesh.read_from, mesh.owner)) as evaluated:
-            triangles, faces = read_triangles(evaluated)
+            triangles, faces = mesh.own_triangles(*read_triangles(evaluated))
         flip = FaceTriangles(number, triangles, faces)
         new = _new_rows(triangles, mesh.triangles)
         if new.any():
@@ -143,7 +143,10 @@ def _drop_intersecting(flip: FaceTriangles, intersecting: Collection[Element], a
     mesh = assembly.meshes[flip.mesh]
     return flip.limited_to(
         np.array(
-            [Element(mesh.owner.name, "face", int(face), mesh.read_from) not in intersecting for face in flip.faces]
+            [
+                Element(mesh.owner.name, "face", int(face), mesh.read_from, mesh.part) not in intersecting
+                for face in flip.faces
+            ]
         )
     )
 

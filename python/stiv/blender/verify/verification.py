@@ -105,7 +105,7 @@ class Verifier:
         """
         found = find_face_pairs(self.assembly, shown, self._threads)
         others = without_excluded(found, self._excluded)
-        between = [pair for pair in set(found).difference(others) if pair.first.object != pair.second.object]
+        between = [pair for pair in set(found).difference(others) if pair.first.side != pair.second.side]
         if not between:
             return others
         overlapping = {_objects(pair) for pair in find_face_pairs(self.assembly, accepted, self._threads)}
@@ -124,7 +124,10 @@ class Verifier:
         mesh = self.assembly.meshes[flip.mesh]
         return flip.limited_to(
             np.array(
-                [Element(mesh.owner.name, "face", int(face), mesh.read_from) in intersecting for face in flip.faces]
+                [
+                    Element(mesh.owner.name, "face", int(face), mesh.read_from, mesh.part) in intersecting
+                    for face in flip.faces
+                ]
             )
         )
 
@@ -145,7 +148,7 @@ def _may_split(ob: bpy.types.Object) -> bool:
 
 
 def _objects(pair: FacePair) -> frozenset[str]:
-    return frozenset((pair.first.object, pair.second.object))
+    return frozenset((pair.first.side, pair.second.side))
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
@@ -165,6 +168,9 @@ def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> list[EvaluatedP
         owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_from == read_from)
         if read_from in opened.read_from:
             placed += read_positions_of(owners, opened, read_from)
+    firsts = np.cumsum([mesh.part == 0 for mesh in meshes]) - 1  # parts of a mesh follow each other
+    if max(firsts, default=-1) + 1 == len(placed):
+        placed = [placed[first] for first in firsts]
     if [_identity(each) for each in placed] != [(mesh.size, mesh.owner.session_uid) for mesh in meshes]:
         raise SceneChangedError("objects were shown, hidden or changed during the edit; begin again")
     control_sets = iter(

@@ -6,7 +6,6 @@ from typing import Any
 import bmesh
 import bpy
 import numpy as np
-from building import add, add_modifier, mesh
 
 # bone: parent, head, tail, radius of the body, connected
 BONES: dict[str, tuple[str, Any, Any, float, bool]] = {
@@ -46,7 +45,7 @@ BONES: dict[str, tuple[str, Any, Any, float, bool]] = {
 
 def make_rig(name: str = "Rig") -> Any:
     """An armature with these bones, in Pose Mode."""
-    rig = add(name, bpy.data.armatures.new(name))
+    rig = _add(name, bpy.data.armatures.new(name))
     bpy.context.view_layer.objects.active = rig
     rig.select_set(True)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -62,16 +61,22 @@ def make_rig(name: str = "Rig") -> Any:
 def make_character(voxel: float = 0.07, name: str = "Body") -> tuple[Any, Any]:
     """The rig, in Pose Mode, and its body."""
     rig = make_rig()
-    body = add(name, _skin(voxel))
+    body = _add(name, _skin(voxel))
     points = np.array([vertex.co for vertex in body.data.vertices])
     for bone, weights in zip(BONES, _weights(points), strict=True):
         group = body.vertex_groups.new(name=bone)
         for number in np.flatnonzero(weights).tolist():
             group.add([number], float(weights[number]), "REPLACE")
     body.parent = rig
-    add_modifier(body, "ARMATURE", object=rig)
+    body.modifiers.new("Armature", "ARMATURE").object = rig
     bpy.context.view_layer.update()
     return rig, body
+
+
+def _add(name: str, data: Any) -> Any:
+    ob = bpy.data.objects.new(name, data)
+    bpy.context.collection.objects.link(ob)
+    return ob
 
 
 def _distances(points: np.ndarray) -> np.ndarray:
@@ -111,8 +116,11 @@ def _skin(voxel: float) -> Any:
             faces.append(corners + len(unit) * len(vertices))
             vertices.append(radius * unit + start + share * (end - start))
     bpy.ops.object.mode_set(mode="OBJECT")
-    whole = add("Capsules", mesh("Capsules", np.concatenate(vertices), np.concatenate(faces).tolist()))
-    add_modifier(whole, "REMESH", mode="VOXEL", voxel_size=voxel)
+    mesh = bpy.data.meshes.new("Capsules")
+    mesh.from_pydata(np.concatenate(vertices).tolist(), [], np.concatenate(faces).tolist())
+    whole = _add("Capsules", mesh)
+    remesh = whole.modifiers.new("Remesh", "REMESH")
+    remesh.mode, remesh.voxel_size = "VOXEL", voxel
     bpy.context.view_layer.update()
     made = bpy.data.meshes.new_from_object(whole.evaluated_get(bpy.context.evaluated_depsgraph_get()))
     bpy.data.objects.remove(whole)

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Divides skin into the regions around joints, where it folds, and the limbs between them, which collide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stiv.blender.scene.arrays import Flags, Floats, Indices
+from stiv.blender.scene.culling import CroppedMesh
+from stiv.blender.scene.evaluated_scene import VisibleMesh
+
+BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
+YIELDING = 0.6  # part of the region at a joint that only responds, and thus turns little
+BENDING = 0.02  # relative change of a squared length for a unit of a channel, beyond the error of differences
+AT_JOINT = (0.25, 0.75)  # the same for those that lie around the joint
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A bone that turns against its parent.
+
+    Attributes:
+        head: (3,) in the world.
+        bones: names of the bone and of those that follow it.
+        yields: whether the goal does not turn it.
+    """
+
+    head: Floats
+    bones: frozenset[str]
+    yields: bool = False
+
+
+@dataclass(frozen=True)
+class Skin:
+    """A mesh with the weights of bones: names of the groups, and their weights at each vertex, (n, g)."""
+
+    mesh: VisibleMesh
+    groups: Sequence[str]
+    weights: Floats
+
+    def share(self, bones: frozenset[str]) -> Floats:
+        """Share of some bones in each vertex, (n,)."""
+        chosen = [name in bones for name in self.groups]
+        total = self.weights.sum(axis=1)
+        share: Floats = self.weights[:, chosen].sum(axis=1) / np.where(total > 0, total, 1)
+        return share
+
+
+@dataclass(frozen=True)
+class Regions:
+    """A mesh in parts.
+
+    Attributes:
+        parts: the meshes; one if it has no joints.
+        untested: pairs of parts that are not tested against each other, a part with itself included.
+        joints: number of regions around joints.
+        faces: number of their faces.
+    """
+
+    parts: tuple[VisibleMesh, ...]
+    untested: frozenset[tuple[int, int]]
+    joints: int
+    faces: int
+
+
+def divide_all(
+    meshes: Sequence[VisibleMesh],
+    weights: Sequence[tuple[Sequence[str], Floats]],
+    joints: Sequence[Joint],
+    jacobian: Floats,
+    radii: float,
+) -> list[Regions]:
+    """Divide meshes with the weights of bones at their vertices; jacobian: of all their vertices, (n, 3, k).
+
+    A mesh that bends without weights of its own, or with loose edges, is not tested against itself.
+    """
+    found, first = [], 0
+    for mesh, (groups, values) in zip(meshes, weights, strict=True):
+        rows = jacobian[first : first + len(mesh.local)]
+        first += len(mesh.local)
+        regions = Regions((mesh,), frozenset(), 0, 0)
+        if len(groups) and not len(mesh.loose_edges):
+            regions = divide(Skin(mesh, groups, values), joints, radii)
+        if radii > 0 and not regions.joints and _bends(mesh, rows):
+            regions = replace(regions, untested=frozenset({(0, 0)}))
+        found.append(regions)
+    return found
+
+
+def joint_note(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> str:
+    """The message on the faces that may fold; "" if there are none."""
+    folding = [(mesh, each) for mesh, each in zip(meshes, regions, strict=True) if each.faces]
+    if not folding:
+        return ""
+    name, faces = folding[0][0].owner.name, sum(each.faces for _, each in folding)
+    return f"{name}: {faces:,} faces at joints may fold into each other"
+
+
+def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
+    """Do edges change their length?"""
+    points, corners = mesh.world(), mesh.triangles
+    a, b = np.concatenate([corners[:, :2], corners[:, 1:]]).T
+    along = points[b] - points[a]
+    change = np.einsum("ni,nik->nk", along, jacobian[b] - jacobian[a])
+    return bool((np.abs(change) > BENDING * (along * along).sum(axis=1)[:, None] + 1e-12).any())
+
+
+def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
+    """Divide a mesh without loose edges.
+
+    radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region.
+    """
+    mesh = skin.mesh
+    corners, owners = mesh.triangles, mesh.faces
+    around = np.zeros(len(mesh.local), bool)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    for joint in joints if radii > 0 else ():
+        around |= _region(skin, joint, radii, edges)
+    folding = np.zeros(int(owners.max(initial=-1)) + 1, bool)
+    folding[owners[around[corners].any(axis=1)]] = True
+    in_joint = folding[owners]
+    if not in_joint.any():
+        return Regions((mesh,), frozenset(), 0, 0)
+    joint_of = _components(len(mesh.local), corners[in_joint])
+    limb_of = _components(len(mesh.local), corners[~in_joint])
+    labels, untested, count = _label(corners, in_joint, joint_of, limb_of)
+    parts = tuple(_part(mesh, number, labels == number) for number in range(labels.max() + 1))
+    return Regions(parts, untested, count, int(folding.sum()))
+
+
+def _region(skin: Skin, joint: Joint, radii: float, edges: Indices) -> Flags:
+    """The vertices around a joint, (n,): connected to those that it bends, and near it."""
+    share = skin.share(joint.bones)
+    bent = (share > BLENDED[0]) & (share < BLENDED[1])
+    crossing = (share[edges] < 0.5).any(axis=1) & (share[edges] >= 0.5).any(axis=1)
+    bent[edges[crossing]] = True
+    if not bent.any():
+        return bent
+    distance = np.linalg.norm(skin.mesh.world() - joint.head, axis=1)
+    middle = bent & (share > AT_JOINT[0]) & (share < AT_JOINT[1])
+    reach = YIELDING * radii if joint.yields else radii
+    near = distance <= reach * float(np.median(distance[middle if middle.any() else bent]))
+    return _reached(bent & near, near, edges)
+
+
+def _reached(start: Flags, allowed: Flags, edges: Indices) -> Flags:
+    """The allowed vertices that edges between allowed ones connect with the start."""
+    inside = edges[allowed[edges].all(axis=1)]
+    found, before = start.copy(), -1
+    while (count := int(found.sum())) != before:
+        before = count
+        found[inside[found[inside].any(axis=1)]] = True
+    return found
+
+
+def _components(count: int, faces: Indices) -> Indices:
+    """For each vertex, the smallest vertex that faces, (f, 3), connect with it, (n,)."""
+    label = np.arange(count, dtype=np.int32)
+    while True:
+        least = label.copy()
+        np.minimum.at(least, faces.ravel(), np.repeat(label[faces].min(axis=1), faces.shape[1]))
+        least = least[least]
+        if np.array_equal(least, label):
+            return label
+        label = least
+
+
+def _label(
+    corners: Indices, in_joint: Flags, joint_of: Indices, limb_of: Indices
+) -> tuple[Indices, frozenset[tuple[int, int]], int]:
+    """The part of each triangle, (f,), the untested pairs of parts, and the number of joints.
+
+    All that no joint touches is one part.
+    """
+    joints = np.unique(joint_of[corners[in_joint, 0]])
+    number = {int(name): k for k, name in enumerate(joints)}
+    touched: dict[int, set[int]] = {int(name): set() for name in np.unique(limb_of[corners[~in_joint, 0]])}
+    in_limb = np.zeros(len(joint_of), bool)
+    in_limb[corners[~in_joint]] = True
+    shared = np.unique(corners[in_joint])
+    for vertex in shared[in_limb[shared]].tolist():
+        touched[int(limb_of[vertex])].add(number[int(joint_of[vertex])])
+    limbs = [limb for limb, each in touched.items() if each]
+    part_of = {limb: len(number) + (limbs.index(limb) if each else len(limbs)) for limb, each in touched.items()}
+    labels = np.empty(len(corners), np.int32)
+    labels[in_joint] = [number[int(name)] for name in joint_of[corners[in_joint, 0]]]
+    labels[~in_joint] = [part_of[int(name)] for name in limb_of[corners[~in_joint, 0]]]
+    beside = {(joint, part_of[limb]) for limb in limbs for joint in touched[limb]}
+    return labels, frozenset({(k, k) for k in range(len(number))} | beside), len(number)
+
+
+def _part(mesh: VisibleMesh, number: int, rows: Flags) -> VisibleMesh:
+    """Some triangles of a mesh."""
+    used = np.zeros(len(mesh.local), bool)
+    used[mesh.triangles[rows]] = True
+    vertices, place = np.flatnonzero(used).astype(np.int32), (np.cumsum(used) - 1).astype(np.int32)
+    local, triangles, faces = mesh.local[vertices], place[mesh.triangles[rows]], mesh.faces[rows]
+    none = np.empty((0, 2), np.int32)
+    cropped = CroppedMesh(vertices, local, triangles, faces, none, none[:, 0], len(mesh.local))
+    return replace(mesh, local=local, triangles=triangles, faces=faces, cropped=cropped, part=number)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Skin in parts: regions around joints that turn, and limbs, which share no vertex and are tested."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from building import add_cube, add_grid
+
+from stiv.blender.controls.joint_regions import Joint, Regions, Skin, divide, divide_all
+from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
+
+FIRST = Joint(np.array([-2.0, 0, 0]), frozenset({"B", "C"}))
+SECOND = Joint(np.array([2.0, 0, 0]), frozenset({"C"}))
+
+
+def strip() -> Skin:
+    """A strip of 48 x 48 quads from -6 to 6, 1.2 wide, whose bones A, B and C meet at x = -2 and x = 2."""
+    ob = add_grid("Strip", 48, 6.0, scale=(1, 0.1, 1))
+    mesh = read_scene(bpy.context).meshes[0]
+    x = mesh.world()[:, 0]
+    b = np.clip((x + 2.25) / 0.5, 0, 1) - np.clip((x - 1.75) / 0.5, 0, 1)
+    c = np.clip((x - 1.75) / 0.5, 0, 1)
+    assert ob.name == mesh.owner.name
+    return Skin(mesh, ["A", "B", "C"], np.stack([1 - b - c, b, c], axis=1))
+
+
+def faces_of(regions: Regions) -> list[set[int]]:
+    return [set(part.faces.tolist()) for part in regions.parts]
+
+
+def vertices_of(part: VisibleMesh) -> set[int]:
+    assert part.cropped is not None
+    return set(part.cropped.vertices.tolist())
+
+
+@pytest.mark.parametrize("joints", [[FIRST], [FIRST, SECOND]])
+def test_parts_are_a_partition_and_tested_ones_share_no_vertex(joints: list[Joint]) -> None:
+    skin = strip()
+    regions = divide(skin, joints, 2.5)
+    found = faces_of(regions)
+    assert regions.joints == len(joints) and len(found) == 2 * len(joints) + 1
+    assert sum(map(len, found)) == len(set().union(*found)) == 48 * 48
+    assert sum(len(part.triangles) for part in regions.parts) == len(skin.mesh.triangles)
+    for a, first in enumerate(regions.parts):
+        world = skin.mesh.world()[first.cropped.vertices] if first.cropped is not None else None
+        assert np.array_equal(first.world(), world)
+        for b, second in enumerate(regions.parts[:a]):
+            is_tested = not {(a, b), (b, a)} & regions.untested
+            assert is_tested == (not vertices_of(first) & vertices_of(second))
+
+
+def test_regions_grow_with_their_radius_and_vanish_at_0() -> None:
+    skin = strip()
+    sizes = [divide(skin, [FIRST], radii).faces for radii in (0.0, 0.9, 1.5, 2.5)]
+    assert sizes[0] == 0 and sizes == sorted(set(sizes))
+    assert divide(skin, [FIRST], 0.0).parts == (skin.mesh,)
+    yielding = Joint(FIRST.head, FIRST.bones, yields=True)
+    assert divide(skin, [yielding], 2.5).faces == sizes[2]
+
+
+def test_a_mesh_that_bends_without_weights_is_not_tested_against_itself() -> None:
+    add_cube("Cube")
+    mesh = read_scene(bpy.context).meshes[0]
+    stretched, moved = np.zeros((8, 3, 1)), np.ones((8, 3, 1))
+    stretched[:, 0, 0] = mesh.world()[:, 0]
+    for jacobian, expected in ((stretched, {(0, 0)}), (moved, set())):
+        regions = divide_all([mesh], [([], np.zeros((8, 0)))], [], jacobian, 2.0)
+        assert regions[0].untested == expected and regions[0].parts == (mesh,)
