@@ -100,7 +100,7 @@ def kept_motion(make: Callable[[], Any], way: str) -> tuple[float, float]:
 
 
 def _placed(piece: Any, way: str) -> tuple[np.ndarray, np.ndarray]:
-    """What a way to edit moves: the object's location, or the local positions of its vertices; and flags of these."""
+    """The moved positions: the object's location, or the local positions of its vertices; and flags of these."""
     piece.update_from_editmode()
     if way == "whole":
         return np.array([piece.location]), np.array([True])

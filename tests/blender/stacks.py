@@ -210,6 +210,13 @@ def hooked() -> Any:
     return ob
 
 
+def hooked_and_triangulated() -> Any:
+    ob = hooked()
+    add_modifier(ob, "TRIANGULATE")
+    add_modifier(ob, "SMOOTH", factor=0.3)
+    return ob
+
+
 def in_a_lattice() -> Any:
     lattice, ob = add_lattice("Lattice", (2, 3, 4), scale=(3, 3, 3)), add_sheet()
     lattice.data.points[3].co_deform.x += 0.2
@@ -349,6 +356,7 @@ STACKS = {
 
 KINDS = {
     "Smooth by Angle": shaded_by_angle,
+    "Hook, Triangulate, Smooth": hooked_and_triangulated,  # small motions flip quads: no Jacobian predicts these
     "Shape keys": with_a_key(),
     "Shape keys, Solidify": with_a_key("SOLIDIFY", thickness=0.1),
     "Shared mesh, Mirror": shared_and_mirrored,

@@ -50,9 +50,9 @@ class AffineMap:
 
 
 def may_be_affine(modifier: bpy.types.Modifier, is_first: bool) -> bool:
-    """May the modifier be affine? Then its topology does not depend on positions, except where it merges mirror images.
+    """May the modifier be affine? Then its topology depends on positions only where it merges vertices.
 
-    Where these merge is known only of the first modifier.
+    Where mirror images merge is known only of the first modifier.
     """
     if isinstance(modifier, bpy.types.ArmatureModifier):
         return not modifier.use_bone_envelopes
@@ -64,7 +64,7 @@ def may_be_affine(modifier: bpy.types.Modifier, is_first: bool) -> bool:
         return modifier.fit_type == "FIXED_COUNT" and not modifier.use_merge_vertices
     if isinstance(modifier, bpy.types.ScrewModifier):
         return not modifier.use_merge_vertices and not modifier.use_normal_calculate
-    return modifier.type in POSITION_PRESERVING or modifier.type == "MESH_DEFORM"
+    return modifier.type in POSITION_PRESERVING or modifier.type in ("MESH_DEFORM", "WELD")
 
 
 def find_affine_map(

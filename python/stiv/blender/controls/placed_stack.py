@@ -79,7 +79,7 @@ class _Placements:
                     found.append(transform_points(motion, rest))
                     continue
                 shown, matrix = bent.evaluate(motion)
-                if not shown.has_topology_of(start) or not np.isfinite(shown.positions).all():
+                if not shown.corresponds_to(start) or not np.isfinite(shown.positions).all():
                     return None
                 found.append(transform_points(matrix, shown.positions))
         self._last = controls

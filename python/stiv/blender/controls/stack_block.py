@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -79,7 +80,7 @@ class StackBlock:
         controls: number of vertices of the mesh.
         count: number of evaluated vertices.
         anchors: the vertex that each of them follows, (n,).
-        affine: what takes the place of the evaluation; None if Blender evaluates the block during the edit.
+        affine: the same function, if it is affine; None otherwise.
     """
 
     def __init__(self, settings: BlockSettings, frame: Floats, positions: Floats, held: HeldVertices) -> None:
@@ -105,7 +106,9 @@ class StackBlock:
         self.anchors = anchors if held.leaders is None else held.leaders[anchors]
         self._last = positions
         self._frames = np.broadcast_to(np.eye(3), (self.count, 3, 3))
-        self.affine = self._find_affine_map()
+        block = self._modifiers(ob)
+        self.affine = self._find_affine_map(block)
+        self._is_computed = self.affine is not None and all(each.type != "WELD" for each in block)
 
     @property
     def end_modifiers(self) -> tuple[str, ...]:
@@ -116,7 +119,7 @@ class StackBlock:
         """World positions of the evaluated vertices, (n, 3); None if their topology differs from that at the start."""
         if np.abs(positions - self._rest).max(initial=0.0) > self._furthest:
             return None
-        if self.affine is not None:
+        if self._is_computed and self.affine is not None:
             is_apart = self._held.keeps_apart(positions, self._rest, self._frame)
             return self.affine.evaluate(positions) if is_apart else None
         points = self._observe(positions)
@@ -153,11 +156,15 @@ class StackBlock:
             return one.has_topology_of(other)
         return one.corresponds_to(other)
 
-    def _find_affine_map(self) -> AffineMap | None:
-        ob, evaluation = self._settings.reference.find(), self._settings.evaluation
-        block = [
+    def _modifiers(self, ob: bpy.types.Object) -> list[bpy.types.Modifier]:
+        """The modifiers of the block."""
+        evaluation = self._settings.evaluation
+        return [
             each for each in ob.modifiers if is_active(each, ob, evaluation) and each.name not in self.end_modifiers
         ]
+
+    def _find_affine_map(self, block: Sequence[bpy.types.Modifier]) -> AffineMap | None:
+        ob, evaluation = self._settings.reference.find(), self._settings.evaluation
         others = [each.name for number, each in enumerate(block) if not may_be_affine(each, number == 0)]
         if (block and len(others) == len(block)) or (
             others and not keep_positions(ob, bpy.context.scene, evaluation, others)
