@@ -25,6 +25,11 @@ class Work:
     task: stiv_blender.Task[Outcome]
     stopped: bool = False
 
+    def stop(self) -> None:
+        """Ask the job to end at once; the guard's timer restores the scene."""
+        self.stopped = True
+        self.task.cancel()
+
 
 _shown: Work | None = None  # whose progress the window shows
 
@@ -73,7 +78,8 @@ class STIV_OT_guard_wait(bpy.types.Operator):
             window_io.stop_timer(context, self._timer)
             return {"FINISHED"}
         if event.type == "ESC" and event.value == "PRESS":
-            _shown.stopped = True
+            _shown.stop()
+            end(context)
         elif event.type == "TIMER":
             self._show(context)
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
@@ -81,7 +87,7 @@ class STIV_OT_guard_wait(bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: a file is loaded, the window closes."""
         if _shown is not None:
-            _shown.stopped = True
+            _shown.stop()
         window_io.stop_timer(context, self._timer)
         end(context)
 

@@ -344,7 +344,7 @@ class DragLoop:
             return self._fruitless < most and self._poor < MAX_POOR
         return result.status == "corrected" and gained
 
-    def _has_gained(self, state: State, result: EditResult) -> bool:
+    def _has_gained(self, state: State | None, result: EditResult) -> bool:
         """Whether a solve for a state came closer to its goal; counts the accepted ones that did not."""
         solved, least = self._solved
         gained = solved != state or result.energy < GAIN * least

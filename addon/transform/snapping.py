@@ -19,7 +19,8 @@ from .view import Vector, View
 PARALLEL = 1e-4  # sine or cosine below which an axis cannot meet the line or plane of a target
 BASE_ELEMENTS = GEOMETRY - {"EDGE_PERPENDICULAR"}  # for the snap base, if only increments are chosen
 INDIVIDUAL = frozenset({"FACE_PROJECT", "FACE_NEAREST"})  # each object or point is put onto a face of its own
-MAX_REPEATS = 4  # searches until the source of a perpendicular no longer changes
+MAX_REPEATS = 4  # searches until the source no longer changes, which Blender takes from the motion before
+FROM_SOURCE = frozenset({"EDGE_PERPENDICULAR", "GRID"})  # elements whose place depends on the source
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ class Snap:
         if frame.view is None:
             return None
         source, found = self._source(None, state, frame), None
-        for _ in range(MAX_REPEATS if "EDGE_PERPENDICULAR" in self._elements(state) else 1):
+        for _ in range(MAX_REPEATS if self._elements(state) & FROM_SOURCE else 1):
             found = self.target(state, frame, source, from_pivot)
             before, source = source, self._source(found, state, frame)
             if np.array_equal(before, source):
@@ -202,7 +203,7 @@ class Snap:
             if length > 0.0 and view.shows(point):
                 if view.looks_along_axis:
                     point[axis] += source[axis]
-                return Found(point, np.zeros(3), "GRID")
+                return Found(point, np.eye(3)[axis], "GRID")
         return None
 
     @cached_property

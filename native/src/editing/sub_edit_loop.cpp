@@ -16,7 +16,7 @@ namespace {
 
 constexpr int max_cuts = 256;               // fractions of a motion that is too large for one search
 constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
-constexpr double largest_growth = 4;        // of the energy to the goal of a sub-edit: twice the distance
+constexpr double largest_growth = 16;       // of the energy to the goal of a sub-edit: four times the distance
 constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
 /// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted. Without a surface

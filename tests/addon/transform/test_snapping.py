@@ -155,8 +155,8 @@ def test_typed_numbers_do_not_snap(element: str) -> None:
     assert moved((450.0, 300.0), snapping(element), typed=typed("0.3"))[0] == 0.3
 
 
-@pytest.mark.parametrize("element", ["FACE", "VERTEX", "EDGE"])
-def test_a_move_is_aligned_with_the_normal_of_a_face_or_a_vertex_or_along_an_edge(element: str) -> None:
+@pytest.mark.parametrize("element", ["FACE", "VERTEX", "EDGE", "GRID"])
+def test_a_move_is_aligned_with_the_normal_of_a_face_a_vertex_or_the_grid_or_along_an_edge(element: str) -> None:
     pixel = VIEW.project(CORNERS[0] if element == "VERTEX" else (CORNERS[0] + CORNERS[1]) / 2)
     snap, state = snapping(element, align=True), State(Pointer.at((400.0, 300.0)).moved(pixel), ctrl=True)
     found = requested_translation(state, FRAME, snap=snap).alignment

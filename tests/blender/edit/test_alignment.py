@@ -88,3 +88,21 @@ def test_a_lock_holds_for_the_origin_and_locked_rotation_turns_nothing() -> None
     edit.drag(motion)
     edit.write()
     np.testing.assert_allclose(cube.rotation_euler, (0.4, -0.7, 1.1), atol=1e-6)
+
+
+@pytest.mark.parametrize("target", ["normal", "face"])
+def test_an_object_that_deforms_turns_and_follows_its_origin_as_a_whole(target: str) -> None:
+    cube = tilted_cube()
+    corner = cube.matrix_world @ Vector((0.5, 0.5, -0.5))
+    before, motion = np.array(cube.matrix_world), snapped(cube, corner)
+    goal = np.array(expected(cube, corner))
+    if target == "face":
+        motion = Motion(shift(1, 0, 0), np.zeros(3), place=lambda points, moved: moved - [0, 0, 0.25])
+        goal = shift(1, 0, -0.25) @ before
+    local = np.array([vertex.co for vertex in cube.data.vertices])
+    edit = BlenderEdit.begin(bpy.context, EditSettings(interference=False, object_response="deform"), "move")
+    edit.drag(motion)
+    edit.write()
+    shown = np.array([cube.matrix_world @ vertex.co for vertex in cube.data.vertices])
+    np.testing.assert_allclose(shown, local @ goal[:3, :3].T + goal[:3, 3], atol=2e-6)
+    assert np.array_equal(np.array(cube.matrix_world), before)

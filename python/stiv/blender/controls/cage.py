@@ -44,11 +44,11 @@ def make_cage_set(
     surface = read_surface(ob, scene, writer, shown)
     selected = selected_vertices(ob, participant.selected) & found.movable
     controls = transform_points(frame, local)
-    origin = None if ob.mode == "EDIT" else frame[:3, 3]
+    whole = None if ob.mode == "EDIT" else frame
     return ControlSet(
         (ob.name,), "cage", surfaces, surface.deformation or stiv.identity(len(local)), controls,
         response_weights(participant, selected, max_weights, settings), max_weights, frame,
-        PointGoal(selected, controls, read_edges(ob.data), origin, found.movable, found.pinned),
+        PointGoal(selected, controls, read_edges(ob.data), whole, found.movable, found.pinned),
         surface.limited(writer), note=join_notes(sharing_note(ob), hidden_note(ob, shown)),
         weight_axes=axes_of_weights(max_weights, found.directions),
         observed=surface.observed,

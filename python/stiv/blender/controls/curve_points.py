@@ -51,11 +51,11 @@ def make_curve_set(
     movable = movable_curve_points(ob.data)
     selected = movable & (selected_curve_points(ob.data) if ob.mode == "EDIT" else participant.selected)
     controls, limits = transform_points(frame, local), _limits(ob, frame, movable)
-    origin = None if ob.mode == "EDIT" else frame[:3, 3]
+    whole = None if ob.mode == "EDIT" else frame
     made = ControlSet(
         (ob.name,), "curve", surfaces, curve_surface(ob, scene, frame, local, evaluations), controls,
         response_weights(participant, selected, limits.max_weights, settings), limits.max_weights, frame,
-        PointGoal(selected, controls, None, origin, movable, limits.pinned),
+        PointGoal(selected, controls, None, whole, movable, limits.pinned),
         CurveWriter(participant.reference, ob.mode, frame, local),
         weight_axes=axes_of_weights(limits.max_weights, limits.directions),
     )  # fmt: skip
@@ -86,7 +86,7 @@ def _merge_poles(made: ControlSet, local: Singles) -> ControlSet:
         controls=made.controls[first],
         weights=weights,
         max_weights=made.max_weights[first],
-        rule=PointGoal(selected, rule.start[first], None, rule.origin, np.ones(len(first), np.bool_)),
+        rule=PointGoal(selected, rule.start[first], None, rule.frame, np.ones(len(first), np.bool_)),
         writer=SeamWriter(made.writer, poles),
         control_seams=poles,
         note=seam_message(made.names[0], rule.selected, poles),

@@ -61,10 +61,10 @@ def make_handle_sets(
     limited = surface.limited(writer)
     max_weights, controls = found.max_weights, rest[found.vertices]
     weights = response_weights(participant, found.moving, max_weights, settings)
-    origin = None if ob.mode == "EDIT" else frame[:3, 3]
+    placed = None if ob.mode == "EDIT" else frame
     return [ControlSet(
         (ob.name,), "soft", surfaces, whole, controls, weights, max_weights, frame,
-        PointGoal(found.moving, controls, None, origin, None, pinned_directions(max_weights, limits.directions)),
+        PointGoal(found.moving, controls, None, placed, None, pinned_directions(max_weights, limits.directions)),
         HandleWriter(cage, limited if control_seams is None else SeamWriter(limited, control_seams)),
         note=join_notes(sharing_note(ob), hidden_note(ob, shown_as), found.note),
         weight_axes=axes_of_weights(max_weights, limits.directions), observed=surface.observed,

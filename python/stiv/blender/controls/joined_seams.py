@@ -157,7 +157,7 @@ def _merge_rule(rule: PointGoal, selected: Flags, max_weights: Floats, control_s
     edges = None if rule.edges is None else control_seams.index[rule.edges]
     pinned = None if rule.pinned is None else pinned_directions(max_weights, rule.pinned.directions)
     selected = selected if free is None else selected & free
-    return PointGoal(selected, rule.start[control_seams.first], edges, rule.origin, free, pinned)
+    return PointGoal(selected, rule.start[control_seams.first], edges, rule.frame, free, pinned)
 
 
 def _closed_seams(

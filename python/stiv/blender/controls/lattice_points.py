@@ -34,7 +34,7 @@ def make_lattice_set(
     weights = response_weights(participant, selected, max_weights, settings)
     return ControlSet(
         (ob.name,), "lattice", surfaces, deformation, controls, weights, max_weights, frame,
-        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame[:3, 3], found.movable, found.pinned),
+        PointGoal(selected, controls, None, None if ob.mode == "EDIT" else frame, found.movable, found.pinned),
         LatticeWriter(participant.reference, ob.mode, frame, local),
         weight_axes=axes_of_weights(max_weights, found.directions),
     )  # fmt: skip

@@ -147,4 +147,4 @@ def _rule_of(rule: PointGoal, leaders: Indices, kept: Indices) -> PointGoal:
         edges = edges[edges[:, 0] != edges[:, 1]]
     pinned = None if rule.pinned is None else replace(rule.pinned, points=rule.pinned.points[kept])
     free = None if rule.free is None else rule.free[kept]
-    return PointGoal(rule.selected[kept], rule.start[kept], edges, rule.origin, free, pinned)
+    return PointGoal(rule.selected[kept], rule.start[kept], edges, rule.frame, free, pinned)

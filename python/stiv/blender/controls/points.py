@@ -39,15 +39,15 @@ class PinnedDirections:
 class PointGoal:
     """The selected points, (m,), follow the transform, and those near them as the influence decides.
 
-    `start` are world positions, (m, 3); `edges`, (e, 2), connect the points, None if nothing does; `origin` is the
-    object's in Object Mode, None in Edit Mode, where each island has its own; `free`, (m,), flags the points that can
-    move, None for all; `pinned` restricts points to some directions, None for none.
+    `start` are world positions, (m, 3); `edges`, (e, 2), connect the points, None if nothing does; `frame` is the
+    object's world matrix in Object Mode, None in Edit Mode, where each island has its own origin; `free`, (m,), flags
+    the points that can move, None for all; `pinned` restricts points to some directions, None for none.
     """
 
     selected: Flags
     start: Floats
     edges: Indices | None = None
-    origin: Floats | None = None
+    frame: Floats | None = None
     free: Flags | None = None
     pinned: PinnedDirections | None = None
 
@@ -68,11 +68,23 @@ class PointGoal:
         if motion.influence is not None:
             shares = self.shares(motion.influence)
             goal[shares > 0] = motion.shared(controls[shares > 0], shares[shares > 0])
+        elif self.frame is not None:
+            goal[self.selected] = self._object_goal(controls[self.selected], self.frame, motion)
         elif motion.individual and self.moves:
-            goal[self.selected] = motion.about(controls[self.selected], self._own_origins)
+            goal[self.selected] = motion.about(controls[self.selected], self._island_centres)
         else:
             goal[self.selected] = motion.whole(controls[self.selected])
         return goal
+
+    def _object_goal(self, points: Floats, frame: Floats, motion: Motion) -> Floats:
+        """Goal of the points, (k, 3), of a whole object. It turns onto a target, and follows its origin onto a face."""
+        start, length = frame[:3, 3], float(np.linalg.norm(frame[:3, 2]))
+        rows, moved = np.concatenate([points, start[None]]), replace(motion, place=None)
+        if motion.align is not None and length > 0:
+            rows = motion.align.turned(rows, motion.align.turn(frame[:3, 2] / length))
+        rows = moved.about(rows, rows[-1]) if motion.individual else moved.whole(rows)
+        placed = motion.placed(start[None], rows[-1:])[0]
+        return np.asarray(rows[:-1] + (placed - rows[-1]), np.float64)
 
     def affected(self, influence: Influence | None) -> Flags:
         """Flags of the points that the transform moves, (m,)."""
@@ -114,9 +126,7 @@ class PointGoal:
         return distances_along(self.edges, self.start, self.selected)
 
     @cached_property
-    def _own_origins(self) -> Floats:
-        if self.origin is not None:
-            return self.origin
+    def _island_centres(self) -> Floats:
         return island_centres(self.start, self.selected, self.edges)
 
 
