@@ -10,6 +10,8 @@ from playing import INTO_WALL, click, expect_free, expect_near, prepared, start
 from scenes import WALL_FACE
 from simulation import Steps, Window
 
+IN_WALL = (1.7, 0.0, 0.0)  # a goal that is no nearer around the wall, which soft points find on a busy machine
+
 
 def cage_in_edit_mode(window: Window) -> Steps:
     """Vertices of a cage pushed into the wall: the smooth surface flattens against it."""
@@ -84,7 +86,7 @@ def curve_in_edit_mode(window: Window) -> Steps:
     yield from prepared(window, scenes.add_curve, "Curve", "EDIT")
     before = scenes.evaluated_extent("Curve")
     yield from start(window)
-    yield from window.glide(window.pixel(INTO_WALL))
+    yield from window.glide(window.pixel(IN_WALL))
     expect_near(scenes.evaluated_extent("Curve"), WALL_FACE, 0.1, "the curve at the wall while dragging")
     window.picture("curve_in_edit_mode")
     yield from click(window)

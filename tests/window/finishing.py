@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import bmesh
@@ -112,8 +113,13 @@ def esc_during_the_start(window: Window) -> Steps:
     yield from prepared(window, lambda: add_fine_ball(160), "Ball")
     before = state()
     window.key("M", shift=True, alt=True)
+    yield from window.until(window.dragging, "the start of the drag")
+    pressed, spent = time.perf_counter(), time.thread_time()
     window.key("ESC")
-    yield from window.until(lambda: not window.dragging(), "the end of the drag")
+    while window.dragging():
+        yield 0.001
+    clock, own = time.perf_counter() - pressed, time.thread_time() - spent
+    print(f"  Esc during a start: {clock:.2f} s, of this thread {own:.2f} s", flush=True)
     yield from window.settle()
     assert state() == before
     yield from start(window)
