@@ -35,21 +35,22 @@ def header_parts(
     orientations: tuple[str, str] = ("", ""),
     translate: Translate = str,
 ) -> list[str]:
-    """Parts of the line, the most important first: value with axis lock and modes, status, notes.
+    """Parts of the line, the most important first: value with axis lock, status, proportional editing, modes, notes.
 
     value: `text` of the transform. orientations: names of those of the first and the second press of an axis key.
     """
     name = orientations[state.axis_lock.second].replace("_", " ")
-    first = [value, axis_text(state.axis_lock, name, translate), _proportional_text(state.proportional, translate)]
+    first = " ".join(filter(None, [value, axis_text(state.axis_lock, name, translate)]))
+    proportional = _proportional_text(state.proportional, translate)
     modes = ", ".join(filter(None, _modes(state, translate)))
-    return [part for part in (" ".join(filter(None, first)), status, modes, *notes) if part]
+    return [part for part in (first, status, proportional, modes, *notes) if part]
 
 
 def fitted(parts: Sequence[str], fits: Callable[[str], bool]) -> str:
-    """One line of as many parts as fit; the first is always shown."""
-    shown = list(parts)
-    while len(shown) > 1 and not fits(SEPARATOR.join(shown)):
-        shown.pop()
+    """One line of the parts that fit; the first is always shown."""
+    shown = list(parts[:1])
+    for part in parts[1:]:
+        shown += [part] if fits(SEPARATOR.join([*shown, part])) else []
     return SEPARATOR.join(shown)
 
 

@@ -78,14 +78,15 @@ def test_the_header_names_modes_that_differ_from_the_defaults() -> None:
     state = replace(PLAIN, request=Request("move", "all"), precise=True, snap=frozenset({"move"}))
     state = replace(state, proportional=proportional)
     assert header_parts(state, "D", "clear", ["a note"]) == [
-        "D Proportional Size: 1.50, Inverse Square, connected", "clear", "precision, snap, yields: both", "a note",
+        "D", "clear", "Proportional Size: 1.50, Inverse Square, connected", "precision, snap, yields: both", "a note",
     ]  # fmt: skip
 
 
-def test_parts_that_do_not_fit_are_left_out_from_the_end() -> None:
+def test_parts_that_do_not_fit_are_left_out() -> None:
     parts = ["value", "blocked", "a mode", "a note"]
     assert fitted(parts, lambda _: True) == SEPARATOR.join(parts)
     assert fitted(parts, lambda text: len(text) <= 20) == "value  |  blocked"
+    assert fitted(["value", "a long list of names", "a mode"], lambda text: len(text) <= 20) == "value  |  a mode"
     assert fitted(parts, lambda _: False) == "value"
 
 
