@@ -15,6 +15,7 @@ from simulation import Steps, Window
 
 MOVES = 24
 PIXELS = 3
+POLL = 0.0005  # seconds
 
 
 def placed_x() -> float:
@@ -38,8 +39,8 @@ def times(window: Window, key: str, value: Callable[[], float], **modifiers: boo
     yield from window.rest_at((0.0, 0.0, 0.0))
     began, spent = time.perf_counter(), time.thread_time()
     window.key(key, **modifiers)
-    yield from window.until(lambda: len(window.handle.modal_operators) > 0, "a transform")
-    yield from window.until(lambda: key == "G" or progress_of_drag() == "RUNNING", "the start", 60.0)
+    while not window.handle.modal_operators or (key != "G" and progress_of_drag() != "RUNNING"):
+        yield POLL
     started, start_spent = time.perf_counter() - began, time.thread_time() - spent
     laps, draws, of_thread = [], [], []
     for number in range(1, MOVES + 1):
@@ -47,7 +48,7 @@ def times(window: Window, key: str, value: Callable[[], float], **modifiers: boo
         sent, spent = time.perf_counter(), time.thread_time()
         window.move(x + PIXELS * number, y)
         while window.drawn_at == drawn or value() == last:
-            yield 0.0005
+            yield POLL
         laps.append(window.drawn_at - sent)
         of_thread.append(time.thread_time() - spent)
         yield 0.1
@@ -55,7 +56,8 @@ def times(window: Window, key: str, value: Callable[[], float], **modifiers: boo
     yield 0.5
     sent, spent = time.perf_counter(), time.thread_time()
     window.key("RET")
-    yield from window.until(lambda: len(window.handle.modal_operators) == 0, "the end", 120.0)
+    while window.handle.modal_operators:
+        yield POLL
     ended, end_spent = time.perf_counter() - sent, time.thread_time() - spent
     shown = 1000.0 * statistics.median(laps), 1000.0 * max(laps), statistics.mean(draws)
     print(
