@@ -146,6 +146,11 @@ class DragLoop:
         return self.progress.ended or not (self._pending or self._unwritten or self._task is not None)
 
     @property
+    def shows_soon(self) -> bool:
+        """Whether the first solve for a goal accepted nothing, and the next one follows: showing both draws twice."""
+        return self._empty == 1 and not self.at_rest
+
+    @property
     def fraction(self) -> float:
         """The fraction of a start, or of the solve after the confirmation, that is done."""
         return self._task.progress.fraction if self._task is not None else 1.0

@@ -170,7 +170,7 @@ class DragOperator(Mixin):
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
         drag = self._drag
         self._show_waiting(context)
-        if drag.progress is not Progress.RUNNING or drag.edit is None:
+        if drag.progress is not Progress.RUNNING or drag.edit is None or drag.shows_soon:
             return
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label

@@ -172,10 +172,19 @@ def test_a_budget_used_up_before_the_first_accepted_state_writes_nothing() -> No
     drag = new_drag(edit)
     drag.handle(move_to(50))
     drag.tick()
-    assert edit.calls == ["drag"] and drag.result.status == "budget"
+    assert edit.calls == ["drag"] and drag.result.status == "budget" and drag.shows_soon
     edit.furthest = 1.0
     drag.tick()
-    assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5
+    assert edit.calls == ["drag", "drag", "write"] and edit.shown == 0.5 and not drag.shows_soon
+
+
+def test_a_long_solve_that_accepts_nothing_is_shown() -> None:
+    edit = FakeEdit(statuses=["budget"] * 3, furthest=0.0)
+    drag = new_drag(edit)
+    drag.handle(move_to(50))
+    drag.tick()
+    drag.tick()
+    assert drag.result.status == "budget" and not drag.shows_soon
 
 
 def test_a_goal_is_continued_until_a_state_is_accepted() -> None:
