@@ -13,13 +13,13 @@ SAYS = {  # for the progress
     "de_DE": "Rechnet {}, Esc hält an",
     "ja_JP": "計算中 {}、Escで停止",
     "ko_KR": "계산 중 {}, Esc로 중지",
-    "zh_HANS": "正在求解 {}，Esc停止",
+    "zh_HANS": "正在求解 {}\N{FULLWIDTH COMMA}Esc停止",
 }
 REFUSES = {
     "de_DE": "Box: die Skalierung ist null; ändern",
     "ja_JP": "Box: スケールが 0 です。変更してください",
     "ko_KR": "Box: 축척이 0임; 바꾸세요",
-    "zh_HANS": "Box: 其缩放为零；请更改",
+    "zh_HANS": "Box: 其缩放为零\N{FULLWIDTH SEMICOLON}请更改",
 }
 
 
