@@ -248,30 +248,61 @@ def test_limbs_that_cut_at_the_start_do_not_get_worse() -> None:
     assert result.status == "reached" and report.passed and pairs_of(*limbs(body)) == 0
 
 
+def test_an_animated_rig_that_renders_finer_is_guarded_in_the_viewport() -> None:
+    """Its render would show the keyframes, and not the pose without keyframes."""
+    rig, body, box = box_below_hand(0.14)
+    add_modifier(body, "SUBSURF", levels=0, render_levels=1)
+    for expected in ("both", "viewport"):
+        result, report, edit = apply("rotate", turn(np.radians(60), "Y", SHOULDER))
+        assert (result.status, report.passed, edit.guard.choice) == ("corrected", True, expected), report.message
+        assert intersecting(body, box) == 0
+        edit.restore()
+        rig.pose.bones["Arm.L"].keyframe_insert("rotation_quaternion")
+        rig.pose.bones["Arm.L"].rotation_quaternion = (0.99, 0, 0, 0.1)
+
+
+def test_skin_finer_than_the_minimum_distance_does_not_hold_itself() -> None:
+    rig, body, box = box_below_hand()
+    bpy.data.objects.remove(box)
+    result, report, edit = apply("rotate", turn(np.radians(-30), "Y", SHOULDER), EditSettings(separation=0.06))
+    assert result.status == "reached" and report.passed
+    assert turned(rig.pose.bones["Arm.L"]) == pytest.approx(30, abs=1e-3)
+    assert len(edit.assembly.meshes) == 3 and pairs_of(*limbs(body)) == 0
+
+
+def among_boxes() -> tuple[Any, Any, list[Any]]:
+    """The character among seven boxes: rig, body and boxes."""
+    rig, body, box = box_below_hand()
+    places = [
+        (-1.2, 0.1, 0.95), (0.25, -0.45, -1.2), (0.2, 0.75, 1.2), (1.3, 0.5, 1.4), (-1.3, -0.5, 1.4), (0, -0.8, 0.7)
+    ]  # fmt: skip
+    return rig, body, [box, *(add_cube(f"Box {place}", place, 0.2) for place in places)]
+
+
+def pose_at_random(random: np.random.Generator, rig: Any) -> tuple[str, str]:
+    """Rotate a random bone; the status, and why the pose could not be written."""
+    bones = ["Arm.L", "Forearm.L", "Arm.R", "Forearm.R", "Thigh.L", "Shin.L", "Chest", "Spine"]
+    name, axis = str(random.choice(bones)), str(random.choice(list("XYZ")))
+    select_bones(rig, name)
+    head = np.array(rig.pose.bones[name].head)
+    result, report, _ = apply("rotate", turn(random.uniform(-1.2, 1.2), axis, head))
+    return result.status, "" if report.passed else report.message
+
+
+def count_intersections(body: Any, obstacles: list[Any]) -> int:
+    """Intersecting pairs of triangles: of the body with the boxes, and of the left arm with the trunk."""
+    return sum(intersecting(body, each) for each in obstacles) + pairs_of(*limbs(body))
+
+
 def test_random_poses_never_intersect() -> None:
     """Random rotations of random bones among obstacles: after each, the exact test finds nothing."""
-    random = np.random.default_rng(7)
-    rig, body, _ = box_below_hand()
-    places = [
-        (-1.2, 0.1, 0.95),
-        (0.25, -0.45, -1.2),
-        (0.2, 0.75, 1.2),
-        (1.3, 0.5, 1.4),
-        (-1.3, -0.5, 1.4),
-        (0, -0.8, 0.7),
-    ]
-    obstacles = [bpy.data.objects["Box"], *(add_cube(f"Box {place}", place, 0.2) for place in places)]
-    bones = ["Arm.L", "Forearm.L", "Arm.R", "Forearm.R", "Thigh.L", "Shin.L", "Chest", "Spine"]
-    statuses = []
+    random, statuses = np.random.default_rng(7), []
+    rig, body, obstacles = among_boxes()
     for _ in range(25):
-        name = str(random.choice(bones))
-        select_bones(rig, name)
-        axis = random.choice(list("XYZ"))
-        head = np.array(rig.pose.bones[name].head)
-        result, report, _ = apply("rotate", turn(random.uniform(-1.2, 1.2), axis, head))
-        statuses.append(result.status)
-        assert report.passed, report.message
-        assert sum(intersecting(body, each) for each in obstacles) == pairs_of(*limbs(body)) == 0
+        status, message = pose_at_random(random, rig)
+        statuses.append(status)
+        assert not message
+        assert count_intersections(body, obstacles) == 0
     assert 5 < statuses.count("reached") < 20 and statuses.count("blocked") < 8, statuses
 
 

@@ -69,9 +69,10 @@ def make_bone_set(
     followers = find_followers(context.scene, {rig.name for rig in rigs})
     if not any(mesh.owner.name in followers for mesh in meshes):
         raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
-    posed = PosedSurface(bones, frozenset(followers), meshes, settings.joint_region)
+    responses = [_weights(bone, kind, settings) for bone in bones]
+    posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region)
     scalars = BoneScalars(tuple(bones))
-    weights = scalars.of([_weights(bone, kind, settings) for bone in bones])
+    weights = scalars.of(responses)
     return ControlSet(
         tuple(rig.name for rig in rigs),
         "bones",

@@ -12,10 +12,10 @@ import numpy as np
 import stiv
 from stiv.blender.controls.bone_channels import BoneChannels
 from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
-from stiv.blender.scene.arrays import Floats, Indices, as_matrix, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
-from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corner_vertices, read_positions
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
 
@@ -40,14 +40,18 @@ class PosedSurface:
         bones: Sequence[BoneChannels],
         followers: frozenset[str],
         meshes: Sequence[VisibleMesh],
+        weights: Sequence[Floats],
         joint_region: float,
     ) -> None:
-        """followers: names of all objects that move with the rigs. joint_region: as in EditSettings."""
+        """followers: names of all objects that move with the rigs. weights: of the channels of each bone, (10,).
+
+        joint_region: as in EditSettings.
+        """
         scalars = BoneScalars(tuple(bones))
         moved = [mesh for mesh in meshes if mesh.owner.name in followers]
         self.start = scalars.start
         with kept_twins():
-            self._poses = _Poses(scalars, followers, moved)
+            self._poses = _Poses(scalars, followers, moved, scalars.of(weights) > 0)
             jacobian = self._poses.jacobian()
             regions = divide_all(moved, self._poses.weights(), self._poses.joints(), jacobian, joint_region)
         waiting = iter(regions)
@@ -116,8 +120,10 @@ class BoneScalars:
 class _Poses:
     """Apart from `PosedSurface`, as the core holds `evaluate`: no cycle of references."""
 
-    def __init__(self, scalars: BoneScalars, followers: frozenset[str], meshes: Sequence[VisibleMesh]) -> None:
-        self.scalars, self._followers = scalars, followers
+    def __init__(
+        self, scalars: BoneScalars, followers: frozenset[str], meshes: Sequence[VisibleMesh], responds: Flags
+    ) -> None:
+        self.scalars, self._followers, self._responds = scalars, followers, responds
         self._owners = [(each.read_from, each.owner) for each in meshes]
         self._counts = [len(each.local) for each in meshes]
         self._last = scalars.start
@@ -136,7 +142,10 @@ class _Poses:
         return np.concatenate([each.world() for each in found])
 
     def jacobian(self) -> Floats:
-        """One-sided differences at the last evaluation, (n, 3, k); 0 where the topology changes."""
+        """One-sided differences at the last evaluation, (n, 3, k).
+
+        0 where the topology changes, and for scalars that do not respond once the joints are known.
+        """
         last = self._last.copy()
         here = self.evaluate(last)
         before = self._twin().local_matrices() if self._turned is None else {}
@@ -144,6 +153,8 @@ class _Poses:
         given = self.scalars.of([np.full(10, bone.selected, float) for bone in self.scalars.bones])
         result = np.zeros((sum(self._counts), 3, len(last)))
         for k, step in enumerate(self._steps):
+            if self._turned is not None and not self._responds[k]:
+                continue
             moved = last.copy()
             moved[k] += step
             there = self.evaluate(moved)
@@ -191,8 +202,7 @@ class _Poses:
             for owner, mesh in self._twin(evaluation).evaluate(self.scalars.channels(values)):
                 shown.setdefault((evaluation, owner), []).append(mesh)
         waiting = {key: iter(found) for key, found in shown.items()}
-        missing = _PosedMesh.missing()
-        return [next(waiting.get(key, iter(())), missing) for key in self._owners]
+        return [next(waiting.get(key, iter(())), MISSING) for key in self._owners]
 
     def _make_twin(self, evaluation: str) -> RigTwin:
         rigs = [each.rig for each in self.scalars.bones]
@@ -206,12 +216,6 @@ class _PosedMesh:
     stack: EvaluatedStack
     matrix: Floats
 
-    @classmethod
-    def missing(cls) -> _PosedMesh:
-        """A mesh that is not shown."""
-        none = np.empty(0, np.int32)
-        return cls(EvaluatedStack(np.empty((0, 3), np.float32), none, none), np.eye(4))
-
     def is_like(self, start: _PosedMesh) -> bool:
         """Has it the topology of the start, and finite positions?"""
         points = self.stack.positions
@@ -219,7 +223,17 @@ class _PosedMesh:
 
     def world(self) -> Floats:
         """World positions, (n, 3)."""
+        if np.array_equal(self.matrix, np.eye(4)):
+            return self.stack.positions.astype(np.float64)
         return transform_points(self.matrix, self.stack.positions)
+
+
+def _count(items: bpy.types.bpy_prop_collection) -> Indices:
+    return np.array([len(items)], np.int32)
+
+
+NONE = np.empty(0, np.int32)
+MISSING = _PosedMesh(EvaluatedStack(np.empty((0, 3), np.float32), NONE, NONE), np.eye(4))
 
 
 class RigTwin:
@@ -261,7 +275,7 @@ class RigTwin:
             owner = self._copies.owner(copy)
             if owner.session_uid in self._shown:
                 with evaluated_mesh(instance.object) as mesh:
-                    stack = EvaluatedStack(read_positions(mesh), *read_corners(mesh))
+                    stack = EvaluatedStack(read_positions(mesh), read_corner_vertices(mesh), _count(mesh.polygons))
                 yield ObjectReference.of(owner), _PosedMesh(stack, as_matrix(instance.matrix_world))
 
     def local_matrices(self) -> dict[tuple[int, str], Floats]:

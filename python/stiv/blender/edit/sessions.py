@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.joint_regions import smallest_altitude
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -18,6 +19,8 @@ from stiv.blender.scene.exclusions import excluded_bodies, find_excluded_triangl
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 from stiv.task import Call, Steps
+
+SKIN = 0.25  # of the altitude of small triangles: greatest minimum distance of skin from itself
 
 
 def assemble_with_controls(
@@ -52,7 +55,7 @@ def make_session(
     q = deformation.surface(np.asarray(controls, np.float64))
     options = stiv.EditOptions(
         **settings.shared(),
-        pair_separations=body_separations(assembly, settings),
+        pair_separations=_skin_separations(assembly, control_sets, settings) | body_separations(assembly, settings),
         weights=weights_of_all([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
@@ -67,6 +70,24 @@ def make_session(
         return session
     except stiv.StartIntersectsError as error:
         raise ObjectsIntersectError(error, assembly) from error
+
+
+def _skin_separations(
+    assembly: Assembly, control_sets: Sequence[ControlSet], settings: EditSettings
+) -> dict[tuple[str | int, str | int], float]:
+    """Minimum distances of posed bodies from themselves.
+
+    A mesh finer than the minimum distance is nearer to itself everywhere. It turns with its bones, which would count
+    as an approach.
+    """
+    found: dict[tuple[str | int, str | int], float] = {}
+    for index in (index for each in control_sets if each.posed is not None for index in each.surfaces):
+        mesh = assembly.meshes[index]
+        if settings.separation > 0 and len(mesh.triangles):
+            body = int(assembly.surface.vertex_body[assembly.starts[index]])
+            least = min(settings.separation, SKIN * smallest_altitude(mesh))
+            found[body, body] = min(least, found.get((body, body), least))
+    return found
 
 
 class ObjectsIntersectError(stiv.StartIntersectsError):

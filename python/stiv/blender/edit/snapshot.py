@@ -61,6 +61,8 @@ def take_snapshot(
     adapt: may replace each control set. culling: obstacles outside the box are not read; None: all are read.
     """
     left_out = frozenset() if culling is None else culling.left_out
+    if settings.guard == "auto" and any(each.role == "bones" and _is_animated(each) for each in participants):
+        settings = replace(settings, guard="viewport")  # the render shows the keyframes, not the present pose
     scene, guard = read_guarded_scene(
         context,
         settings,
@@ -87,6 +89,11 @@ def take_snapshot(
     start_digest = digest(*(each.controls for each in control_sets), points, *placements).hex()
     chosen = replace(settings, excluded=excluded)
     return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, start_digest, carried)
+
+
+def _is_animated(participant: Participant) -> bool:
+    animation = participant.reference.find().animation_data
+    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
 
 
 def _nothing_moves(participants: Sequence[Participant], solid: Sequence[VisibleMesh]) -> InputError:
