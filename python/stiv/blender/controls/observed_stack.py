@@ -93,7 +93,7 @@ class ObservedStack:
 
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation, unless it is constant."""
-        if not self._blocks.are_affine:
+        if not self._blocks.are_exact:
             self._observed.set_jacobian(self._blocks.jacobian())
 
     def _find_ends(self, places: Sequence[int], settings: Sequence[BlockSettings]) -> stiv.Deformation | None:
@@ -119,9 +119,9 @@ class _Blocks:
     blocks: list[StackBlock]
 
     @property
-    def are_affine(self) -> bool:
+    def are_exact(self) -> bool:
         """Is the Jacobian constant?"""
-        return all(block.affine is not None for block in self.blocks)
+        return all(block.exact is not None for block in self.blocks)
 
     def evaluate(self, positions: Floats) -> Floats | None:
         """World positions of all blocks, (n, 3), from the vertices' positions in each, stacked; None: infeasible."""
@@ -132,16 +132,17 @@ class _Blocks:
         return np.concatenate(feasible) if len(feasible) == len(found) else None
 
     def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]] | stiv.Weights:
-        """One frame for each vertex of all blocks, in rows; weights if each is a multiple of the identity."""
+        """The rows of all blocks; weights if x, y and z act alike in all of them."""
         controls = self.blocks[0].controls
-        anchors = [block.anchors + place * controls for place, block in enumerate(self.blocks)]
-        count = sum(map(len, anchors))
         with kept_twins():
-            frames = np.concatenate([block.frames() for block in self.blocks])
-        shape = count, controls * len(self.blocks)
-        rows = np.arange(count + 1, dtype=np.int32), np.concatenate(anchors).astype(np.int32)
-        factors = [None if block.affine is None else block.affine.factors() for block in self.blocks]
-        scalars = [each for each in factors if each is not None]
-        if len(scalars) == len(factors):
-            return stiv.Weights(*rows, np.concatenate(scalars), shape)
-        return *rows, frames, shape
+            rows = [block.rows() for block in self.blocks]
+        firsts = np.cumsum([0, *(len(indices) for _, indices, _ in rows)])
+        starts = [indptr[:-1] + first for (indptr, _, _), first in zip(rows, firsts, strict=False)]
+        indptr = np.append(np.concatenate(starts), firsts[-1]).astype(np.int32)
+        indices = np.concatenate([each + place * controls for place, (_, each, _) in enumerate(rows)]).astype(np.int32)
+        values = [each for _, _, each in rows]
+        shape = len(indptr) - 1, controls * len(self.blocks)
+        if all(each.ndim == 1 for each in values):
+            return stiv.Weights(indptr, indices, np.concatenate(values), shape)
+        frames = [each if each.ndim == 3 else each[:, None, None] * np.eye(3) for each in values]
+        return indptr, indices, np.concatenate(frames), shape

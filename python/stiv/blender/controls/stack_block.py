@@ -10,7 +10,15 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.affine_stack import TRIALS, AffineMap, find_affine_map, may_be_affine
+from stiv.blender.controls.affine_stack import (
+    TRIALS,
+    AffineMap,
+    ExactMap,
+    Rows,
+    find_affine_map,
+    find_smoothing_map,
+    may_be_affine,
+)
 from stiv.blender.controls.held_vertices import HeldVertices
 from stiv.blender.controls.points import to_single, to_stored
 from stiv.blender.controls.stack_jacobian import find_anchors, find_frames
@@ -80,7 +88,7 @@ class StackBlock:
         controls: number of vertices of the mesh.
         count: number of evaluated vertices.
         anchors: the vertex that each of them follows, (n,).
-        affine: the same function, if it is affine; None otherwise.
+        exact: the same function, if it is affine; None otherwise.
     """
 
     def __init__(self, settings: BlockSettings, frame: Floats, positions: Floats, held: HeldVertices) -> None:
@@ -107,8 +115,8 @@ class StackBlock:
         self._last = positions
         self._frames = np.broadcast_to(np.eye(3), (self.count, 3, 3))
         block = self._modifiers(ob)
-        self.affine = self._find_affine_map(block)
-        self._is_computed = self.affine is not None and all(each.type != "WELD" for each in block)
+        self.exact = self._find_exact_map(block)
+        self._is_computed = all(each.type != "WELD" for each in block)
 
     @property
     def end_modifiers(self) -> tuple[str, ...]:
@@ -119,9 +127,9 @@ class StackBlock:
         """World positions of the evaluated vertices, (n, 3); None if their topology differs from that at the start."""
         if np.abs(positions - self._rest).max(initial=0.0) > self._furthest:
             return None
-        if self._is_computed and self.affine is not None:
+        if self._is_computed and self.exact is not None:
             is_apart = self._held.keeps_apart(positions, self._rest, self._frame)
-            return self.affine.evaluate(positions) if is_apart else None
+            return self.exact.evaluate(positions) if is_apart else None
         points = self._observe(positions)
         if points is not None:
             self._last = positions
@@ -129,12 +137,18 @@ class StackBlock:
 
     def frames(self) -> Floats:
         """How each evaluated vertex moves with all vertices, (n, 3, 3): at the last positions, if it is known there."""
-        if self.affine is not None:
-            return self.affine.frames
+        if isinstance(self.exact, AffineMap):
+            return self.exact.frames
         with kept_twins():
             found = find_frames(self._observe, self._last, self._step)
         self._frames = self._frames if found is None else found
         return self._frames
+
+    def rows(self) -> Rows:
+        """The Jacobian: exact, or by frames."""
+        if self.exact is not None:
+            return self.exact.rows()
+        return np.arange(self.count + 1, dtype=np.int32), self.anchors, self.frames()
 
     def end_weights(self, subdivision: SubdivisionStage) -> stiv.Weights:
         """Weights of a subdivision of the evaluated mesh. Only inside `kept_twins`."""
@@ -163,14 +177,16 @@ class StackBlock:
             each for each in ob.modifiers if is_active(each, ob, evaluation) and each.name not in self.end_modifiers
         ]
 
-    def _find_affine_map(self, block: Sequence[bpy.types.Modifier]) -> AffineMap | None:
+    def _find_exact_map(self, block: Sequence[bpy.types.Modifier]) -> ExactMap | None:
         ob, evaluation = self._settings.reference.find(), self._settings.evaluation
+        trials = [transform_points(self._frame, each) for each in random_moves(self._local, TRIALS)]
+        if smoothing := find_smoothing_map(self._observe, self._rest, ob, block, trials):
+            return smoothing
         others = [each.name for number, each in enumerate(block) if not may_be_affine(each, number == 0)]
         if (block and len(others) == len(block)) or (
             others and not keep_positions(ob, bpy.context.scene, evaluation, others)
         ):
             return None
-        trials = [transform_points(self._frame, each) for each in random_moves(self._local, TRIALS)]
         return find_affine_map(self._observe, self._rest, self.anchors, trials)
 
     def _stored(self, positions: Floats) -> Singles:
