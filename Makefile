@@ -130,6 +130,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	build/venv/bin/python tests/long/random_sessions.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
 	build/venv-blender/bin/python tests/long/cancelling_in_blender.py --times 200
+	build/venv-blender/bin/python tests/long/random_poses.py --poses 500
 	build/venv-blender/bin/python tests/long/stack_trials.py
 	build/venv/bin/python tests/window/run.py --sequences 500 --limit 7200 random_sequences
 	STIV_WINDOW_SNAPS=50 build/venv/bin/python tests/window/run.py snaps_as_blender
