@@ -28,7 +28,9 @@ REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that 
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
-MAX_POOR = 2  # accepted states in a row that gain little while the mouse rests; then a drag has settled
+POOR_GAIN = (
+    0.9999  # the same for a poor state, of which one settles a drag at rest: deep in a wall, a slide gains little
+)
 MAX_IDLE = 10  # repeated solves that settle and accept nothing, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
@@ -132,7 +134,9 @@ class DragLoop:
         self._refusal = ""
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
-        self._fruitless = self._empty = self._idle = self._poor = 0
+        self._energy = 0.0  # of the last solve
+        self._fruitless = self._empty = self._idle = 0
+        self._is_poor = False
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._budget = BUDGET
@@ -209,7 +213,8 @@ class DragLoop:
     def _note_motion(self) -> None:
         """Solve for a new goal, without what rest was used for."""
         self._pending, self._settled = True, False
-        self._fruitless = self._empty = self._idle = self._poor = 0
+        self._fruitless = self._empty = self._idle = 0
+        self._is_poor = False
         self._moved_at = time.perf_counter()
         if self._task is not None and self._can_cancel:
             self._task.cancel()
@@ -305,7 +310,7 @@ class DragLoop:
         self._unfinished = goal if nothing_accepted else None
         self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
         ends = found.status == "reached" or (found.status == "blocked" and self._fruitless > 0)
-        if not self._pending and (ends or self._poor >= MAX_POOR):
+        if not self._pending and (ends or self._is_poor):
             self._end_settling()
 
     def _take_settled(self, settled: EditResult) -> None:
@@ -320,7 +325,7 @@ class DragLoop:
         gained = self._has_gained(self._solved[0], settled)
         self._idle = 0 if gained else self._idle + 1
         self._settled = False
-        if self._idle >= MAX_IDLE or self._poor >= MAX_POOR:
+        if self._idle >= MAX_IDLE or self._is_poor:
             self._end_settling()
 
     def _end_settling(self) -> None:
@@ -346,19 +351,19 @@ class DragLoop:
         self._fruitless = 0 if gained else self._fruitless + 1
         if result.status == "budget":
             most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
-            return self._fruitless < most and self._poor < MAX_POOR
+            return self._fruitless < most and not self._is_poor
         return result.status == "corrected" and gained
 
     def _has_gained(self, state: State | None, result: EditResult) -> bool:
-        """Whether a solve for a state came closer to its goal; counts the accepted ones that did not."""
+        """Whether a solve for a state came closer to its goal; notes whether it hardly did."""
         solved, least = self._solved
-        gained = solved != state or result.energy < GAIN * least
+        is_new, before = solved != state, self._energy
+        gained = is_new or result.energy < GAIN * least
         if gained:
             self._solved = (state, result.energy)
-        if gained:
-            self._poor = 0
-        elif len(result.path) > 0 and (self._confirmed or self._rests()):
-            self._poor += 1
+        self._energy = result.energy
+        rests = self._confirmed or self._rests()
+        self._is_poor = not is_new and rests and len(result.path) > 0 and result.energy >= POOR_GAIN * before
         return gained
 
     def _begin_again(self) -> bool:
@@ -395,6 +400,9 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
+        solved, least = self._solved
+        if solved is not None and solved == replace(self.state, phase=solved.phase):
+            self._solved = (self.state, least)  # the goal is the same
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending, self._fruitless, self._empty = True, 0, 0
