@@ -25,6 +25,7 @@ FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double wh
 DOUBLINGS = 4  # of a budget that ends before a state is accepted, at most; of an unfinished goal, fewer
 DOUBLINGS_UNFINISHED = 2
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
+MAX_HIDDEN = 3  # solves for a goal that accept nothing before the header says so
 START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
@@ -151,8 +152,8 @@ class DragLoop:
 
     @property
     def shows_soon(self) -> bool:
-        """Whether the first solve for a goal accepted nothing, and the next one follows: showing both draws twice."""
-        return self._empty == 1 and not self.at_rest
+        """Whether the first solves for a goal accepted nothing, and others follow: showing each would draw the view."""
+        return 0 < self._empty <= MAX_HIDDEN and not self.at_rest
 
     @property
     def fraction(self) -> float:
@@ -306,7 +307,9 @@ class DragLoop:
         self._refusal = ""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
         self._empty = self._empty + 1 if nothing_accepted else 0
-        self._pending = not self.stopped and (self._may_gain(goal.state, found) or goal.state != self.state)
+        self._pending = not self.stopped and (
+            self._may_gain(goal.state, found) or not _same_goal(goal.state, self.state)
+        )
         self._unfinished = goal if nothing_accepted else None
         self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
         ends = found.status == "reached" or (found.status == "blocked" and self._fruitless > 0)
@@ -357,7 +360,7 @@ class DragLoop:
     def _has_gained(self, state: State | None, result: EditResult) -> bool:
         """Whether a solve for a state came closer to its goal; notes whether it hardly did."""
         solved, least = self._solved
-        is_new, before = solved != state, self._energy
+        is_new, before = not _same_goal(solved, state), self._energy
         gained = is_new or result.energy < GAIN * least
         if gained:
             self._solved = (state, result.energy)
@@ -400,9 +403,6 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
-        solved, least = self._solved
-        if solved is not None and solved == replace(self.state, phase=solved.phase):
-            self._solved = (self.state, least)  # the goal is the same
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending, self._fruitless, self._empty = True, 0, 0
@@ -460,6 +460,11 @@ class DragLoop:
         self._leave_task()
         if self.edit is not None:
             restore_after_error(self.edit, error)
+
+
+def _same_goal(first: State | None, second: State | None) -> bool:
+    """Whether two states differ at most by the confirmation."""
+    return first is not None and second is not None and replace(first, phase=second.phase) == second
 
 
 def _noting(steps: Steps[Any]) -> Steps[Any]:

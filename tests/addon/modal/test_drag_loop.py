@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from test_event_handling import EVENTS
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
@@ -179,10 +179,12 @@ def test_a_budget_used_up_before_the_first_accepted_state_writes_nothing() -> No
 
 
 def test_a_long_solve_that_accepts_nothing_is_shown() -> None:
-    edit = FakeEdit(statuses=["budget"] * 3, furthest=0.0)
+    edit = FakeEdit(statuses=["budget"] * 20, furthest=0.0)
     drag = new_drag(edit)
     drag.handle(move_to(50))
-    drag.tick()
+    for _ in range(MAX_HIDDEN):
+        drag.tick()
+        assert drag.shows_soon
     drag.tick()
     assert drag.result.status == "budget" and not drag.shows_soon
 
