@@ -11,9 +11,11 @@ GUIDE = (ROOT / "docs/user_guide.md").read_text(encoding="utf-8")
 BLENDERS = {
     "Add-ons", "Adjust Last Operation", "Affect Only", "Align Rotation to Target", "Alt Navigation", "Closest",
     "Cursor", "Curve", "Edge", "Edge Center", "Face", "Face Nearest", "Face Project", "Fixed", "Gimbal", "Grid",
-    "Increment", "Individual Origins", "Inverse Kinematics", "Is Viewport", "Item", "Join", "Keymap", "Lattice", "Library Override", "Make",
+    "Increment", "Individual Origins", "Inverse Kinematics", "Is Viewport", "Item", "Join", "Keymap", "Lattice",
+    "Library Override", "Make",
     "Mesh", "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected",
-    "Quad Method", "Realize Instances", "Rest Position", "STIV", "Shape Key Edit Mode", "Snap To", "Topology Mirror", "Transform",
+    "Quad Method", "Realize Instances", "Rest Position", "STIV", "Shape Key Edit Mode",
+    "Snap To", "Topology Mirror", "Transform",
     "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
 }  # fmt: skip
 
