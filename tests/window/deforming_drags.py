@@ -10,7 +10,7 @@ from playing import INTO_WALL, click, expect_free, expect_near, prepared, start
 from scenes import WALL_FACE
 from simulation import Steps, Window
 
-IN_WALL = (1.7, 0.0, 0.0)  # a goal that is no nearer around the wall, which soft points find on a busy machine
+IN_WALL = (1.7, 0.0, 0.0)  # the way around the wall comes no closer to this goal; to a further one, soft points find it
 
 
 def cage_in_edit_mode(window: Window) -> Steps:
