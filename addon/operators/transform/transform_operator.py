@@ -121,6 +121,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         result = self._run(context, steps)
         report = edit.write()
         insert_keyframes(context, edit)
+        edit.finish()
         return report.result or result, report
 
     def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
@@ -141,6 +142,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         try:
             report = edit.write()
             insert_keyframes(context, edit)
+            edit.finish()
         except Exception as error:
             restore_after_error(edit, error)
             raise

@@ -44,7 +44,8 @@ class EditSession::Implementation {
     context_.check_controls(goal, "goal");
     context_.limits().check(controls);
     State state{controls, context_.surface_at(controls, execution)};
-    const bool is_known = controls.rows() == checked_.rows() && controls == checked_;
+    const auto equals = [&](const Controls& known) { return controls.rows() == known.rows() && controls == known; };
+    const bool is_known = equals(checked_) || equals(accepted_.controls);
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
     checked_ = controls;
     progress_.reset();

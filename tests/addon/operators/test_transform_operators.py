@@ -260,7 +260,8 @@ def test_scripts_choose_the_axes_that_contact_may_not_leave(chosen: tuple) -> No
     """Through the operator and its redo, and by an edit script."""
     moving = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
     moving.rotation_euler = (0.3, 0.2, 0.5)
-    bpy.data.objects["Wall"].rotation_euler.z = 0.6
+    wall = bpy.data.objects["Wall"]
+    wall.rotation_euler.z, wall.scale = 0.6, (1.0, 6.0, 6.0)  # too large for a detour
     values = {"value": [6.0, 0.0, 0.0], "constraint_axis": list(chosen)}
     step = {"operator": "move", "objects": ["Box"], "values": values}
     script = parse_edit_script({"schema": "stiv-edits", "version": 1, "steps": [step]})

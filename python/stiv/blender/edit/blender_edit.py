@@ -322,6 +322,10 @@ class BlenderEdit:
         with kept_twins():
             return self._writer.write_accepted(self._goal)
 
+    def finish(self) -> None:
+        """Leave the session to the next edit, which uses it if nothing else changes. End the use of this edit."""
+        self._solver.keep_session()
+
     def insert_keyframes(self, context: bpy.types.Context) -> None:
         """Insert keyframes for posed bones, as Auto Keying does. Other controls get none."""
         for control_set in self.control_sets:

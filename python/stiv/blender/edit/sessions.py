@@ -40,20 +40,17 @@ def assemble_with_controls(
     return assemble(meshes, mobility, together, settings.ignored_pairs, seams, untested)
 
 
-def make_session(
+def session_options(
     assembly: Assembly,
     deformation: stiv.Deformation,
     control_sets: Sequence[ControlSet],
     controls: ArrayLike,
     settings: EditSettings,
-) -> Steps[stiv.EditSession]:
-    """Steps that make a session of all control sets, from their stacked controls, (m, 3).
-
-    deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
-    """
+) -> stiv.EditOptions:
+    """Options of a session of all control sets that starts at these stacked controls, (m, 3)."""
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     q = deformation.surface(np.asarray(controls, np.float64))
-    options = stiv.EditOptions(
+    return stiv.EditOptions(
         **settings.shared(),
         pair_separations=_skin_separations(assembly, control_sets, settings) | body_separations(assembly, settings),
         weights=weights_of_all([each.weights for each in control_sets]),
@@ -63,6 +60,15 @@ def make_session(
         single_precision=bool(frames),
         storage=frames,
     )
+
+
+def make_session(
+    assembly: Assembly, deformation: stiv.Deformation, controls: ArrayLike, options: stiv.EditOptions
+) -> Steps[stiv.EditSession]:
+    """Steps that make a session of all control sets, from their stacked controls, (m, 3).
+
+    deformation: of `deformation_of`. Raises InputError, StartIntersectsError.
+    """
     try:
         session: stiv.EditSession = yield Call(
             open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options

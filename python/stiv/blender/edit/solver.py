@@ -7,7 +7,15 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.edit.sessions import axes_of_all, deformation_of, make_session, stack_controls, weights_of_all
+from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
+from stiv.blender.edit.sessions import (
+    axes_of_all,
+    deformation_of,
+    make_session,
+    session_options,
+    stack_controls,
+    weights_of_all,
+)
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -33,6 +41,7 @@ class EditSolver:
         self._settings = settings
         self.excluded = settings.excluded
         self._session: stiv.EditSession | None = None
+        self._inputs: SessionInputs | None = None  # of the session, if the next edit may use it
         self._blocked, self._calls = False, 0
         self._at_start = self.assembly = assembly
         self.deformation = deformation_of(assembly, control_sets)
@@ -160,7 +169,23 @@ class EditSolver:
         self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats
     ) -> Steps[stiv.EditSession]:
         settings = replace(self._settings, excluded=self.excluded)
-        return make_session(assembly, deformation, self.control_sets, controls, settings)
+        options = session_options(assembly, deformation, self.control_sets, controls, settings)
+        self._inputs = None if self._is_changing() else SessionInputs.of(assembly, self.control_sets, options)
+        kept = None if self._inputs is None else take_session(self._inputs, controls)
+        return kept or (yield from make_session(assembly, deformation, controls, options))
+
+    def _is_changing(self) -> bool:
+        """Does the session depend on more than its inputs: exclusions of the start, or values of Blender?"""
+        sets = self.control_sets
+        return bool(self.excluded.pairs) or any(each.observed or each.placed or each.posed for each in sets)
+
+    def keep_session(self) -> None:
+        """Leave the session to the next edit. This solver must not be used any more."""
+        if self._session is not None and self._inputs is not None:
+            weights = weights_of_all([each.weights for each in self.control_sets])
+            options = replace(self._inputs.options, weights=weights, weight_axes=axes_of_all(self.control_sets))
+            keep_session(replace(self._inputs, options=options), self._session)
+        self._session = None
 
     def _moving(self, assembly: Assembly) -> set[str]:
         """Names of the objects that the goal moves."""

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps the session of the last edit for the next one, if nothing but its accepted controls changed since."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+import stiv
+from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.scene.arrays import Floats, digest
+from stiv.blender.scene.assembly import Assembly
+
+LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separation is a part of its diagonal
+
+
+@dataclass(frozen=True)
+class SessionInputs:
+    """All that a session is made from, except its controls.
+
+    fingerprint: of the connectivity, the options and the positions of what no control moves. deformations: of the
+    control sets; equal ones are the same objects, because they are cached by their inputs. diagonal: of what moves.
+    """
+
+    fingerprint: bytes
+    deformations: tuple[stiv.Deformation, ...]
+    diagonal: float
+    options: stiv.EditOptions
+
+    @classmethod
+    def of(cls, assembly: Assembly, control_sets: Sequence[ControlSet], options: stiv.EditOptions) -> SessionInputs:
+        """The inputs of a session of these control sets."""
+        surface, positions = assembly.surface, assembly.positions
+        moving = np.zeros(len(positions), bool)
+        moving[assembly.vertices_of([index for each in control_sets for index in each.surfaces])] = True
+        diagonal = float(np.linalg.norm(np.ptp(positions[moving], axis=0))) if moving.any() else 0.0
+        bodies = [(body.name, body.mobility) for body in surface.bodies]
+        connectivity = (surface.triangles, surface.loose_edges, surface.vertex_body, surface.ignored, bodies)
+        chosen = astuple(replace(options, weights=None, weight_axes=None))
+        fingerprint = digest(*connectivity, surface.flip_faces, moving, positions[~moving], *_flat(chosen))
+        return cls(fingerprint, tuple(each.deformation for each in control_sets), diagonal, options)
+
+    def agree_with(self, other: SessionInputs) -> bool:
+        """Would both make the same session, up to the weights of the response?"""
+        growth = max(self.diagonal, other.diagonal) <= LARGEST_GROWTH * min(self.diagonal, other.diagonal)
+        same = len(self.deformations) == len(other.deformations)
+        same = same and all(a is b for a, b in zip(self.deformations, other.deformations, strict=True))
+        return growth and same and self.fingerprint == other.fingerprint
+
+
+_kept: tuple[SessionInputs, stiv.EditSession] | None = None
+
+
+def keep_session(inputs: SessionInputs, session: stiv.EditSession) -> None:
+    """Keep a session that nothing else uses any more. It replaces the one that was kept."""
+    global _kept
+    _kept = inputs, session
+
+
+def take_session(inputs: SessionInputs, controls: Floats) -> stiv.EditSession | None:
+    """The kept session at these controls, (m, 3), if it was made from the same inputs. Then none is kept any more."""
+    global _kept
+    kept, _kept = _kept, None
+    if kept is None or not kept[0].agree_with(inputs):
+        return None
+    session, options = kept[1], inputs.options
+    try:
+        session.restore(controls)
+        if not _weighs_alike(kept[0].options, options):
+            session.set_weights(options.weights, options.weight_axes)
+    except (stiv.InfeasibleError, stiv.StartIntersectsError):
+        return None
+    return session
+
+
+def _weighs_alike(a: stiv.EditOptions, b: stiv.EditOptions) -> bool:
+    axes = (a.weight_axes is None) == (b.weight_axes is None)
+    return axes and all(
+        np.array_equal(x, y) for x, y in ((a.weights, b.weights), (a.weight_axes, b.weight_axes)) if x is not None
+    )
+
+
+def _flat(values: Sequence[Any]) -> list[Any]:
+    """The arrays and plain values in nested tuples and lists."""
+    rows = [_flat(value) if isinstance(value, tuple | list) else [value] for value in values]
+    return [value for row in rows for value in row]

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The next edit uses the session of the last one only if nothing else changed."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+import pytest
+from building import add_cube, add_modifier, cube_above_floor, edit_mode, shift
+
+from stiv.blender import BlenderEdit, EditSettings
+from stiv.blender.edit import kept_session
+
+
+def pressed(depth: float) -> BlenderEdit:
+    """A finished edit that presses the edited cage onto the floor."""
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    edit.apply(shift(z=-depth))
+    assert edit.write().passed
+    return edit
+
+
+def cage() -> bpy.types.Object:
+    cube = cube_above_floor()
+    add_modifier(cube, "SUBSURF", levels=2)
+    edit_mode(cube)
+    return cube
+
+
+def test_consecutive_edits_share_a_session_and_end_as_with_one_each() -> None:
+    def heights(shares: bool) -> tuple[bool, np.ndarray]:
+        cage()
+        first = pressed(1.0)
+        session = first._solver.session
+        if shares:
+            first.finish()
+        second = pressed(0.2)
+        return second._solver.session is session, second.surface
+
+    shared, together = heights(True)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    fresh, apart = heights(False)
+    assert shared
+    assert not fresh
+    assert together == pytest.approx(apart, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda cube: add_cube("Another", (5, 0, 0)),
+        lambda cube: setattr(bpy.data.objects["Floor"], "location", (0, 0, -0.5)),
+        lambda cube: setattr(cube.modifiers[0], "levels", 1),
+    ],
+)
+def test_a_change_of_the_scene_ends_the_session(change: Callable[[bpy.types.Object], object]) -> None:
+    cube = cage()
+    edit = pressed(1.0)
+    session = edit._solver.session
+    edit.finish()
+    change(cube)
+    bpy.context.view_layer.update()
+    assert BlenderEdit.begin(bpy.context, EditSettings(), "move")._solver.session is not session
+    assert kept_session._kept is None
