@@ -91,11 +91,15 @@ class _CurveObserver:
         return None if points is None else transform_points(self._frame, points)
 
     def moved(self, move: Floats) -> Floats | None:
-        """Local positions, (n, 3), after a move of the points, (m, 3). Only inside `kept_twins`."""
+        """Local positions, (n, 3), after a move of the points, (m, 3). Only inside `kept_twins`.
+
+        None where the faces differ, or a position is beyond single precision.
+        """
         shown = [twin.evaluate((self._local + move).astype(np.float32)) for twin in self._twins()]
         if not all(now.has_topology_of(start) for now, start in zip(shown, self._start, strict=True)):
             return None
-        return np.concatenate([each.positions for each in shown]).astype(np.float64)
+        positions = np.concatenate([each.positions for each in shown])
+        return positions.astype(np.float64) if np.isfinite(positions).all() else None
 
     def linear_weights(self) -> stiv.Weights:
         """Weights of the points, (n, m), if the surface is linear: each evaluation moves three, along one axis each."""
