@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Splits a typed value into increments as small as those of a drag."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -42,10 +42,18 @@ def count_increments(path: Path, points: Floats, longest: float, most: int) -> i
     if len(points) == 0 or longest <= 0:
         return 1
     matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
-    states = [transform_points(matrix, points) for matrix in matrices]
-    length = sum(float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(states))
     turn = sum(_angle(after[:3, :3] @ np.linalg.pinv(before[:3, :3])) for before, after in pairwise(matrices))
+    low, high = points.min(axis=0), points.max(axis=0)
+    corners = np.array([np.where(choice, high, low) for choice in np.ndindex(2, 2, 2)])
+    length = _length(matrices, corners)  # no point moves further than a corner of its box
+    if length > longest:
+        length = _length(matrices, points)
     return int(np.clip(np.ceil(max(length / longest, turn / LARGEST_TURN)), 1, most))
+
+
+def _length(matrices: Sequence[Floats], points: Floats) -> float:
+    states = [transform_points(matrix, points) for matrix in matrices]
+    return sum(float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(states))
 
 
 def _angle(linear: Floats) -> float:

@@ -21,8 +21,9 @@ LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separat
 class SessionInputs:
     """All that a session is made from, except its controls.
 
-    fingerprint: of the connectivity, the options and the positions of what no control moves. deformations: of the
-    control sets; equal ones are the same objects, because they are cached by their inputs. diagonal: of what moves.
+    fingerprint: of the connectivity, the options and the positions of all vertices that no control moves.
+    deformations: of the control sets; equal ones are the same objects, because they are cached by their inputs.
+    diagonal: of the moving vertices.
     """
 
     fingerprint: bytes
@@ -77,10 +78,7 @@ def take_session(inputs: SessionInputs, controls: Floats) -> stiv.EditSession | 
 
 
 def _weighs_alike(a: stiv.EditOptions, b: stiv.EditOptions) -> bool:
-    axes = (a.weight_axes is None) == (b.weight_axes is None)
-    return axes and all(
-        np.array_equal(x, y) for x, y in ((a.weights, b.weights), (a.weight_axes, b.weight_axes)) if x is not None
-    )
+    return digest(a.weights, a.weight_axes) == digest(b.weights, b.weight_axes)
 
 
 def _flat(values: Sequence[Any]) -> list[Any]:
