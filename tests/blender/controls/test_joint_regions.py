@@ -40,7 +40,7 @@ def test_parts_are_a_partition_and_tested_ones_share_no_vertex(joints: list[Join
     skin = strip()
     regions = divide(skin, joints, 2.5)
     found = faces_of(regions)
-    assert regions.joints == len(joints) and len(found) == 2 * len(joints) + 1
+    assert regions.joints == len(joints) and len(found) == 4 * len(joints) + 1
     assert sum(map(len, found)) == len(set().union(*found)) == 48 * 48
     assert sum(len(part.triangles) for part in regions.parts) == len(skin.mesh.triangles)
     for a, first in enumerate(regions.parts):

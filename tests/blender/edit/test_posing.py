@@ -267,7 +267,7 @@ def test_skin_finer_than_the_minimum_distance_does_not_hold_itself() -> None:
     result, report, edit = apply("rotate", turn(np.radians(-30), "Y", SHOULDER), EditSettings(separation=0.06))
     assert result.status == "reached" and report.passed
     assert turned(rig.pose.bones["Arm.L"]) == pytest.approx(30, abs=1e-3)
-    assert len(edit.assembly.meshes) == 3 and pairs_of(*limbs(body)) == 0
+    assert len(edit.assembly.meshes) == 5 and pairs_of(*limbs(body)) == 0
 
 
 def among_boxes() -> tuple[Any, Any, list[Any]]:

@@ -15,6 +15,7 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
 YIELDING = 0.6  # part of the region at a joint that only responds, and thus turns little
 BENDING = 0.02  # relative change of a squared length for a unit of a channel, beyond the error of differences
+COLLAR = 1.25  # reach of the skin between a region and its limb, which both may touch, in reaches of the region
 AT_JOINT = (0.25, 0.75)  # the same for those that lie around the joint
 
 
@@ -124,20 +125,29 @@ def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
     """
     mesh = skin.mesh
     corners, owners = mesh.triangles, mesh.faces
-    around = np.zeros(len(mesh.local), bool)
+    around, beside = np.zeros((2, len(mesh.local)), bool)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     for joint in joints if radii > 0 else ():
         around |= _region(skin, joint, radii, edges)
-    folding = np.zeros(int(owners.max(initial=-1)) + 1, bool)
-    folding[owners[around[corners].any(axis=1)]] = True
-    in_joint = folding[owners]
+        beside |= _region(skin, joint, COLLAR * radii, edges)
+    in_joint = _of_faces(owners, around[corners].any(axis=1))
     if not in_joint.any():
         return Regions((mesh,), frozenset(), 0, 0)
-    joint_of = _components(len(mesh.local), corners[in_joint])
-    limb_of = _components(len(mesh.local), corners[~in_joint])
-    labels, untested, count = _label(corners, in_joint, joint_of, limb_of)
+    beside[corners[in_joint]] = True
+    in_collar = _of_faces(owners, beside[corners].any(axis=1)) & ~in_joint
+    labels, count = _label(corners, [in_joint, in_collar, ~(in_joint | in_collar)])
+    labels = _with_islands_joined(labels, count, _neighbours(corners, labels))
+    untested = _neighbours(corners, labels) | {(number, number) for number in range(count)}
     parts = tuple(_part(mesh, number, labels == number) for number in range(labels.max() + 1))
-    return Regions(parts, untested, count, int(folding.sum()))
+    return Regions(parts, frozenset(untested), count, len(np.unique(owners[in_joint])))
+
+
+def _of_faces(owners: Indices, rows: Flags) -> Flags:
+    """All triangles of the faces that have one of the triangles flagged in `rows`."""
+    chosen = np.zeros(int(owners.max(initial=-1)) + 1, bool)
+    chosen[owners[rows]] = True
+    flags: Flags = chosen[owners]
+    return flags
 
 
 def _region(skin: Skin, joint: Joint, radii: float, edges: Indices) -> Flags:
@@ -177,28 +187,35 @@ def _components(count: int, faces: Indices) -> Indices:
         label = least
 
 
-def _label(
-    corners: Indices, in_joint: Flags, joint_of: Indices, limb_of: Indices
-) -> tuple[Indices, frozenset[tuple[int, int]], int]:
-    """The part of each triangle, (f,), the untested pairs of parts, and the number of joints.
+def _label(corners: Indices, kinds: Sequence[Flags]) -> tuple[Indices, int]:
+    """The part of each triangle, (f,): a connected piece of its kind; and the number of parts of the first kind."""
+    labels, count, firsts = np.zeros(len(corners), np.int32), 0, []
+    for rows in kinds:
+        pieces = _components(int(corners.max()) + 1, corners[rows])[corners[rows, 0]]
+        names, numbers = np.unique(pieces, return_inverse=True)
+        labels[rows] = count + numbers.ravel()
+        count += len(names)
+        firsts.append(count)
+    return labels, firsts[0]
 
-    All that no joint touches is one part.
-    """
-    joints = np.unique(joint_of[corners[in_joint, 0]])
-    number = {int(name): k for k, name in enumerate(joints)}
-    touched: dict[int, set[int]] = {int(name): set() for name in np.unique(limb_of[corners[~in_joint, 0]])}
-    in_limb = np.zeros(len(joint_of), bool)
-    in_limb[corners[~in_joint]] = True
-    shared = np.unique(corners[in_joint])
-    for vertex in shared[in_limb[shared]].tolist():
-        touched[int(limb_of[vertex])].add(number[int(joint_of[vertex])])
-    limbs = [limb for limb, each in touched.items() if each]
-    part_of = {limb: len(number) + (limbs.index(limb) if each else len(limbs)) for limb, each in touched.items()}
-    labels = np.empty(len(corners), np.int32)
-    labels[in_joint] = [number[int(name)] for name in joint_of[corners[in_joint, 0]]]
-    labels[~in_joint] = [part_of[int(name)] for name in limb_of[corners[~in_joint, 0]]]
-    beside = {(joint, part_of[limb]) for limb in limbs for joint in touched[limb]}
-    return labels, frozenset({(k, k) for k in range(len(number))} | beside), len(number)
+
+def _with_islands_joined(labels: Indices, count: int, neighbours: set[tuple[int, int]]) -> Indices:
+    """The parts with all that touch no other one, except the first `count`, as one part."""
+    touching = np.zeros(int(labels.max()) + 1, bool)
+    touching[[number for pair in neighbours for number in pair]] = True
+    touching[:count] = True
+    new = np.where(touching, np.cumsum(touching) - 1, int(touching.sum())).astype(np.int32)
+    joined: Indices = new[labels]
+    return joined
+
+
+def _neighbours(corners: Indices, labels: Indices) -> set[tuple[int, int]]:
+    """Pairs of parts that share a vertex."""
+    rows = np.unique(np.stack([corners.ravel(), np.repeat(labels, 3)], axis=1), axis=0)
+    same = rows[1:, 0] == rows[:-1, 0]  # of three parts at a vertex, the first and the last are compared below
+    far = rows[2:, 0] == rows[:-2, 0]
+    pairs = [(rows[:-1, 1][same], rows[1:, 1][same]), (rows[:-2, 1][far], rows[2:, 1][far])]
+    return {(int(one), int(other)) for ones, others in pairs for one, other in zip(ones, others, strict=True)}
 
 
 def _part(mesh: VisibleMesh, number: int, rows: Flags) -> VisibleMesh:
