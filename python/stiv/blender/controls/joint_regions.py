@@ -130,11 +130,11 @@ def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
     for joint in joints if radii > 0 else ():
         around |= _region(skin, joint, radii, edges)
         beside |= _region(skin, joint, COLLAR * radii, edges)
-    in_joint = _of_faces(owners, around[corners].any(axis=1))
+    in_joint = _of_faces(owners, np.any(around[corners], axis=1))
     if not in_joint.any():
         return Regions((mesh,), frozenset(), 0, 0)
     beside[corners[in_joint]] = True
-    in_collar = _of_faces(owners, beside[corners].any(axis=1)) & ~in_joint
+    in_collar = _of_faces(owners, np.any(beside[corners], axis=1)) & ~in_joint
     labels, count = _label(corners, [in_joint, in_collar, ~(in_joint | in_collar)])
     labels = _with_islands_joined(labels, count, _neighbours(corners, labels))
     untested = _neighbours(corners, labels) | {(number, number) for number in range(count)}
