@@ -82,6 +82,9 @@ class RecordingEdit:
         numbers = {"rounds": 3, "patches": 1, "energy": 0.5, "timings": {"total": 0.25}, "counters": {"rounds": 3}}
         return SimpleNamespace(status="corrected", blocking=(), events=SimpleNamespace(kind=[0, 1]), **numbers)
 
+    def finish(self) -> None:
+        """Replaces the end of the use of an edit."""
+
     def write(self) -> Any:
         obj = bpy.data.objects[self.name]
         obj.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
