@@ -14,7 +14,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "CITATION.cff", "LICENSE")
-FOLDERS = {"docs": (".md",), "docs/images": (".png",), "docs/films": (".webm",), "docs/gallery": (".png", ".webp")}
+FOLDERS = {
+    "docs": (".md",),
+    "docs/images": (".png",),
+    "docs/films": (".webm",),
+    "docs/gallery": (".png", ".webp"),
+    "benchmarks/results/quality": (".png",),
+}
 OTHERS = ("benchmarks/results/README.md", "tests/README.md")
 KATEX = Path("/usr/share/javascript/katex")  # Debian's package libjs-katex
 PACKAGES = {

@@ -137,12 +137,12 @@ def keys_are_free(window: Window) -> Steps:
     configurations = bpy.context.window_manager.keyconfigs
     modes = [keymap for keymap in configurations.addon.keymaps if not keymap.name.startswith("3D View Tool: ")]
     ours = [item for keymap in modes for item in keymap.keymap_items if "stiv" in item.idname]
-    assert len(ours) == 16, [item.idname for item in ours]
+    assert len(ours) == 20, [item.idname for item in ours]
     around = {"Window", "Screen", "Screen Editing", "Frames", "3D View", "3D View Generic", "Object Non-modal"}
     taken = {
         (item.type, item.shift, item.ctrl, item.alt)
         for keymap in configurations.default.keymaps
-        if not keymap.is_modal and keymap.name in {"Object Mode", "Mesh", "Lattice", "Curve", *around}
+        if not keymap.is_modal and keymap.name in {"Object Mode", "Mesh", "Lattice", "Curve", "Pose", *around}
         for item in keymap.keymap_items
     }
     clashes = [item.idname for item in ours if (item.type, item.shift, item.ctrl, item.alt) in taken]
