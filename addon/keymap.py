@@ -7,7 +7,8 @@ import bpy
 KEYS = {"stiv.move": "M", "stiv.rotate": "R", "stiv.scale": "E", "stiv.check": "C"}
 PIE_OPERATOR, PIE_MENU, PIE_KEY = "wm.call_menu_pie", "STIV_MT_pie", "Q"
 # Keymaps of modes precede that of the 3D view.
-KEYMAPS = ("Object Mode", "Mesh", "Lattice", "Curve", "Pose")  # the last one also of NURBS surfaces
+KEYMAPS = ("Object Mode", "Mesh", "Lattice", "Pose", "Curve")  # the last one also of NURBS surfaces
+TAKEN = {("Pose", "stiv.scale")}  # Shift+Alt+E is Blender's Blend to Neighbor there
 
 _added: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
@@ -20,6 +21,8 @@ def register() -> None:
     for name in KEYMAPS:
         keymap = configuration.keymaps.new(name=name, space_type="EMPTY")
         for operator, key in (*KEYS.items(), (PIE_OPERATOR, PIE_KEY)):
+            if (name, operator) in TAKEN:
+                continue
             item = keymap.keymap_items.new(operator, key, "PRESS", shift=True, alt=True)
             if operator == PIE_OPERATOR:
                 item.properties.name = PIE_MENU

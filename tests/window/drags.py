@@ -135,17 +135,23 @@ def scale_at_wall(window: Window) -> Steps:
 def keys_are_free(window: Window) -> Steps:
     """Blender's default keymap of these modes and their windows uses no key of the extension outside its tools."""
     configurations = bpy.context.window_manager.keyconfigs
-    modes = [keymap for keymap in configurations.addon.keymaps if not keymap.name.startswith("3D View Tool: ")]
-    ours = [item for keymap in modes for item in keymap.keymap_items if "stiv" in item.idname]
-    assert len(ours) == 20, [item.idname for item in ours]
     around = {"Window", "Screen", "Screen Editing", "Frames", "3D View", "3D View Generic", "Object Non-modal"}
-    taken = {
-        (item.type, item.shift, item.ctrl, item.alt)
-        for keymap in configurations.default.keymaps
-        if not keymap.is_modal and keymap.name in {"Object Mode", "Mesh", "Lattice", "Curve", "Pose", *around}
-        for item in keymap.keymap_items
-    }
-    clashes = [item.idname for item in ours if (item.type, item.shift, item.ctrl, item.alt) in taken]
+    clashes, count = [], 0
+    for keymap in configurations.addon.keymaps:
+        if keymap.name.startswith("3D View Tool: "):
+            continue
+        ours = [item for item in keymap.keymap_items if "stiv" in item.idname]
+        taken = {
+            (item.type, item.shift, item.ctrl, item.alt)
+            for other in configurations.default.keymaps
+            if not other.is_modal and other.name in {keymap.name, *around}
+            for item in other.keymap_items
+        }
+        count += len(ours)
+        clashes += [
+            (keymap.name, item.idname) for item in ours if (item.type, item.shift, item.ctrl, item.alt) in taken
+        ]
+    assert count == 19, count
     assert not clashes, clashes
     yield
 
