@@ -166,8 +166,8 @@ void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
 }
 
 bool detour(EditCall& call, const Aim& aim) {
-  if (!is_far(call, aim) || call.context.deformation().rotation_rows().empty() || call.execution.has_time_budget())
-    return false;
+  const bool is_one_body = call.context.deformation().rotation_rows().size() == 1;
+  if (!is_one_body || !is_far(call, aim) || call.execution.has_time_budget()) return false;
   const EditReport report = call.report;
   const Vector3 way = (aim.surface - call.accepted.surface).colwise().sum().transpose().normalized();
   const Vector3 across = way.unitOrthogonal(), up = way.cross(across);

@@ -50,9 +50,10 @@ void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits
 /// goal has passed. A leap that fails does not block the call, and is not repeated.
 void leap(EditCall& call, const Aim& aim, DragProgress& drag);
 
-/// Moves rigid bodies that an obstacle keeps far from their goal aside, across the way to it, and lets them leap from
+/// Moves a rigid body that an obstacle keeps far from its goal aside, across the way to it, and lets it leap from
 /// there. Ends where it began if no way aside lowers the energy clearly. Returns whether one did. Does nothing near the
-/// goal, without rotations among the controls, or with a time budget. (mathematics.md, "Deep goals")
+/// goal, with a time budget, or unless the controls are those of one rigid body: among several, the others shall be
+/// pushed. (mathematics.md, "Deep goals")
 bool detour(EditCall& call, const Aim& aim);
 
 /// The same for a drag, which tries a detour again only when the way to the goal has doubled since one failed.

@@ -72,7 +72,9 @@ def distance_to(points: np.ndarray, cube: Any) -> float:
 
 
 def pushed(cube: Any, **settings: Any) -> BlenderEdit:
+    """Along x only: the goal, far behind a strand, could be reached around it."""
     select(cube)
+    cube.lock_location = (False, True, True)
     edit = BlenderEdit.begin(bpy.context, EditSettings(**settings), "move")
     edit.apply(shift(x=4))
     assert edit.write().passed
