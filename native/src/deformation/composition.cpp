@@ -24,8 +24,10 @@ WeightMatrix gram_of(const WeightMatrix& weights) { return WeightMatrix(weights.
 /// A linear deformation of a surface that another deformation moves.
 class LinearChain final : public Chained<ComposableDeformation> {
  public:
-  LinearChain(std::shared_ptr<const LinearDeformation> outer, std::shared_ptr<const ComposableDeformation> inner)
-      : Chained(outer, inner), weights_(outer->weights()), moved_(std::move(inner)), gram_(gram_of(weights_)) {}
+  /// weights: those of the outer deformation.
+  LinearChain(const WeightMatrix& weights, std::shared_ptr<const LinearDeformation> outer,
+              std::shared_ptr<const ComposableDeformation> inner)
+      : Chained(std::move(outer), inner), weights_(weights), moved_(std::move(inner)), gram_(gram_of(weights)) {}
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return moved_->metric(options, gram_); }
 
@@ -34,7 +36,7 @@ class LinearChain final : public Chained<ComposableDeformation> {
   }
 
  private:
-  const WeightMatrix& weights_;  ///< of the outer deformation
+  const WeightMatrix& weights_;
   std::shared_ptr<const ComposableDeformation> moved_;
   WeightMatrix gram_;  ///< of the weights: a renewed J needs it again
 };
@@ -53,7 +55,8 @@ std::shared_ptr<const LinearDeformation> make_composition(const LinearDeformatio
 std::shared_ptr<const ComposableDeformation> make_composition(std::shared_ptr<const LinearDeformation> outer,
                                                               std::shared_ptr<const ComposableDeformation> inner) {
   check_chain(*outer, *inner);
-  return std::make_shared<LinearChain>(std::move(outer), std::move(inner));
+  const WeightMatrix& weights = outer->weights();
+  return std::make_shared<LinearChain>(weights, std::move(outer), std::move(inner));
 }
 
 }  // namespace stiv

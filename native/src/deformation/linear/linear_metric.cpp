@@ -54,8 +54,8 @@ constexpr const char* unusable_weights =
 
 /// Factors on a thread of its own: large cages take seconds, and nothing needs the factor before the first contact.
 /// The thread owns its matrix, and no one waits for its end if the factor is no longer wanted.
-FutureFactor factor_aside(WeightColumns damped) {
-  std::packaged_task<std::shared_ptr<const Factor>()> task([matrix = std::move(damped)] {
+FutureFactor factor_aside(const WeightColumns& damped) {
+  std::packaged_task<std::shared_ptr<const Factor>()> task([matrix = damped] {
     const FloatingPointScope floating_point;
     auto factor = std::make_shared<Factor>(matrix);
     if (factor->info() != Eigen::Success) throw InputError(unusable_weights);
@@ -74,7 +74,7 @@ class SparseLinearMetric final : public Metric {
     const double damping = smoothness * damped.diagonal().mean();
     for (Index k = 0; k < damped.cols(); ++k) damped.coeffRef(k, k) += damping;
     if (!std::isfinite(damped.sum())) throw InputError(unusable_weights);
-    factor_ = factor_aside(std::move(damped));
+    factor_ = factor_aside(damped);
   }
 
   bool is_ready() const override { return factor_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
