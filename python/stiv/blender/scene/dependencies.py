@@ -43,7 +43,7 @@ def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:
     """Objects that a modifier or constraint refers to."""
     values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
     if isinstance(owner, bpy.types.NodesModifier):
-        values += _inputs(owner)
+        values += [value for _, _, value in node_inputs(owner)]
         values += _in_nodes(owner.node_group, set())
     if isinstance(owner, bpy.types.ArmatureConstraint):
         values += [target.target for target in owner.targets]
@@ -54,13 +54,13 @@ def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:
             yield from value.all_objects
 
 
-def _inputs(modifier: bpy.types.NodesModifier) -> list[Any]:
-    """Inputs of a node tree: properties of its interface since Blender 5.2, of the modifier before that."""
+def node_inputs(modifier: bpy.types.NodesModifier) -> list[tuple[Any, str, Any]]:
+    """Owner, name and value of each input: properties of sockets since Blender 5.2, items of the modifier before."""
     inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
     if inputs is None:
-        return list(modifier.values())
+        return [(modifier, name, value) for name, value in modifier.items()]
     sockets = [getattr(inputs, item.identifier) for item in inputs.bl_rna.properties if item.type == "POINTER"]
-    return [getattr(socket, "value", None) for socket in sockets]
+    return [(socket, "value", getattr(socket, "value", None)) for socket in sockets]
 
 
 def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:

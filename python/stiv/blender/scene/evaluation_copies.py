@@ -6,12 +6,14 @@ They exist only inside a `with` statement, so no undo step, file or handler outs
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import bpy
 
+from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.rig_followers import find_driver_targets
@@ -104,8 +106,8 @@ class EvaluationCopies:
                 if item.type == "POINTER" and not item.is_readonly:
                     self._replace_reference(owner, item.identifier, getattr(owner, item.identifier), setattr)
             if isinstance(owner, bpy.types.NodesModifier):
-                for key, value in list(owner.items()):
-                    self._replace_reference(owner, key, value, lambda where, name, new: where.__setitem__(name, new))
+                for where, name, value in node_inputs(owner):
+                    self._replace_reference(where, name, value, operator.setitem if where is owner else setattr)
             if isinstance(owner, bpy.types.ArmatureConstraint):
                 for target in owner.targets:
                     self._replace_reference(target, "target", target.target, setattr)
