@@ -93,7 +93,7 @@ fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, the static te
 	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
 	build/venv/bin/python -W ignore tests/long/file_fuzzing.py --seconds $(FUZZ_SECONDS) --findings build/fuzz
 
-test-arm64: build/debian build/venv/ready $(OPENSUBDIV) ## Compile the core, its own tests and the Python module for arm64, and run them and the Python tests in an emulator (minutes)
+test-arm64: $(WHEEL) ## Compile the core, its own tests and the Python module for arm64, and run them and the Python tests in an emulator (minutes)
 	tools/install_debian_packages.sh tools/debian_packages_arm64.txt
 	tools/python_headers.sh 3.11 bookworm build/portable/headers
 	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV)) \
@@ -101,7 +101,7 @@ test-arm64: build/debian build/venv/ready $(OPENSUBDIV) ## Compile the core, its
 	cmake --build --preset arm64 --target stiv_tests stiv_portable_modules
 	ctest --preset arm64 --output-on-failure --parallel 2
 	tools/arm64_python.sh build/venv/bin/python build/arm64-python -r tools/requirements/foreign.txt
-	tools/test_arm64.sh build/arm64-python build/arm64/native/bindings/_native.cpython-311-aarch64-linux-gnu.so
+	tools/test_arm64.sh build/venv/bin/python build/arm64-python build/arm64/native/bindings/_native.cpython-311-aarch64-linux-gnu.so
 
 test-windows: $(WHEEL) build/venv/portable ## Compile for Windows, and run the self-test and the Python tests of the core under Wine
 	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV)
