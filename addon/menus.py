@@ -11,6 +11,8 @@ from .operators.check.measure import STIV_OT_measure
 from .operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .operators.repair.guard_revert import STIV_OT_guard_revert
 from .operators.repair.repair import STIV_OT_repair
+from .operators.transform.morph import STIV_OT_morph
+from .operators.transform.morph_drag import STIV_OT_morph_drag
 
 # Object > Transform; the menus Transform of all edit modes are one menu.
 MENUS = ("VIEW3D_MT_transform_object", "VIEW3D_MT_transform", "VIEW3D_MT_transform_armature")
@@ -27,6 +29,7 @@ TOOL_MENUS = (
     "VIEW3D_MT_pose",
     "VIEW3D_MT_pose_context_menu",
 )
+KEY_MENU = "MESH_MT_shape_key_context_menu"  # beside the list of shape keys
 TOOLS = (
     *TRANSFORMS,
     STIV_OT_check,
@@ -51,6 +54,13 @@ def draw_layout(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     self.layout.menu(STIV_MT_layout.bl_idname)
 
 
+def draw_keys(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Append the operators of shape keys to their menu."""
+    self.layout.separator()
+    for operator in (STIV_OT_morph_drag, STIV_OT_morph):
+        self.layout.operator(operator.bl_idname)
+
+
 def draw_tools(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Append the menu of all tools."""
     self.layout.separator()
@@ -62,6 +72,7 @@ def register() -> None:
     for name in TOOL_MENUS:
         getattr(bpy.types, name).append(draw_tools)
     bpy.types.VIEW3D_MT_object.append(draw_layout)
+    getattr(bpy.types, KEY_MENU).append(draw_keys)
     for name in MENUS:
         getattr(bpy.types, name).append(draw)
 
@@ -71,6 +82,7 @@ def unregister() -> None:
     for name in TOOL_MENUS:
         getattr(bpy.types, name).remove(draw_tools)
     bpy.types.VIEW3D_MT_object.remove(draw_layout)
+    getattr(bpy.types, KEY_MENU).remove(draw_keys)
     for name in MENUS:
         getattr(bpy.types, name).remove(draw)
 

@@ -16,6 +16,7 @@ from bpy.props import (
 from . import loop_updates
 from .automatic import AutomaticProperty
 from .operators.last_edit import note_written
+from .operators.transform import morph_slider
 from .operators.transform.options import OBJECT_RESPONSES
 
 CHOSEN_SEPARATION = 0.001  # initial value when the user turns Auto off
@@ -246,6 +247,17 @@ class StivObjectSettings(bpy.types.PropertyGroup):
         subtype="XYZ",
     )
     loop: PointerProperty(name="Loop Subdivision", type=StivLoop)
+    morph_value: FloatProperty(
+        name="Value",
+        description="Value of the active shape key; it stops where surfaces touch",
+        min=-10.0,
+        max=10.0,
+        step=1,
+        precision=3,
+        options=set(),
+        get=morph_slider.get_value,
+        set=morph_slider.set_value,
+    )
 
 
 class StivCheckResult(bpy.types.PropertyGroup):

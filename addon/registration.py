@@ -20,7 +20,7 @@ from . import (
 )
 from .guard import waiting, watcher
 from .operators import running
-from .operators.transform import drag_results
+from .operators.transform import drag_results, morph_slider
 from .overlay import display
 from .tools import gizmo_group, live_switch, toolbar
 
@@ -77,6 +77,7 @@ def unregister() -> None:
 def forget() -> None:
     """Delete the caches that last from one drag to the next."""
     drag_results.clear()
+    morph_slider.forget()
     cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # loaded only with the native module
     if cache is not None:
         cache.clear_cache()

@@ -21,6 +21,7 @@ from .setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_rem
 from .setup.pair_distances import STIV_OT_separation_add, STIV_OT_separation_remove
 from .transform.drag import STIV_OT_drag
 from .transform.morph import STIV_OT_morph
+from .transform.morph_drag import STIV_OT_morph_drag
 from .transform.move import STIV_OT_move
 from .transform.rotate import STIV_OT_rotate
 from .transform.scale import STIV_OT_scale
@@ -44,6 +45,7 @@ CLASSES = (
     STIV_OT_check,
     STIV_OT_measure,
     STIV_OT_morph,
+    STIV_OT_morph_drag,
     *LAYOUT,
     *RESHAPING,
     STIV_OT_separate,

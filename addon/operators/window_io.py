@@ -97,25 +97,25 @@ def show(
     orientations: tuple[str, str],
 ) -> None:
     """Write header and status bar, and redraw the views."""
-    _write_header(context, header_parts(state, value, status, notes, orientations, translate))
-    _write_keys(context, key_hints(state, translate))
+    write_header(context, header_parts(state, value, status, notes, orientations, translate))
+    write_keys(context, key_hints(state, translate))
     for area in view_areas(context):
         area.tag_redraw()
 
 
 def show_progress(context: bpy.types.Context, fraction: float, label: str = "") -> None:
     """Write how far a solve is, from 0 to 1, and the key that stops it. Draws no scene. label: what is solved."""
-    _write_header(context, [*([label] if label else []), progress_text(fraction, translate)])
-    _write_keys(context, stop_hints(translate))
+    write_header(context, [*([label] if label else []), progress_text(fraction, translate)])
+    write_keys(context, stop_hints(translate))
 
 
-def _write_header(context: bpy.types.Context, parts: Sequence[str]) -> None:
+def write_header(context: bpy.types.Context, parts: Sequence[str]) -> None:
     """Write as many parts of a line as fit into the headers of the 3D views."""
     for area in view_areas(context):
         area.header_text_set(fitted(parts, functools.partial(_fits, area.width - 2 * MARGIN * _scale())))
 
 
-def _write_keys(context: bpy.types.Context, hints: Sequence[KeyHint]) -> None:
+def write_keys(context: bpy.types.Context, hints: Sequence[KeyHint]) -> None:
     """Draw key hints in the status bar, in place of Blender's own, as many as fit."""
 
     def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:

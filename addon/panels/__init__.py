@@ -6,7 +6,7 @@ from .edit import STIV_PT_edit
 from .getting_started import STIV_PT_getting_started
 from .guard import STIV_PT_guard, STIV_PT_guard_state
 from .layout import STIV_PT_layout
-from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation
+from .objects import STIV_PT_deformation, STIV_PT_loop, STIV_PT_roles, STIV_PT_separation, STIV_PT_shape_keys
 
 CLASSES = (
     STIV_PT_getting_started,
@@ -16,6 +16,7 @@ CLASSES = (
     STIV_PT_guard_state,
     STIV_PT_roles,
     STIV_PT_deformation,
+    STIV_PT_shape_keys,
     STIV_PT_loop,
     STIV_PT_separation,
     STIV_PT_check,

@@ -9,6 +9,8 @@ from ..operators.check.measure import STIV_OT_measure
 from ..operators.setup.handles import STIV_OT_handle_add, STIV_OT_handle_remove
 from ..operators.setup.loop import STIV_OT_loop_add, STIV_OT_loop_refresh, STIV_OT_loop_remove
 from ..operators.setup.pair_distances import STIV_OT_separation_add, STIV_OT_separation_remove
+from ..operators.transform.morph import STIV_OT_morph
+from ..operators.transform.morph_drag import STIV_OT_morph_drag
 from ..scene.edit_settings import refined_object
 from ..translations import translate
 from .base import SubPanel
@@ -75,6 +77,28 @@ def _draw_handles(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     box.prop_search(obj.stiv, "anchor", obj, "vertex_groups")
     for name in ("rest", "pull"):
         box.prop(obj.stiv, name)
+
+
+class STIV_PT_shape_keys(SubPanel, bpy.types.Panel):
+    """The shape keys of the active object, with a slider that stops at contact."""
+
+    bl_idname = "STIV_PT_shape_keys"
+    bl_label = "Shape Keys"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """For an active object with shape keys, in Object Mode."""
+        return super().poll(context) and STIV_OT_morph.is_available(context)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The list, the slider of the active key, and the operators."""
+        ob = context.active_object
+        keys = ob.data.shape_keys
+        self.layout.template_list("UI_UL_list", "stiv", keys, "key_blocks", ob, "active_shape_key_index", rows=3)
+        self.layout.prop(ob.stiv, "morph_value")
+        row = self.layout.row(align=True)
+        row.operator(STIV_OT_morph_drag.bl_idname, text="Drag", icon="ARROW_LEFTRIGHT")
+        row.operator(STIV_OT_morph.bl_idname, text="Morph", icon="SHAPEKEY_DATA")
 
 
 class STIV_PT_loop(SubPanel, bpy.types.Panel):

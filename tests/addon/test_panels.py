@@ -22,7 +22,9 @@ class Layout:
     """Blender's layout: children inherit the settings, and all share one record of (call, subject, options)."""
 
     CHILDREN = frozenset({"row", "column", "box", "split", "grid_flow"})
-    RECORDED = frozenset({"prop", "operator", "label", "prop_search", "menu", "separator", "popover", "template_icon"})
+    RECORDED = frozenset(
+        {"prop", "operator", "label", "prop_search", "menu", "separator", "popover", "template_icon", "template_list"}
+    )
 
     def __init__(self, record: list[tuple[str, Any, dict[str, Any]]] | None = None, **settings: bool):
         self.record = [] if record is None else record

@@ -50,21 +50,39 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         self.layout.prop(self, "others_yield")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Move the keys whose value differs from the given one, and report."""
+        """Move the keys whose value differs from the given one, and report; or take the result of a drag."""
         ob = context.active_object
-        present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
-        values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
-        if not values:
-            self.report({"INFO"}, translate("No value changes"))
-            return {"CANCELLED"}
-        settings = edit_settings(context.scene)
-        try:
-            found = stiv_blender.morph(context, {ob.name: values}, settings, others_yield=self.others_yield)
-        except Exception as error:  # nothing may stay half done, whatever went wrong
-            return report_error(self, error)
+        found = _take_dragged()
+        if found is None:
+            present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
+            values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
+            if not values:
+                self.report({"INFO"}, translate("No value changes"))
+                return {"CANCELLED"}
+            settings = edit_settings(context.scene)
+            try:
+                found = stiv_blender.morph(context, {ob.name: values}, settings, others_yield=self.others_yield)
+            except Exception as error:  # nothing may stay half done, whatever went wrong
+                return report_error(self, error)
         values = {key: value for (_, key), value in found.values.items()}
         described = {"status": found.status, "blocking": found.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
         if text := result_text(found.status, found.blocking, translate):
             say(self, "INFO", text)
         return {"FINISHED"}
+
+
+def register_drag(result: stiv_blender.MorphReport, **properties: object) -> None:
+    """Call the operator for the result of a drag, which makes the undo step. Raises RuntimeError."""
+    global _dragged
+    _dragged = result
+    bpy.ops.stiv.morph("EXEC_DEFAULT", True, **properties)
+
+
+_dragged: stiv_blender.MorphReport | None = None  # shown already, and not yet registered
+
+
+def _take_dragged() -> stiv_blender.MorphReport | None:
+    global _dragged
+    found, _dragged = _dragged, None
+    return found

@@ -33,6 +33,7 @@ from stiv.blender.layout.placing import Place, PlaceSettings, place
 from stiv.blender.layout.pushing_apart import PushApart, push_apart
 from stiv.blender.morphing.key_sliders import movable_keys
 from stiv.blender.morphing.morph import MorphReport, morph
+from stiv.blender.morphing.morph_edit import MorphEdit
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
@@ -88,6 +89,7 @@ __all__ = [
     "LayoutReport",
     "LayoutTask",
     "LoopSurface",
+    "MorphEdit",
     "MorphReport",
     "Motion",
     "ObjectState",

@@ -62,3 +62,39 @@ def test_values_that_do_not_change_or_do_not_exist(ball: Any) -> None:
         morph(Round=1.0)
     bpy.context.view_layer.objects.active = bpy.data.objects["Plane"]
     assert not bpy.ops.stiv.morph.poll()
+
+
+def test_the_slider_of_the_panel_stops_while_it_is_dragged(ball: Any) -> None:
+    """Blender calls the setter with each motion of the mouse."""
+    ball.active_shape_key_index = 1
+    for goal in np.linspace(0.05, 1.0, 20):
+        ball.stiv.morph_value = goal
+        assert check_scene(bpy.context).pairs == ()
+    assert 0.45 < value(ball, "Wide") < 0.55 and ball.stiv.morph_value == value(ball, "Wide")
+    ball.stiv.morph_value = 0.2
+    assert value(ball, "Wide") == np.float32(0.2)
+    wall = bpy.data.objects["Plane"]
+    wall.location.x = 1.5  # another scene: read again, though the edit is recent
+    ball.stiv.morph_value = 1.0
+    assert 0.25 < value(ball, "Wide") < 0.27 and check_scene(bpy.context).pairs == ()
+    wall.location.x = 1.0
+    ball.stiv.morph_value = 0.1
+    assert "intersect" in bpy.context.window_manager.stiv_check.summary
+    assert 0.25 < value(ball, "Wide") < 0.27
+
+
+def test_drags_of_several_keys_show_only_clear_values(ball: Any) -> None:
+    """The calls of a drag: goals far beyond contact, with little time, while others yield or not."""
+    from stiv.blender import EditSettings, MorphEdit
+
+    ball.data.shape_keys.key_blocks["Thin"].slider_min = -1
+    for others_yield in (False, True):
+        goals = {"Sphere": {"Wide": 0.9, "Thin": -0.5}}
+        edit = MorphEdit.begin(bpy.context, goals, EditSettings(separation=0.01), others_yield=others_yield)
+        for _ in range(10):
+            edit.advance(edit.goals(goals), 0.01)
+            assert edit.show() == "" and edit.is_shown()
+            assert check_scene(bpy.context).pairs == ()
+        assert max(edit.values) > 0.2
+        edit.restore()
+        assert value(ball, "Wide") == value(ball, "Thin") == 0

@@ -42,6 +42,10 @@ class KeySlider:
         """Set the value. Raises SceneChangedError if the key is gone."""
         self._find().value = value
 
+    def read_value(self) -> float:
+        """The present value. Raises SceneChangedError if the key is gone."""
+        return float(self._find().value)
+
     def insert_keyframe(self) -> None:
         """Insert a keyframe for the value."""
         self._find().keyframe_insert("value")
