@@ -61,6 +61,7 @@ class VisibleMesh:
         cropped: the elements of Blender's mesh that were read; None for all.
         read_from: the evaluation from which it was read.
         shown_in: the evaluations that show exactly this mesh.
+        also_in: those of them that Blender evaluates apart.
         strands: strand of each vertex, (n,), of curves and hair; None for meshes.
         rooted_in: names of the objects that carry the strands, and are not tested against them.
         part: number of the part, if a mesh is divided into several that follow each other.
@@ -80,6 +81,7 @@ class VisibleMesh:
     strands: Indices | None = None
     rooted_in: frozenset[str] = frozenset()
     part: int = 0
+    also_in: frozenset[str] = frozenset()
 
     @property
     def is_instance(self) -> bool:
@@ -149,7 +151,7 @@ def read_scene(
 ) -> EvaluatedScene:
     """Read every mesh whose owner's name is accepted; `box_of` gives the world box to which an object is cropped.
 
-    evaluations: those to read. A mesh that several of them share is read once. Curves, text, surfaces, metaballs
+    evaluations: those to read. A mesh that several of them share is returned once. Curves, text, surfaces, metaballs
     and instances are read as meshes. Local view applies if the context has a 3D view, except to the render. strands:
     also read curves without surface, hair curves and particle hair, after all meshes. Raises InputError naming object
     and vertex if a coordinate is not finite.
@@ -293,4 +295,6 @@ def evaluation_tolerance(points: Floats) -> float:
     """Maximum difference between two evaluations of the same points, (n, 3), in world units."""
     if len(points) == 0:
         return 0.0
-    return TOLERANCE * float(np.ptp(points, axis=0).max()) + 1e-6 * float(np.abs(points).max())
+    columns = np.ascontiguousarray(points.T)  # reductions of rows of three are slow
+    low, high = columns.min(axis=1), columns.max(axis=1)
+    return TOLERANCE * float((high - low).max()) + 1e-6 * float(max(-low.min(), high.max()))

@@ -21,6 +21,7 @@ from stiv.blender.scene.evaluations import (
     signature,
     subdivision_levels,
 )
+from stiv.blender.scene.merged_modes import merge_modes
 from stiv.blender.settings import EditSettings
 
 OF_VIEWPORT = (SHOWN, VIEWPORT)
@@ -70,9 +71,10 @@ def read_guarded_scene(
     box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
     strands: bool = False,
 ) -> tuple[EvaluatedScene, Guard]:
-    """Read the guarded evaluations (see `read_scene`) of all participants."""
+    """Read the guarded evaluations (see `read_scene`) of all participants; equal meshes of both modes are merged."""
     guard = choose_guard(context, settings)
     scene = read_scene(context, accept or settings.participates, box_of, guard.evaluations, strands)
+    scene = replace(scene, meshes=merge_modes(scene.meshes, context.scene))
     if settings.guard != "auto" or guard.choice == "viewport":
         return scene, guard
     limited = _limited(sum(len(mesh.triangles) for mesh in scene.meshes if mesh.strands is None))

@@ -15,6 +15,7 @@ from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_to
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
+from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
 from stiv.blender.scene.quad_diagonals import QuadDiagonals
 from stiv.blender.scene.references import SceneChangedError
@@ -76,9 +77,23 @@ class Verifier:
 
     def _verify(self, context: bpy.types.Context, accepted: Floats, opened: OpenEvaluations) -> Verification:
         placed = _read_placed(self.assembly, opened)
-        meshes = _world(self.assembly, placed)
-        shown = _merged(self.assembly, meshes)
-        message = _displacement_message(self.assembly, accepted, meshes)
+        result = self._verify_placed(context, accepted, opened, self.assembly, placed)
+        for assembly, other in read_apart(self.assembly, placed, opened) if result.passed else ():
+            result = self._verify_placed(context, accepted, opened, assembly, other)
+        return result
+
+    def _verify_placed(
+        self,
+        context: bpy.types.Context,
+        accepted: Floats,
+        opened: OpenEvaluations,
+        assembly: Assembly,
+        placed: Placed,
+    ) -> Verification:
+        """Test positions of the meshes; the assembly says from which evaluations they were read."""
+        meshes = _world(assembly, placed)
+        shown = _merged(assembly, meshes)
+        message = _displacement_message(assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
         if self._excluded.pairs:
@@ -87,7 +102,7 @@ class Verifier:
                 return self._failure(pairs)
         elif not self._is_step_free(accepted, shown):
             return self._failure(find_face_pairs(self.assembly, shown, self._threads))
-        flips = find_flips(context, self.assembly, opened, lambda number: self._keeps_diagonals(number, placed[number]))
+        flips = find_flips(context, assembly, opened, lambda number: self._keeps_diagonals(number, placed[number]))
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
     def _keeps_diagonals(self, number: int, placed: EvaluatedPositions | None) -> bool:
@@ -157,7 +172,7 @@ def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
         return _merged(assembly, _world(assembly, _read_placed(assembly, opened)))
 
 
-def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> list[EvaluatedPositions | None]:
+def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> Placed:
     """Positions of each mesh in Blender's present evaluation; None for strands.
 
     Strands are not read again: edits leave out those that depend on moving objects.
@@ -180,7 +195,7 @@ def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> list[EvaluatedP
     return [next(control_sets) if mesh.strands is None else None for mesh in assembly.meshes]
 
 
-def _world(assembly: Assembly, placed: Sequence[EvaluatedPositions | None]) -> list[Floats]:
+def _world(assembly: Assembly, placed: Placed) -> list[Floats]:
     """World positions of each mesh, seams not merged."""
     pairs = zip(placed, assembly.meshes, strict=True)
     return [mesh.world() if each is None else each.world() for each, mesh in pairs]
@@ -194,7 +209,7 @@ def _merged(assembly: Assembly, meshes: Sequence[Floats]) -> Floats:
 @contextmanager
 def _opened(context: bpy.types.Context, assembly: Assembly) -> Iterator[OpenEvaluations]:
     """The evaluations from which the meshes of an assembly were read."""
-    if all(mesh.read_from == SHOWN for mesh in assembly.meshes):
+    if all(mesh.read_from == SHOWN and not mesh.also_in for mesh in assembly.meshes):
         yield OpenEvaluations(context)
         return
     with open_evaluations(context, frozenset().union(*(mesh.shown_in for mesh in assembly.meshes))) as opened:
