@@ -87,4 +87,31 @@ def live_keys_in_pose_mode(window: Window) -> Steps:
     bpy.context.scene.stiv.live_transforms = bpy.context.scene.stiv.live_guard = False
 
 
-POSING_DRAGS = {scenario.__name__: scenario for scenario in (posed_arm, live_keys_in_pose_mode)}
+def guarded_pose(window: Window) -> Steps:
+    """Blender's own R through the box: the live guard corrects it in the same undo step, with Auto Keying."""
+    yield from _prepare(window)
+    bpy.context.scene.stiv.live_guard = True
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    yield from window.settle(20)
+    before = _arm()
+    window.key("R")
+    yield from window.until(lambda: len(window.handle.modal_operators) > 0, "Blender's rotation")
+    yield from window.glide(window.pixel(BELOW_BOX), 20)
+    through = _angle()
+    window.picture("guarded_pose_before")
+    window.key("LEFTMOUSE")
+    yield from window.until(lambda: _angle() < through - 5, "a correction")
+    yield from window.settle(10)
+    window.picture("guarded_pose")
+    assert through > 45 and 15 < _angle() < 40, (through, _angle())
+    corrected = _arm()
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current)
+    assert max(abs(a - b) for a, b in zip(_arm(), corrected, strict=True)) < 1e-5, (_arm(), corrected)
+    yield from window.undo()
+    yield from window.settle(20)
+    assert _arm() == before, _arm()
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = False
+    bpy.context.scene.stiv.live_guard = False
+
+
+POSING_DRAGS = {scenario.__name__: scenario for scenario in (posed_arm, live_keys_in_pose_mode, guarded_pose)}

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -23,6 +23,7 @@ from stiv.blender.scene.references import ObjectReference, SceneChangedError
 LOCATION, ROTATION, SCALE = slice(0, 3), slice(3, 7), slice(7, 10)  # of the channels of a bone, (10,)
 ANGLES, VECTOR, COMPONENTS = "angles", "vector", "components"
 AXIS_ANGLE = "AXIS_ANGLE"
+ROTATION_NAMES = {"QUATERNION": "rotation_quaternion", AXIS_ANGLE: "rotation_axis_angle"}  # others: rotation_euler
 LONGEST_TURN = 0.2  # radians of a step: its chords leave an arc by 0.5 % of the radius
 
 
@@ -150,6 +151,37 @@ class BoneChannels:
         found[SCALE] *= self._factors(motion)
         return found
 
+    def stored_goal(self, stored: StoredChannels) -> Floats:
+        """Channels, (10,), of stored values in the same rotation mode."""
+        found = self.start.copy()
+        found[LOCATION], found[SCALE] = stored.location, stored.scale
+        if stored.rotation == self.stored.rotation:
+            return found
+        if self.form == COMPONENTS or (self.form == ANGLES and len(stored.rotation) == 3):
+            found[ROTATION][: len(stored.rotation)] = stored.rotation
+            return found
+        turn = _as_quaternion(self.mode, stored.rotation) @ mathutils.Quaternion(self.quaternion).inverted()
+        found[ROTATION] = self._turned(np.array(turn.to_matrix(), np.float64), self.start[ROTATION])
+        return found
+
+    def free_to(self, channels: Floats, driven: Container[str]) -> BoneChannels:
+        """The bone with the channels free that differ from the start, whatever is locked or limited.
+
+        driven: names of properties that drivers set; their channels stay.
+        """
+        rows = ((LOCATION, "location"), (ROTATION, ROTATION_NAMES.get(self.mode, "rotation_euler")), (SCALE, "scale"))
+        changed = np.zeros(10, bool)
+        for which, name in rows:
+            changed[which] = (channels[which] != self.start[which]) & (name not in driven)
+        if self.form == VECTOR and changed[ROTATION].any():
+            changed[ROTATION] = (True, True, True, False)
+        return replace(
+            self,
+            free=np.flatnonzero(changed).astype(np.int32),
+            lower=np.full(10, -np.inf),
+            upper=np.full(10, np.inf),
+        )
+
     def write(self, channels: Floats, bone: bpy.types.PoseBone) -> None:
         """Write channels, (10,), to the bone or to its copy; those of the start to the last bit."""
         _write(bone, "location", self.stored.location if self._rests(LOCATION, channels) else channels[LOCATION])
@@ -232,8 +264,7 @@ def _is_euler(bone: bpy.types.PoseBone) -> bool:
 
 
 def _rotation_name(bone: bpy.types.PoseBone) -> str:
-    names = {"QUATERNION": "rotation_quaternion", AXIS_ANGLE: "rotation_axis_angle"}
-    return names.get(bone.rotation_mode, "rotation_euler")
+    return ROTATION_NAMES.get(bone.rotation_mode, "rotation_euler")
 
 
 def _rotation(bone: bpy.types.PoseBone) -> Sequence[float]:
@@ -242,12 +273,17 @@ def _rotation(bone: bpy.types.PoseBone) -> Sequence[float]:
 
 
 def _quaternion(bone: bpy.types.PoseBone) -> mathutils.Quaternion:
-    if bone.rotation_mode == "QUATERNION":
-        return bone.rotation_quaternion.copy()
-    if bone.rotation_mode == AXIS_ANGLE:
-        angle, *axis = bone.rotation_axis_angle
+    return _as_quaternion(bone.rotation_mode, tuple(_rotation(bone)))
+
+
+def _as_quaternion(mode: str, stored: Sequence[float]) -> mathutils.Quaternion:
+    """A rotation as Blender stores it in a rotation mode."""
+    if mode == "QUATERNION":
+        return mathutils.Quaternion(stored)
+    if mode == AXIS_ANGLE:
+        angle, *axis = stored
         return mathutils.Quaternion(axis, angle)
-    return bone.rotation_euler.to_quaternion()
+    return mathutils.Euler(stored, mode).to_quaternion()
 
 
 def _form(bone: bpy.types.PoseBone) -> str:

@@ -60,16 +60,17 @@ def make_bone_set(
     """Make the control set of the selected bones of all rigs. Raises InputError by name."""
     rigs = [each.reference.find() for each in participants]
     individual = context.scene.tool_settings.transform_pivot_point == "INDIVIDUAL_ORIGINS"
-    bones = []
-    for rig in rigs:
-        moved = _moved_bones(rig, kind, individual)
-        bones += moved
-        if settings.responders != "selected":
-            bones += _other_bones(rig, {each.name for each in moved})
+    bones: list[BoneChannels] = []
+    responses: list[Floats] = []
+    for rig, participant in zip(rigs, participants, strict=True):
+        found = list(participant.bones) or _moved_bones(rig, kind, individual)
+        if settings.responders != "selected" and not participant.bones:
+            found += _other_bones(rig, {each.name for each in found})
+        bones += found
+        responses += [np.ones(10) if participant.bones else _weights(bone, kind, settings) for bone in found]
     followers = find_followers(context.scene, {rig.name for rig in rigs})
     if not any(mesh.owner.name in followers for mesh in meshes):
         raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
-    responses = [_weights(bone, kind, settings) for bone in bones]
     posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region)
     scalars = BoneScalars(tuple(bones))
     weights = scalars.of(responses)

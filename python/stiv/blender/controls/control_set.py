@@ -13,6 +13,7 @@ from stiv.blender.scene.references import ObjectReference
 from stiv.seams import Seams
 
 if TYPE_CHECKING:
+    from stiv.blender.controls.bone_channels import BoneChannels
     from stiv.blender.controls.observed_stack import ObservedStack
     from stiv.blender.controls.placed_stack import PlacedStack
     from stiv.blender.controls.posed_surface import PosedSurface
@@ -22,12 +23,14 @@ if TYPE_CHECKING:
 class Participant:
     """An object with controls; the goal moves it if it is `selected`.
 
-    Its role is "cage", "soft", "lattice", "curve", "bones" or "rigid".
+    Its role is "cage", "soft", "lattice", "curve", "bones" or "rigid". `bones` are those of a rig that the goal moves;
+    none for the selected ones.
     """
 
     reference: ObjectReference
     role: str
     selected: bool
+    bones: "tuple[BoneChannels, ...]" = ()
 
 
 @dataclass(frozen=True)

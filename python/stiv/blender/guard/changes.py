@@ -38,6 +38,7 @@ class Changes:
         changes: those that an edit can reproduce.
         added: objects that were added or shown.
         removed: names of objects that were removed or hidden.
+        posed: objects with another pose or other values of shape keys.
         rebuilt: objects with other vertices, another parent or rotation mode, or transformed and deformed at once.
         unsupported: describes the first change that no edit can reproduce; "" if there is none.
     """
@@ -47,10 +48,11 @@ class Changes:
     added: tuple[ObjectReference, ...] = ()
     rebuilt: tuple[ObjectReference, ...] = ()
     removed: tuple[str, ...] = ()
+    posed: tuple[ObjectReference, ...] = ()
 
     def __bool__(self) -> bool:
         """Did anything change?"""
-        return bool(self.changes or self.unsupported)
+        return bool(self.changes or self.unsupported or self.posed)
 
 
 def compare(before: SceneState, after: SceneState) -> Changes:
@@ -74,17 +76,9 @@ def compare(before: SceneState, after: SceneState) -> Changes:
             reasons.append(f"{reference.name} was transformed and deformed at once")
         elif change.placed or change.points is not None:
             found.append(change)
-    if not found and not reasons:
-        reasons = [reason] if (reason := _posed(before, after)) else []
-    return Changes(tuple(found), "".join(reasons[:1]), tuple(added), tuple(rebuilt), removed)
-
-
-def _posed(before: SceneState, after: SceneState) -> str:
-    """The pose or shape keys that changed; "" for none. Drivers may change them together with controls."""
-    for number, state in after.items():
-        if state.pose != before[number].pose:
-            return f"{state.reference.name} has another pose or other shape keys"
-    return ""
+    common = [(before[number], state) for number, state in after.items() if number in before]
+    posed = [state.reference for former, state in common if state.pose != former.pose and state.kind == former.kind]
+    return Changes(tuple(found), "".join(reasons[:1]), tuple(added), tuple(rebuilt), removed, tuple(posed))
 
 
 def _compare(before: ObjectState, after: ObjectState) -> Change:

@@ -96,7 +96,16 @@ def correct_after_tool_steps(
 
 
 @dataclass(frozen=True)
-class _Outcome:
+class Outcome:
+    """The outcome of one edit of a correction.
+
+    Attributes:
+        edit: the edit.
+        reached: does the scene show its goal?
+        blocking: objects in contact.
+        message: why the result could not be written, or notes; may be "".
+    """
+
     edit: BlenderEdit
     reached: bool
     blocking: tuple[str, ...]
@@ -127,7 +136,7 @@ def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Ch
 
 
 def _is_tool_result_free(
-    context: bpy.types.Context, wanted: SceneState, changes: Sequence[Change], outcomes: Sequence[_Outcome]
+    context: bpy.types.Context, wanted: SceneState, changes: Sequence[Change], outcomes: Sequence[Outcome]
 ) -> bool:
     """Restore the tool's own result exactly and test it; if the test fails, write the solved state again."""
     solved = read_state(context)
@@ -140,12 +149,12 @@ def _is_tool_result_free(
 
 def _passes(
     context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str]
-) -> Steps[list[_Outcome]]:
+) -> Steps[list[Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children."""
     limited = replace(settings, time_budget=settings.time_budget or TIME_LIMIT)
     deadline = time.monotonic() + limited.time_budget
     done: set[tuple[int, str]] = set()
-    outcomes: list[_Outcome] = []
+    outcomes: list[Outcome] = []
     while True:
         present = read_state(context)
         remaining = [
@@ -209,28 +218,37 @@ def _numbered(changes: Sequence[Change]) -> Iterator[tuple[Change, int]]:
 
 def _edit(
     context: bpy.types.Context, settings: EditSettings, goals: _ToolGoals, kind: str, deadline: float
-) -> Steps[_Outcome]:
+) -> Steps[Outcome]:
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
     edit = yield from BlenderEdit.begin_with_steps(
         context, settings, kind, _participants(context, settings, goals.changes),
         lambda control_set: _with_response(control_set, goals, settings),
     )  # fmt: skip
-    steps = _steps_to(edit, stack_controls([_goal_of(each, goals) for each in edit.control_sets]))
+    goal = stack_controls([_goal_of(each, goals) for each in edit.control_sets])
+    return (yield from move_to_goal(edit, goal, settings, deadline))
+
+
+def move_to_goal(
+    edit: BlenderEdit, goal: Floats, settings: EditSettings, deadline: float | None = None
+) -> Steps[Outcome]:
+    """Steps of an edit toward a goal of all controls, (m, 3), until a deadline, in steps of a drag; and its write."""
+    end = time.monotonic() + (settings.time_budget or TIME_LIMIT) if deadline is None else deadline
+    steps = _steps_to(edit, goal)
     results = []
     for number, step in enumerate(steps):
         yield number / len(steps)
         results.append((yield from edit.drag_to_steps(step)))
-        if results[-1].status == "budget" or time.monotonic() > deadline:
+        if results[-1].status == "budget" or time.monotonic() > end:
             break
     reached = all(result.status in ("reached", "unchanged") for result in results)
-    if not reached and time.monotonic() < deadline:
+    if not reached and time.monotonic() < end:
         results.append((yield from edit.settle_steps()))
     yield None
     report = edit.write()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
-    return _Outcome(edit, reached and report.passed and report.result is None, blocking, message)
+    return Outcome(edit, reached and report.passed and report.result is None, blocking, message)
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:

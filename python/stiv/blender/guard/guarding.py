@@ -27,6 +27,7 @@ from stiv.blender.guard.entering import (
 )
 from stiv.blender.guard.known_intersections import find_intersections, fresh_objects, object_pair
 from stiv.blender.guard.new_parts import find_new_part, joins_others
+from stiv.blender.guard.pose_correction import correct_poses_steps
 from stiv.blender.guard.scene_state import SceneState, read_object, read_state, revert
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
@@ -84,7 +85,7 @@ def guard_result_steps(
     present = read_state(context)
     changes = compare(accepted.state, present)
     try:
-        return (yield from _guard(context, settings, accepted, changes))
+        return (yield from _guard(context, settings, accepted, present, changes))
     except (GeneratorExit, Left) as end:
         if changes.unsupported or not isinstance(end, Left):
             with suppress(InputError, SceneChangedError):
@@ -93,7 +94,11 @@ def guard_result_steps(
 
 
 def _guard(
-    context: bpy.types.Context, settings: EditSettings, accepted: AcceptedScene, changes: Changes
+    context: bpy.types.Context,
+    settings: EditSettings,
+    accepted: AcceptedScene,
+    present: SceneState,
+    changes: Changes,
 ) -> Steps[GuardedResult]:
     result = GuardedResult(reason=changes.unsupported)
     start = accepted.state
@@ -102,10 +107,15 @@ def _guard(
         yield None
         yield from _guard_new_geometry(context, settings, accepted, changes, result)
         start = _start_of(changes, accepted.state, read_state(context))
+    if changes.posed and changes.changes:
+        _restore_poses(context, accepted.state, changes.posed)
     if changes.changes and not (yield from _guard_overlapping_part(context, settings, accepted, changes, result)):
         yield from _guard_moved(context, settings, accepted, start, changes, result)
+    if changes.posed:
+        yield from _guard_poses(context, settings, accepted, present, changes.posed, result)
     tested = changes.unsupported and not changes.changes and not result.wrote
-    if not tested and (not changes.changes or result.reason or result.deformers or accepted.known.pairs):
+    followed = changes.changes or changes.posed
+    if not tested and (not followed or result.reason or result.deformers or accepted.known.pairs):
         yield None
         result.pairs = find_intersections(context, settings)
     return result
@@ -161,6 +171,31 @@ def _guard_moved(
         result.reason = str(error)
         return
     result.deformers = outcome.deformers
+    result.add(outcome)
+
+
+def _restore_poses(context: bpy.types.Context, state: SceneState, posed: Sequence[ObjectReference]) -> None:
+    """Restore accepted poses, from which other changes are corrected first."""
+    for reference in posed:
+        state[reference.session_uid].pose.restore(reference.find())
+    context.view_layer.update()
+
+
+def _guard_poses(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    accepted: AcceptedScene,
+    present: SceneState,
+    posed: Sequence[ObjectReference],
+    result: GuardedResult,
+) -> Steps[None]:
+    """Correct poses and values of shape keys, from the accepted ones toward those of the tool."""
+    left_out = accepted.known.left_out(settings)
+    try:
+        outcome = yield from correct_poses_steps(context, left_out, accepted.state, present, posed)
+    except (InputError, SceneChangedError) as error:
+        result.reason = result.reason or str(error)
+        return
     result.add(outcome)
 
 

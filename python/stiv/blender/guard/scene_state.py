@@ -34,6 +34,15 @@ class PoseState:
     bones: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]], ...] = ()
     keys: tuple[tuple[str, float], ...] = ()
 
+    @staticmethod
+    def read(ob: bpy.types.Object) -> "PoseState":
+        """Read an object; empty for objects without pose and shape keys."""
+        keys = getattr(ob.data, "shape_keys", None)
+        return PoseState(
+            tuple(map(_read_bone, ob.pose.bones)) if ob.pose is not None else (),
+            tuple((key.name, key.value) for key in keys.key_blocks) if keys is not None else (),
+        )
+
     def restore(self, ob: bpy.types.Object) -> None:
         """Restore the pose; missing bones and keys are skipped."""
         for name, location, rotation_property, rotation, scale in self.bones:
@@ -132,7 +141,7 @@ def read_object(ob: bpy.types.Object) -> ObjectState:
     return ObjectState(
         ObjectReference.of(ob), 0 if ob.parent is None else ob.parent.session_uid, rotation, tuple(ob.location),
         tuple(getattr(ob, rotation)), tuple(ob.scale), as_matrix(ob.matrix_world), _points(ob), _connectivity(ob),
-        read_pose(ob), KeyEditing.of(ob) if ob.type == "MESH" else None,
+        PoseState.read(ob), KeyEditing.of(ob) if ob.type == "MESH" else None,
     )  # fmt: skip
 
 
@@ -153,15 +162,6 @@ def _connectivity(ob: bpy.types.Object) -> int:
         collection.foreach_get(attribute, values)
         checksum = zlib.crc32(values.tobytes(), checksum)
     return checksum
-
-
-def read_pose(ob: bpy.types.Object) -> PoseState:
-    """Read pose and shape key values; empty for objects without."""
-    keys = getattr(ob.data, "shape_keys", None)
-    return PoseState(
-        tuple(map(_read_bone, ob.pose.bones)) if ob.pose is not None else (),
-        tuple((key.name, key.value) for key in keys.key_blocks) if keys is not None else (),
-    )
 
 
 def _read_bone(bone: bpy.types.PoseBone) -> tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]]:
