@@ -7,6 +7,7 @@ import sys
 from importlib import metadata
 from pathlib import Path
 
+import pytest
 from check_files import APART, CROSSING, written
 
 import stiv
@@ -20,7 +21,8 @@ def run_tests(folder: Path, body: str) -> tuple[int, str]:
     (folder / "test_assets.py").write_text(test, encoding="utf-8")
     installed = any(entry.name == "stiv" for entry in metadata.entry_points(group="pytest11"))
     plugin = [] if installed else ["-p", "stiv.pytest_plugin"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(stiv.__file__).parents[1])}
+    used = [str(Path(package.__file__).parents[1]) for package in (stiv, pytest)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(used)}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *plugin, str(folder)]
     ended = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=folder, check=False)
     return ended.returncode, ended.stdout
