@@ -64,8 +64,7 @@ lint: build/venv/lint $(WHEEL) ## Check format, style, types, spelling, and the 
 extension: build/venv/stiv $(OPENSUBDIV) build/venv/portable $(BLENDER_VENVS) ## Build dist/stiv-<version>-<platform>.zip for all PLATFORMS (an hour, the first time), validate and test them; BLENDER=blender: install it there
 	tools/install_debian_packages.sh tools/debian_packages_extension.txt
 	tools/extension.sh build/venv/bin/python $(OPENSUBDIV) dist $(PLATFORMS) >build/extension-all
-	set -e; for zip in $$(cat build/extension-all); do for venv in $(dir $(BLENDER_VENVS)); do \
-		$$venv/bin/python tools/install_extension.py "$$zip" --validate; done; done
+	build/venv/bin/python tools/validate_extension.py build/validators $$(cat build/extension-all)
 	set -e; for zip in $$(grep $(HERE) build/extension-all); do $(ZIP_VENV)/bin/python tools/install_extension.py "$$zip"; done
 	build/venv/bin/python -m pytest -q -p no:cacheprovider tests/packaging/test_extension_wheels.py
 	cat build/extension-all

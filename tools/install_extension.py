@@ -2,7 +2,6 @@
 """Validate the extension's zip with Blender and install it like a user.
 
 Usage: VENV/bin/python install_extension.py ZIP            into the Blender module of the current environment
-       VENV/bin/python install_extension.py ZIP --validate only the validation, of a zip for any platform
        python install_extension.py ZIP --blender PROGRAM   into a Blender program, for its user
 
 Into a module: Blender unpacks the zip and the matching wheel below VENV/extension, and the environment finds
@@ -79,13 +78,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("archive", type=Path)
     parser.add_argument("--blender", help="a Blender program to install into, instead of the module")
-    parser.add_argument("--validate", action="store_true", help="only let this environment's Blender module validate")
     parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
     chosen = parser.parse_args()
     if chosen.here:
         here(chosen.archive.resolve())
-    elif chosen.validate:
-        subprocess.run(validation(chosen.archive.resolve()), check=True, stdout=subprocess.DEVNULL)
     elif chosen.blender:
         into_program(chosen.archive.resolve(), chosen.blender)
     else:
