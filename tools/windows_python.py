@@ -62,10 +62,11 @@ def main(version: str, folder: Path, packages: list[str]) -> None:
     target = ["--target", str(folder / "Lib/site-packages"), "--upgrade", "--platform", "win_amd64"]
     choice = ["--python-version", version, "--implementation", "cp", "--only-binary=:all:"]
     choice += ["--ignore-requires-python"]  # of this Python; pip chooses by the version above
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *target, *choice]
     if packages:
-        pinned = [] if "--no-deps" in packages else [NUMPY[version]]
-        command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        subprocess.run([*command, *target, *choice, *packages, *pinned], check=True)
+        subprocess.run([*command, *packages], check=True)
+    if packages and "--no-deps" not in packages:
+        subprocess.run([*command, "--no-deps", NUMPY[version]], check=True)  # Blender 5.2 asks for a newer one
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from bpy.props import EnumProperty, IntProperty
 
 from ..translations import translate
 
-FOLDER = Path(__file__).resolve().parents[1] / "examples"  # an extension run from its sources has none
+FOLDER = Path(__file__).absolute().parents[1] / "examples"  # an extension run from its sources has none
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from .. import native_module, stiv_blender
 from ..operators import reports
 from ..translations import translate
 
-MANIFEST = Path(__file__).resolve().parents[1] / "blender_manifest.toml"
+MANIFEST = Path(__file__).absolute().parents[1] / "blender_manifest.toml"
 
 
 class STIV_OT_copy_report(bpy.types.Operator):

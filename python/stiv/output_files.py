@@ -34,3 +34,11 @@ def require_folder(path: Path | None) -> None:
     """Raises InputError if the folder of an output does not exist. Called before any work is done."""
     if path is not None and not path.parent.is_dir():
         raise InputError(f"{path}: there is no folder {path.parent}; create it first")
+
+
+def resolved(path: Path) -> Path:
+    """The absolute path behind links, or the path as given where Windows cannot follow it."""
+    try:
+        return path.resolve()
+    except OSError:
+        return path.absolute()

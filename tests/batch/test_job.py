@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from json_schemas import schema_of
 
 import stiv
-from stiv.batch.job import Job, parse_job, read_job, resolved
+from stiv.batch.job import Job, parse_job, read_job
 
 OLD = Path(__file__).with_name("job_of_0.1.0.json")
 CHECK = {"name": "a", "command": "check", "scene": "a.blend"}
@@ -57,15 +57,6 @@ def test_entries_become_commands_with_paths_of_the_jobs_folder(tmp_path):
     assert read.entries[1].inputs == (tmp_path / "a.blend", tmp_path / "e.json")
     assert read.entries[1].outputs == (tmp_path / "b.blend", tmp_path / "b.json")
     assert read.time_limit == 60
-
-
-def test_a_path_that_windows_cannot_follow_stays_as_it_is(tmp_path, monkeypatch):
-    def refuse(*_, **__):
-        raise OSError(234, "more data available")
-
-    assert resolved(tmp_path / "a" / ".." / "j.json") == tmp_path.resolve() / "j.json"
-    monkeypatch.setattr(type(tmp_path), "resolve", refuse)
-    assert resolved(tmp_path / "j.json") == tmp_path / "j.json"
 
 
 def test_a_job_of_version_0_1_0_is_read(tmp_path):

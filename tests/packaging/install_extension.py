@@ -68,6 +68,14 @@ def use() -> None:
     assert bpy.ops.stiv.open_example(example="pot_plant") == {"FINISHED"}
 
 
+def check_saved(path: Path) -> None:
+    """Save the scene below the user's folder, and check the file with the command."""
+    from stiv.command_line import program
+
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), check_existing=False)
+    assert program.run(["check", str(path)]) == 0, f"{path} is not free"
+
+
 def main(archive: str, resources: Path) -> None:
     """Install unwatched, because Blender writes then; use watched."""
     global watching
@@ -89,6 +97,7 @@ def main(archive: str, resources: Path) -> None:
     assert registered() <= before, registered() - before
     assert not violations, "\n".join(violations)
     assert sys.path == paths, "sys.path has changed"
+    check_saved(resources / "scène ü 花.blend")
 
 
 if __name__ == "__main__":

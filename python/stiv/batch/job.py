@@ -13,6 +13,7 @@ from stiv import InputError
 from stiv.choices import GUARDS
 from stiv.frame_ranges import parse_frames
 from stiv.json_files import read_json, require_format
+from stiv.output_files import resolved
 
 SCHEMA, VERSIONS = "stiv-batch", (1, 2)
 RENAMED = {"do": "command"}  # fields of version 1 by their present names
@@ -46,14 +47,6 @@ class Job:
     entries: tuple[Entry, ...]
     time_limit: float = 0.0
     description: str = ""
-
-
-def resolved(path: Path) -> Path:
-    """The absolute path behind links, or the path as given where Windows cannot follow it."""
-    try:
-        return path.resolve()
-    except OSError:
-        return path.absolute()
 
 
 def read_job(path: Path) -> Job:

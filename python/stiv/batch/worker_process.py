@@ -13,7 +13,7 @@ from typing import Any
 
 from stiv.batch.worker import MARK
 
-PACKAGES = Path(__file__).resolve().parents[2]
+PACKAGES = Path(__file__).absolute().parents[2]
 
 Listener = Callable[["WorkerProcess", dict[str, Any] | None], None]
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from stiv import InputError
 from stiv.batch.dask_cluster import require_distributed, run_on_cluster
-from stiv.batch.job import Job, read_job, resolved
+from stiv.batch.job import Job, read_job
 from stiv.batch.pool import Pool, PoolError
 from stiv.batch.records import Record
 from stiv.batch.run import RunOptions, exit_code, report_of, run_job
@@ -24,7 +24,7 @@ from stiv.command_line.installed_blender import blender_command
 from stiv.command_line.progress import progress_bar
 from stiv.exit_codes import ExitCode
 from stiv.json_files import write_json
-from stiv.output_files import require_folder
+from stiv.output_files import require_folder, resolved
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]

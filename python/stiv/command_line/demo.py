@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 NAME = "plant_in_vase"
-PACKAGE = Path(__file__).resolve().parents[1]
+PACKAGE = Path(__file__).absolute().parents[1]
 FOLDERS = (PACKAGE / "demo", PACKAGE.parents[1] / "blend_fixtures")  # of a wheel, of a source checkout
 MEDIANS = {"milliseconds": "ms per edit", "rounds": "rounds", "events": "events", "patches": "patches"}
 

@@ -8,7 +8,7 @@ import os
 import sys
 from pathlib import Path
 
-PACKAGES = Path(__file__).resolve().parents[2]  # the folder with the package
+PACKAGES = Path(__file__).absolute().parents[2]  # the folder with the package
 
 
 def main() -> int:

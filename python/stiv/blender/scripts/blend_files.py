@@ -8,12 +8,13 @@ from pathlib import Path
 import bpy
 
 from stiv import InputError
+from stiv.output_files import resolved
 
 
 def open_blend(path: Path) -> bpy.types.Context:
     """Open a file and return Blender's context. Raises InputError if Blender cannot read it."""
     try:
-        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
+        bpy.ops.wm.open_mainfile(filepath=str(resolved(path)), load_ui=False, use_scripts=False)
     except RuntimeError as error:
         raise InputError(f"{path}: Blender cannot open it: {_reason(error)}") from error
     return bpy.context
@@ -22,7 +23,7 @@ def open_blend(path: Path) -> bpy.types.Context:
 def save_blend(path: Path) -> None:
     """Save a compressed copy of the open file. Raises InputError if Blender cannot write it."""
     try:
-        bpy.ops.wm.save_as_mainfile(filepath=str(path.resolve()), compress=True, copy=True, check_existing=False)
+        bpy.ops.wm.save_as_mainfile(filepath=str(resolved(path)), compress=True, copy=True, check_existing=False)
     except RuntimeError as error:
         raise InputError(f"{path}: Blender cannot write it: {_reason(error)}") from error
 
@@ -33,7 +34,7 @@ def render_picture(path: Path) -> None:
     if bpy.context.scene.camera is None:
         raise InputError("the scene has no camera to render with")
     before = render.filepath, render.image_settings.file_format
-    render.filepath, render.image_settings.file_format = str(path.resolve()), "PNG"
+    render.filepath, render.image_settings.file_format = str(resolved(path)), "PNG"
     try:
         bpy.ops.render.render(write_still=True)
     except RuntimeError as error:
