@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small character made by script: capsules around bones, joined to one closed mesh, and weights by distance."""
+"""Small characters made by script: capsules around bones, joined to one closed mesh, and weights by distance."""
 
 from typing import Any
 
@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 
 # bone: parent, head, tail, radius of the body, connected
-BONES: dict[str, tuple[str, Any, Any, float, bool]] = {
+Bones = dict[str, tuple[str, Any, Any, float, bool]]
+BONES: Bones = {
     "Spine": ("", (0, 0, 0), (0, 0, 0.7), 0.34, False),
     "Chest": ("Spine", (0, 0, 0.7), (0, 0, 1.3), 0.36, True),
     "Head": ("Chest", (0, 0, 1.6), (0, 0, 2.0), 0.24, False),
@@ -42,14 +43,22 @@ BONES: dict[str, tuple[str, Any, Any, float, bool]] = {
     },
 }
 
+# ends and radii of the capsules between the body and neck, shoulders and hips
+Links = list[tuple[Any, Any, float]]
+LINKS: Links = [
+    ((0, 0, 1.3), (0, 0, 1.6), 0.14),
+    *(((0, 0, 1.3), (sign * 0.5, 0, 1.35), 0.15) for sign in (1, -1)),
+    *(((sign * 0.1, 0, 0), (sign * 0.2, 0, -0.3), 0.17) for sign in (1, -1)),
+]
 
-def make_rig(name: str = "Rig") -> Any:
+
+def make_rig(name: str = "Rig", bones: Bones = BONES) -> Any:
     """An armature with these bones, in Pose Mode."""
     rig = _add(name, bpy.data.armatures.new(name))
     bpy.context.view_layer.objects.active = rig
     rig.select_set(True)
     bpy.ops.object.mode_set(mode="EDIT")
-    for bone, (parent, head, tail, _, connected) in BONES.items():
+    for bone, (parent, head, tail, _, connected) in bones.items():
         made = rig.data.edit_bones.new(bone)
         made.head, made.tail = head, tail
         if parent:
@@ -58,12 +67,14 @@ def make_rig(name: str = "Rig") -> Any:
     return rig
 
 
-def make_character(voxel: float = 0.07, name: str = "Body") -> tuple[Any, Any]:
+def make_character(
+    voxel: float = 0.07, name: str = "Body", bones: Bones = BONES, links: Links = LINKS
+) -> tuple[Any, Any]:
     """The rig, in Pose Mode, and its body."""
-    rig = make_rig()
-    body = _add(name, _skin(voxel))
+    rig = make_rig(bones=bones)
+    body = _add(name, _skin(voxel, bones, links))
     points = np.array([vertex.co for vertex in body.data.vertices])
-    for bone, weights in zip(BONES, _weights(points), strict=True):
+    for bone, weights in zip(bones, _weights(points, bones), strict=True):
         group = body.vertex_groups.new(name=bone)
         for number in np.flatnonzero(weights).tolist():
             group.add([number], float(weights[number]), "REPLACE")
@@ -79,32 +90,29 @@ def _add(name: str, data: Any) -> Any:
     return ob
 
 
-def _distances(points: np.ndarray) -> np.ndarray:
+def _distances(points: np.ndarray, bones: Bones) -> np.ndarray:
     """From the bones, (b, n)."""
     rows = []
-    for _, head, tail, _, _ in BONES.values():
+    for _, head, tail, _, _ in bones.values():
         start, along = np.array(head, float), np.array(tail, float) - head
         at = np.clip((points - start) @ along / (along @ along), 0, 1)
         rows.append(np.linalg.norm(points - start - at[:, None] * along, axis=1))
     return np.array(rows)
 
 
-def _weights(points: np.ndarray) -> np.ndarray:
+def _weights(points: np.ndarray, bones: Bones) -> np.ndarray:
     """Of the bones at points, (b, n): the nearest relative to the radius of the body, blended at joints."""
-    radii = np.array([radius for *_, radius, _ in BONES.values()])[:, None]
-    depth = _distances(points) / radii
+    radii = np.array([radius for *_, radius, _ in bones.values()])[:, None]
+    depth = _distances(points, bones) / radii
     weights = np.exp(-8 * (depth - depth.min(axis=0)))
     weights[weights < 0.02] = 0
     return np.asarray(weights / weights.sum(axis=0))
 
 
-def _skin(voxel: float) -> Any:
-    """Capsules around the bones and from shoulders and hips to the body, as one closed mesh."""
-    ends = [(np.array(head, float), np.array(tail, float), radius) for _, head, tail, radius, _ in BONES.values()]
-    ends += [(np.array([0, 0, 1.3]), np.array([0, 0, 1.6]), 0.14)]
-    for sign in (1, -1):
-        ends += [(np.array([0, 0, 1.3]), np.array([sign * 0.5, 0, 1.35]), 0.15)]
-        ends += [(np.array([sign * 0.1, 0, 0]), np.array([sign * 0.2, 0, -0.3]), 0.17)]
+def _skin(voxel: float, bones: Bones, links: Links) -> Any:
+    """Capsules around the bones and along the links, as one closed mesh."""
+    capsules = [*((head, tail, radius) for _, head, tail, radius, _ in bones.values()), *links]
+    ends = [(np.array(start, float), np.array(end, float), radius) for start, end, radius in capsules]
     ball = bmesh.new()
     bmesh.ops.create_icosphere(ball, subdivisions=3, radius=1)
     unit = np.array([vertex.co for vertex in ball.verts])

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import stiv
 from stiv import InputError
 from stiv.checks.findings import Finding
+from stiv.command_line import resolve_rig
 from stiv.command_line.blender_module import quiet_blender, require_blender, stored_settings
 from stiv.command_line.options import add_blender_option, add_guard_option, frame_range
 from stiv.command_line.progress import progress_bar
@@ -25,13 +26,15 @@ SCHEMA, VERSION = "stiv-resolve", 2
 
 _DESCRIPTION = """\
 Corrects an animation so that nothing intersects. The pose of each frame is a goal, and its edit starts from the
-accepted state of the previous frame. The new file contains transforms as keyframes and shapes as shape keys. Its
-frames, and the motion between them, are tested before it is saved. Scripts in the file do not run. docs/animation.md
-has the details."""
+accepted state of the previous frame. The new file contains transforms as keyframes and shapes as shape keys.
+`--write rig` instead corrects the keyframes of the bones and objects that have some, smoothly over time: no mesh is
+baked, and constraints stay. The frames, and the motion between them, are tested before the file is saved. Scripts in
+the file do not run. docs/animation.md has the details."""
 _EXAMPLES = """\
 examples:
   stiv resolve walk.blend --frames 1:120 -o resolved.blend
   stiv resolve walk.blend --frames scene -o resolved.blend --hold Hand --report frames.json
+  stiv resolve walk.blend --frames scene -o clean.blend --write rig --bone 'Arm.*' --bone 'Hand.*=10'
 
 exit codes: 0 done, 4 the first frame, or the evaluated result, has intersections (nothing is written), 2 bad input,
 1 wrong usage, 3 internal error, 5 cancelled"""
@@ -59,6 +62,13 @@ def add_to(subcommands: Subparsers) -> None:
     parser.add_argument(
         "--separation", type=float, default=0.0, metavar="X", help="minimum distance, world units (default: automatic)"
     )
+    parser.add_argument(
+        "--write",
+        choices=("shapes", "rig"),
+        default="shapes",
+        help="shapes: placements, and a shape key for each frame; rig: keyframes of the animated bones and objects",
+    )
+    resolve_rig.add_options(parser)
     add_guard_option(parser)
     parser.add_argument("--report", type=Path, metavar="F", help="write a report on each frame to F, as JSON")
     add_blender_option(parser)
@@ -70,6 +80,8 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
         require_folder(path)
     if not arguments.scene.is_file():
         raise InputError(f"{arguments.scene}: there is no such file")
+    if arguments.write == "rig":
+        return resolve_rig.run(arguments)
     try:
         with quiet_blender():
             left, frames, guard = _resolve(arguments)

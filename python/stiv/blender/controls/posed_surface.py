@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -290,17 +290,7 @@ class RigTwin:
     def weights(self, owner: ObjectReference, count: int) -> tuple[list[str], Floats]:
         """Names of the bones that have vertex groups, and their weights, (n, g), at n evaluated vertices."""
         bones = {bone.name for rig in self._rigs.values() for bone in rig.data.bones}
-        shown = self._copies.evaluated(owner)
-        names = [group.name for group in shown.vertex_groups if group.name in bones] if shown.type == "MESH" else []
-        result = np.zeros((count, len(names)))
-        column = {shown.vertex_groups[name].index: k for k, name in enumerate(names)}
-        with evaluated_mesh(shown) as mesh:
-            if names and len(mesh.vertices) == count:
-                for row, vertex in enumerate(mesh.vertices):
-                    for group in vertex.groups:
-                        if group.group in column:
-                            result[row, column[group.group]] = group.weight
-        return names, result
+        return skin_weights(self._copies.evaluated(owner), bones, count)
 
     def remove(self) -> None:
         """Remove the copies and their scene."""
@@ -313,6 +303,20 @@ class RigTwin:
             animation = getattr(owner, "animation_data", None)
             if animation is not None:
                 animation.action, animation.use_nla = None, False
+
+
+def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) -> tuple[list[str], Floats]:
+    """Names of the bones that have vertex groups, and their weights, (n, g), at n vertices of an evaluated object."""
+    names = [group.name for group in shown.vertex_groups if group.name in bones] if shown.type == "MESH" else []
+    result = np.zeros((count, len(names)))
+    column = {shown.vertex_groups[name].index: k for k, name in enumerate(names)}
+    with evaluated_mesh(shown) as mesh:
+        if names and len(mesh.vertices) == count:
+            for row, vertex in enumerate(mesh.vertices):
+                for group in vertex.groups:
+                    if group.group in column:
+                        result[row, column[group.group]] = group.weight
+    return names, result
 
 
 def has_drivers(owner: bpy.types.ID | None) -> bool:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds animated and driven properties."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import bpy
@@ -37,3 +37,15 @@ def channel_curves(action: Any) -> Iterator[Any]:
         for strip in layer.strips:
             for bag in strip.channelbags:
                 yield from bag.fcurves
+
+
+def own_curves(owner: bpy.types.ID) -> Sequence[Any]:
+    """Curves of an object's own action: those of its slot (Blender 4.4 and later), or all of them."""
+    animation = owner.animation_data
+    if animation is None or animation.action is None:
+        return ()
+    if not hasattr(animation.action, "layers"):
+        return list(animation.action.fcurves)
+    strips = [strip for layer in animation.action.layers for strip in layer.strips]
+    bags = [strip.channelbag(animation.action_slot) for strip in strips if animation.action_slot is not None]
+    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
