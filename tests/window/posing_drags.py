@@ -100,7 +100,7 @@ def guarded_pose(window: Window) -> Steps:
     through = _angle()
     window.picture("guarded_pose_before")
     window.key("LEFTMOUSE")
-    yield from window.until(lambda: _angle() < through - 5, "a correction")
+    yield from window.until(lambda: 10 < _angle() < through - 5, "a correction")
     yield from window.settle(10)
     window.picture("guarded_pose")
     assert through > 45 and 15 < _angle() < 40, (through, _angle())

@@ -146,7 +146,8 @@ class EditSettings(SharedOptions):
             `BlenderEdit.set_interference` changes it during an edit.
         responders: which controls yield: those that the edit moves ("selected", default), all others ("unselected": the
             selection then follows the goal exactly), or "all". In Object Mode "unselected" covers all visible objects
-            that can be moved, rigidly or by their own deformation; in Edit Mode the unselected vertices or points.
+            that can be moved, rigidly or by their own deformation; in Edit Mode the unselected vertices or points;
+            in Pose Mode the other bones, or the objects with their own deformation if there are any.
         object_response: how objects respond in Object Mode: "slide" (default; Move never rotates an object),
             "slide_and_turn", or "deform" (selected objects by the vertices of their cage or the points of a lattice,
             all others slide). "rigid", of version 0.1.0, is "slide_and_turn".

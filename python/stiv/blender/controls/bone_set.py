@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels
-from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, Writer
+from stiv.blender.controls.garments import Garment
+from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
 from stiv.blender.scene.arrays import Floats
@@ -56,38 +58,60 @@ def make_bone_set(
     meshes: Sequence[VisibleMesh],
     settings: EditSettings,
     kind: str,
+    garments: Sequence[Garment] = (),
 ) -> ControlSet:
-    """Make the control set of the selected bones of all rigs. Raises InputError by name."""
+    """Make the control set of the selected bones of all rigs, and of the garments that yield to them.
+
+    Raises InputError by name.
+    """
     rigs = [each.reference.find() for each in participants]
     individual = context.scene.tool_settings.transform_pivot_point == "INDIVIDUAL_ORIGINS"
     bones: list[BoneChannels] = []
     responses: list[Floats] = []
     for rig, participant in zip(rigs, participants, strict=True):
         found = list(participant.bones) or _moved_bones(rig, kind, individual)
-        if settings.responders != "selected" and not participant.bones:
+        if settings.responders != "selected" and not participant.bones and not garments:
             found += _other_bones(rig, {each.name for each in found})
         bones += found
-        responses += [np.ones(10) if participant.bones else _weights(bone, kind, settings) for bone in found]
+        given = 0.0 if garments and settings.responders == "unselected" else 1.0
+        responses += [np.full(10, given) if participant.bones else _weights(bone, kind, settings) for bone in found]
     followers = find_followers(context.scene, {rig.name for rig in rigs})
     if not any(mesh.owner.name in followers for mesh in meshes):
         raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
-    posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region)
+    posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region, garments)
     scalars = BoneScalars(tuple(bones))
     weights = scalars.of(responses)
-    return ControlSet(
-        tuple(rig.name for rig in rigs),
-        "bones",
-        posed.surfaces,
-        posed.deformation,
-        posed.deformation.controls(posed.start),
-        weights,
-        weights,
-        None,
-        BoneGoal(scalars),
-        BoneWriter(scalars, MOVED[kind]),
-        note=posed.note,
-        posed=posed,
+    names, start, writer = tuple(rig.name for rig in rigs), as_controls(posed.start), BoneWriter(scalars, MOVED[kind])
+    bare = ControlSet(
+        names, "bones", posed.surfaces, posed.deformation, start, weights, weights, None, BoneGoal(scalars), writer,
+        note=posed.note, posed=posed,
+    )  # fmt: skip
+    return dressed(bare, [each.controls for each in garments]) if garments else bare
+
+
+def dressed(bones: ControlSet, garments: Sequence[ControlSet]) -> ControlSet:
+    """The control set of bones followed by those of garments, which have one deformation together."""
+    sets = [bones, *garments]
+    weights, most = ([getattr(each, name) for each in sets] for name in ("weights", "max_weights"))
+    axes = [np.eye(3)[None].repeat(len(s.controls), 0) if s.weight_axes is None else s.weight_axes for s in sets]
+    return replace(
+        bones,
+        names=tuple(name for each in sets for name in each.names),
+        controls=np.concatenate([each.controls for each in sets]),
+        weights=_along_axes(weights),
+        max_weights=_along_axes(most),
+        weight_axes=np.concatenate(axes) if any(each.weight_axes is not None for each in garments) else None,
+        rule=DressedGoal(bones.rule, len(bones.controls)),
+        writer=DressedWriter(tuple((each.writer, len(each.controls)) for each in sets)),
+        note=join_notes(*(each.note for each in sets)),
     )
+
+
+def _along_axes(weights: Sequence[Floats]) -> Floats:
+    """Weights of all sets, (m,), or (m, 3) if any set has weights along axes."""
+    if all(each.ndim == 1 for each in weights):
+        return np.concatenate(list(weights))
+    return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
 
 
 def check_rig(rig: bpy.types.Object) -> None:
@@ -191,6 +215,61 @@ class BoneWriter:
             for channels, name, has_changed in each.properties(bone):
                 if has_changed or (each.selected and channels == self.keyed[-1]):
                     bone.keyframe_insert(name, group=bone.name, options=options)
+
+
+@dataclass(frozen=True)
+class DressedGoal:
+    """The goal of bones, (k, 3), and garments, which rest."""
+
+    bones: GoalRule
+    count: int
+
+    @property
+    def moves(self) -> bool:
+        """Is a bone selected?"""
+        return self.bones.moves
+
+    def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
+        """Goal of the controls, (m, 3)."""
+        bones = self.bones.goal(controls[: self.count], last[: self.count], motion)
+        return np.concatenate([bones, controls[self.count :]])
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """Nothing depends on the motion."""
+        return ()
+
+    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
+        """The control set itself."""
+        return control_set
+
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """0: the rotation of a bone is part of its goal."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class DressedWriter:
+    """Writes bones, then garments: writers with their number of controls."""
+
+    writers: tuple[tuple[Writer, int], ...]
+
+    def write(self, controls: Floats) -> None:
+        """Write controls, (m, 3). Raises SceneChangedError."""
+        first = 0
+        for writer, count in self.writers:
+            writer.write(controls[first : first + count])
+            first += count
+
+    def restore(self) -> None:
+        """Restore the start to the last bit."""
+        for writer, _ in self.writers:
+            writer.restore()
+
+    def insert_keyframes(self, context: bpy.types.Context) -> None:
+        """Insert keyframes for the bones."""
+        for writer, _ in self.writers:
+            if isinstance(writer, BoneWriter):
+                writer.insert_keyframes(context)
 
 
 def keyframe_options(context: bpy.types.Context) -> set[str]:

@@ -13,6 +13,7 @@ from stiv.blender.controls.cage import make_cage_set
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.curve_points import make_curve_set
 from stiv.blender.controls.editable import shared_data_error
+from stiv.blender.controls.garments import make_garments
 from stiv.blender.controls.handles import make_handle_sets
 from stiv.blender.controls.joined_seams import join_seams
 from stiv.blender.controls.lattice_modifier import lattice_deformation
@@ -47,7 +48,10 @@ def make_control_sets(
 ) -> tuple[list[ControlSet], list[RigidGroup]]:
     """Make all control sets and rigid groups. Raises InputError for what cannot be moved, with nothing changed."""
     if any(each.role == "bones" for each in participants):
-        posed = make_bone_set(context, participants, meshes, settings, kind)
+        rigs = [each for each in participants if each.role == "bones"]
+        clothes = [each for each in participants if each.role != "bones"]
+        garments = make_garments(context, clothes, meshes, settings)
+        posed = make_bone_set(context, rigs, meshes, settings, kind, garments)
         assert posed.posed is not None
         _check_surface(posed, posed.posed.meshes)
         return [posed], []

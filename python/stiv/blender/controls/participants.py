@@ -25,7 +25,7 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     """
     _check_names(context, settings)
     if context.mode == "POSE":
-        return find_posed_rigs(context)
+        return [*find_posed_rigs(context), *find_clothes(context, settings)]
     objects = [
         ob for ob in context.view_layer.objects if is_visible(context, ob) and settings.cage_of(ob.name) == ob.name
     ]
@@ -41,6 +41,14 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     if not any(each.selected for each in participants):
         raise nothing_movable([ob.name for ob in selected if settings.participates(settings.shown_by(ob.name))])
     return participants
+
+
+def find_clothes(context: bpy.types.Context, settings: EditSettings) -> list[Participant]:
+    """The visible meshes and lattices that yield to bones, by their role or their own deformation."""
+    rigs = set(context.objects_in_mode)
+    objects = [ob for ob in context.view_layer.objects if ob not in rigs and is_visible(context, ob)]
+    found = [each for ob in objects if (each := make_participant(ob, False, settings)) is not None]
+    return merge_participants([each for each in found if each.role != "rigid"])
 
 
 def nothing_movable(names: Sequence[str]) -> InputError:
@@ -89,7 +97,9 @@ def make_participant(ob: bpy.types.Object, selected: bool, settings: EditSetting
 def _yields_by_deformation(ob: bpy.types.Object, settings: EditSettings) -> bool:
     """Does an unselected object yield because of its own deformation?"""
     deforms = settings.deformation(ob.name) not in ("auto", "rigid")
-    return deforms and settings.responders != "selected" and ob.mode != "EDIT" and bpy.context.mode == "OBJECT"
+    return (
+        deforms and settings.responders != "selected" and bpy.context.mode in ("OBJECT", "POSE") and ob.mode == "OBJECT"
+    )
 
 
 def _deformation_of(ob: bpy.types.Object, role: str, settings: EditSettings) -> str:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 import stiv
 from stiv.blender.controls.bone_channels import BoneChannels
+from stiv.blender.controls.garments import Blocks, Garment, rows_of_blocks
 from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
 from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -42,16 +43,18 @@ class PosedSurface:
         meshes: Sequence[VisibleMesh],
         weights: Sequence[Floats],
         joint_region: float,
+        garments: Sequence[Garment] = (),
     ) -> None:
         """followers: names of all objects that move with the rigs. weights: of the channels of each bone, (10,).
 
-        joint_region: as in EditSettings.
+        joint_region: as in EditSettings. garments: yield; their controls follow the scalars in the deformation.
         """
         scalars = BoneScalars(tuple(bones))
+        followers = followers.union(*({meshes[k].owner.name for k in each.controls.surfaces} for each in garments))
         moved = [mesh for mesh in meshes if mesh.owner.name in followers]
         self.start = scalars.start
         with kept_twins():
-            self._poses = _Poses(scalars, followers, moved, scalars.of(weights) > 0)
+            self._poses = _Poses(scalars, followers, moved, scalars.of(weights) > 0, _wear(garments, meshes, moved))
             jacobian = self._poses.jacobian()
             regions = divide_all(moved, self._poses.weights(), self._poses.joints(), jacobian, joint_region)
         waiting = iter(regions)
@@ -63,23 +66,57 @@ class PosedSurface:
         self.note = joint_note(moved, regions)
         rows = self._rows = _rows_of(moved, [self.meshes[k] for k in self.surfaces])
         poses = self._poses
+        lower, upper = (scalars.of(each) for each in ([b.lower for b in bones], [b.upper for b in bones]))
 
         def evaluate(values: Floats) -> Floats | None:
             found = poses.evaluate(values)
             return None if found is None else found[rows]
 
-        self.deformation = stiv.scalars(
-            evaluate,
-            jacobian[rows],
-            lower=scalars.of([each.lower for each in bones]),
-            upper=scalars.of([each.upper for each in bones]),
-            longest_step=scalars.of([each.longest_steps for each in bones]),
-        )
+        def evaluate_dressed(controls: Floats) -> Floats | None:
+            values = controls[: len(lower), 0]
+            if (values < lower).any() or (values > upper).any():
+                return None
+            found = poses.evaluate(values, controls[len(lower) :])
+            return None if found is None else found[rows]
+
+        self.deformation: stiv.ScalarDeformation | stiv.ObservedDeformation
+        if garments:
+            with kept_twins():
+                self.deformation = stiv.observed(evaluate_dressed, self._poses.blocks(jacobian, rows))
+        else:
+            longest = scalars.of([each.longest_steps for each in bones])
+            self.deformation = stiv.scalars(evaluate, jacobian[rows], lower=lower, upper=upper, longest_step=longest)
 
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation."""
         with kept_twins():
-            self.deformation.set_jacobian(self._poses.jacobian()[self._rows])
+            jacobian = self._poses.jacobian()
+            if isinstance(self.deformation, stiv.ScalarDeformation):
+                self.deformation.set_jacobian(jacobian[self._rows])
+            else:
+                self.deformation.set_jacobian(self._poses.blocks(jacobian, self._rows))
+
+
+@dataclass(frozen=True)
+class _Worn:
+    """A garment, its controls among those of all garments, and its vertices among those of all moved meshes."""
+
+    garment: Garment
+    controls: slice
+    rows: Indices
+
+
+def _wear(garments: Sequence[Garment], meshes: Sequence[VisibleMesh], moved: Sequence[VisibleMesh]) -> list[_Worn]:
+    starts = np.cumsum([0, *(len(mesh.local) for mesh in moved)])
+    place = {id(mesh): number for number, mesh in enumerate(moved)}
+    found, first = [], 0
+    for each in garments:
+        numbers = [place[id(meshes[index])] for index in each.controls.surfaces]
+        rows = np.concatenate([np.arange(starts[k], starts[k + 1], dtype=np.int32) for k in numbers])
+        last = first + len(each.controls.controls)
+        found.append(_Worn(each, slice(first, last), rows))
+        first = last
+    return found
 
 
 def _rows_of(meshes: Sequence[VisibleMesh], parts: Sequence[VisibleMesh]) -> Indices:
@@ -121,9 +158,15 @@ class _Poses:
     """Apart from `PosedSurface`, as the core holds `evaluate`: no cycle of references."""
 
     def __init__(
-        self, scalars: BoneScalars, followers: frozenset[str], meshes: Sequence[VisibleMesh], responds: Flags
+        self,
+        scalars: BoneScalars,
+        followers: frozenset[str],
+        meshes: Sequence[VisibleMesh],
+        responds: Flags,
+        worn: Sequence[_Worn],
     ) -> None:
-        self.scalars, self._followers, self._responds = scalars, followers, responds
+        self.scalars, self._followers, self._responds, self._worn = scalars, followers, responds, worn
+        self._points = np.concatenate([np.empty((0, 3)), *(each.garment.controls.controls for each in worn)])
         self._owners = [(each.read_from, each.owner) for each in meshes]
         self._counts = [len(each.local) for each in meshes]
         self._last = scalars.start
@@ -132,8 +175,12 @@ class _Poses:
         with kept_twins():
             self._start = self._observe(scalars.start)
 
-    def evaluate(self, values: Floats) -> Floats | None:
-        """World positions, (n, 3), at scalars, (k,); None if the topology of a mesh differs."""
+    def evaluate(self, values: Floats, points: Floats | None = None) -> Floats | None:
+        """World positions, (n, 3), at scalars, (k,), and controls of the garments, (m, 3); None: those before.
+
+        None if the topology of a mesh differs.
+        """
+        self._points = self._points if points is None else points
         with kept_twins():
             found = self._observe(values)
         if not all(mesh.is_like(start) for mesh, start in zip(found, self._start, strict=True)):
@@ -168,6 +215,28 @@ class _Poses:
         self._last = last
         return result
 
+    def blocks(self, jacobian: Floats, rows: Indices) -> tuple[Indices, Indices, Floats, tuple[int, int]]:
+        """The Jacobian of some rows by scalars and garments, as blocks, at the last evaluation.
+
+        jacobian: by the scalars, (n, 3, k).
+        """
+        values, points, count = self._last.copy(), self._points.copy(), jacobian.shape[2]
+        flags = (jacobian != 0).any(axis=1) & self._responds
+        moving, scalar = (each.astype(np.int32) for each in np.nonzero(flags))
+        found = [Blocks(moving, scalar, jacobian[moving, :, scalar][:, :, None] * np.array([1.0, 0, 0]))]
+        for each in self._worn:
+
+            def evaluate(controls: Floats, own: slice = each.controls) -> Floats | None:
+                moved = points.copy()
+                moved[own] = controls
+                return self.evaluate(values, moved)
+
+            blocks = each.garment.blocks(evaluate, points[each.controls], each.rows)
+            found.append(replace(blocks, controls=blocks.controls + count + each.controls.start))
+        self._last, self._points = values, points
+        indptr, columns, data = rows_of_blocks(found, len(jacobian), rows)
+        return indptr, columns, data, (len(rows), count + len(points))
+
     def joints(self) -> list[Joint]:
         """The bones that turn against their parents as the scalars change."""
         found = []
@@ -199,14 +268,18 @@ class _Poses:
         """All meshes at scalars, (k,), in their order."""
         shown: dict[tuple[str, ObjectReference], list[_PosedMesh]] = {}
         for evaluation in dict.fromkeys(read_from for read_from, _ in self._owners):
-            for owner, mesh in self._twin(evaluation).evaluate(self.scalars.channels(values)):
+            twin = self._twin(evaluation)
+            for each in self._worn:
+                each.garment.write_copy(twin.copy_of(each.garment.controls.names[0]), self._points[each.controls])
+            for owner, mesh in twin.evaluate(self.scalars.channels(values)):
                 shown.setdefault((evaluation, owner), []).append(mesh)
         waiting = {key: iter(found) for key, found in shown.items()}
         return [next(waiting.get(key, iter(())), MISSING) for key in self._owners]
 
     def _make_twin(self, evaluation: str) -> RigTwin:
         rigs = [each.rig for each in self.scalars.bones]
-        return RigTwin(rigs, self._followers, {owner for _, owner in self._owners}, evaluation)
+        worn = frozenset(name for each in self._worn for name in each.garment.controls.names)
+        return RigTwin(rigs, self._followers | worn, {owner for _, owner in self._owners}, evaluation, worn)
 
 
 @dataclass(frozen=True)
@@ -245,16 +318,19 @@ class RigTwin:
         followers: frozenset[str],
         shown: set[ObjectReference],
         evaluation: str,
+        worn: frozenset[str] = frozenset(),
     ) -> None:
-        """shown: the owners of the meshes that are read."""
+        """shown: the owners of the meshes that are read. worn: names of the objects whose data is written."""
         scene = bpy.context.scene
         objects = [ob for ob in scene.objects if ob.name in followers]
         own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
+        own_data += [ob for ob in objects if ob.name in worn and ob not in own_data]
         wanted = {each.session_uid for each in (*shown, *rigs)}
         self._copies = EvaluationCopies(scene, evaluation, own_data)
         try:
             self._copies.fill(objects, lambda ob: ob.session_uid in wanted)
             self._rigs = {each.session_uid: self._copies.copy_of(each) for each in rigs}
+            self._worn = {ob.name: self._copies.copy_of(ObjectReference.of(ob)) for ob in objects if ob.name in worn}
             self._shown = {each.session_uid for each in shown}
             for ob in objects:
                 self._stop_animation(self._copies.copy_of(ObjectReference.of(ob)), ob)
@@ -277,6 +353,10 @@ class RigTwin:
                 with evaluated_mesh(instance.object) as mesh:
                     stack = EvaluatedStack(read_positions(mesh), read_corner_vertices(mesh), _count(mesh.polygons))
                 yield ObjectReference.of(owner), _PosedMesh(stack, as_matrix(instance.matrix_world))
+
+    def copy_of(self, name: str) -> bpy.types.Object:
+        """The copy of an object whose data is written."""
+        return self._worn[name]
 
     def local_matrices(self) -> dict[tuple[int, str], Floats]:
         """The matrix of each bone relative to its parent, by rig and name."""

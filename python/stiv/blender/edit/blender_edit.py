@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import stiv
-from stiv.blender.controls.bone_set import BoneWriter
+from stiv.blender.controls.bone_set import BoneWriter, DressedWriter
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
@@ -329,7 +329,7 @@ class BlenderEdit:
     def insert_keyframes(self, context: bpy.types.Context) -> None:
         """Insert keyframes for posed bones, as Auto Keying does. Other controls get none."""
         for control_set in self.control_sets:
-            if isinstance(control_set.writer, BoneWriter):
+            if isinstance(control_set.writer, BoneWriter | DressedWriter):
                 control_set.writer.insert_keyframes(context)
 
     def is_shown(self) -> bool:

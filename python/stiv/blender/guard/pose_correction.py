@@ -12,6 +12,7 @@ import numpy as np
 from stiv.blender.controls.bone_channels import BoneChannels, StoredChannels
 from stiv.blender.controls.bone_set import check_rig
 from stiv.blender.controls.control_set import Participant
+from stiv.blender.controls.participants import find_clothes
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.guard.correction import ToolCorrection, move_to_goal
 from stiv.blender.guard.scene_state import ObjectState, PoseState, SceneState
@@ -71,11 +72,13 @@ def _correct_bones(
     for wanted, _ in rigs:
         check_rig(wanted.reference.find())
     participants = [Participant(wanted.reference, "bones", True, tuple(b for b, _ in bones)) for wanted, bones in rigs]
-    edit = yield from BlenderEdit.begin_with_steps(context, settings, "rotate", participants)
-    goal = np.zeros_like(edit.controls)
-    goal[:, 0] = np.concatenate([channels[bone.free] for _, bones in rigs for bone, channels in bones])
+    clothes = find_clothes(context, settings)
+    edit = yield from BlenderEdit.begin_with_steps(context, settings, "rotate", [*participants, *clothes])
+    start, goal = edit.controls, edit.controls.copy()
+    scalars = np.concatenate([channels[bone.free] for _, bones in rigs for bone, channels in bones])
+    goal[: len(scalars), 0] = scalars
     outcome = yield from move_to_goal(edit, goal, settings)
-    if outcome.reached:
+    if outcome.reached and np.array_equal(edit.controls[len(scalars) :], start[len(scalars) :]):
         solved = [replace(wanted, pose=PoseState.read(wanted.reference.find())) for wanted, _ in rigs]
         _restore(context, [replace(wanted, pose=replace(wanted.pose, keys=())) for wanted, _ in rigs])
         if edit.is_shown():
