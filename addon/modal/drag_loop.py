@@ -26,7 +26,7 @@ DOUBLINGS = 4  # of a budget that ends before a state is accepted, at most; of a
 DOUBLINGS_UNFINISHED = 2
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 MAX_HIDDEN = 3  # solves for a goal that accept nothing before the header says so
-START_WAIT = 0.05  # seconds that the start of a drag may take before the view is redrawn
+START_WAIT = 0.1  # seconds that a job of a start may take before the view is redrawn, in which Esc waits
 GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
 MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
 POOR_GAIN = (
@@ -143,7 +143,8 @@ class DragLoop:
         self._budget = BUDGET
         self._writes_since: float | None = None  # until the next call, so that drawing counts
         self._run(calls.begin(state.request), self._take_first_edit)
-        self._advance_task(START_WAIT)
+        if not self._advance_task(0.0):  # which reads the scene, up to the first job
+            self._advance_task(START_WAIT)
 
     @property
     def at_rest(self) -> bool:

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 
 import bmesh
 import bpy
@@ -15,14 +16,18 @@ from ..transform.frame import Frame, pivot_of
 from ..transform.view import Vector, View
 from .orientations import axes_of
 
+NO_POINTS = np.empty((0, 3))
 
-def read_frame(context: bpy.types.Context) -> Frame:
-    """Pivot and axes by the settings of the scene, and the view if the context has one."""
+
+def read_frame(context: bpy.types.Context, selection: Sequence[Vector] | None = None) -> Frame:
+    """Pivot and axes by the settings of the scene, and the view if the context has one.
+
+    selection: of `read_selection`, if it has been read.
+    """
     scene = context.scene
     choice = scene.tool_settings.transform_pivot_point
-    pivot = pivot_of(
-        selected_points(context), choice, cursor=np.array(scene.cursor.location), active=active_point(context)
-    )
+    points = np.concatenate([NO_POINTS, *(read_selection(context) if selection is None else selection)])
+    pivot = pivot_of(points, choice, cursor=np.array(scene.cursor.location), active=active_point(context))
     first, second = (axes_of(context, name) for name in orientation_names(context))
     return Frame(pivot, first, _view(context), second, individual=choice == "INDIVIDUAL_ORIGINS")
 
@@ -55,13 +60,11 @@ def view_areas(context: bpy.types.Context) -> Iterator[bpy.types.Area]:
         yield from (area for area in window.screen.areas if area.type == "VIEW_3D")
 
 
-def selected_points(context: bpy.types.Context) -> Vector:
-    """Origins of the selected objects, or the selected vertices or points, (k, 3) in world space."""
+def read_selection(context: bpy.types.Context) -> list[Vector]:
+    """Of each object, its origin or its selected vertices or points, (k, 3) in world space."""
     if context.mode == "OBJECT":
-        points = [np.array(obj.matrix_world.translation) for obj in moved_objects(context)]
-    else:
-        points = [point for obj in context.objects_in_mode for point in selected_elements(obj)]
-    return np.array(points, dtype=float).reshape(-1, 3)
+        return [np.array([obj.matrix_world.translation], float) for obj in moved_objects(context)]
+    return [_selected_elements(obj) for obj in context.objects_in_mode]
 
 
 def moved_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -73,18 +76,20 @@ def moved_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     return [obj for obj in context.selected_objects if not follows(obj.parent)]
 
 
-def selected_elements(obj: bpy.types.Object) -> list[Vector]:
-    """Selected vertices or points of an object in Edit Mode, in world space."""
+def _selected_elements(obj: bpy.types.Object) -> Vector:
+    """Selected vertices or points of an object in Edit Mode or Pose Mode, (k, 3) in world space."""
+    positions: Iterable[Iterable[float]]
     if obj.type == "ARMATURE":
-        positions = [bone.head[:] for bone in stiv_blender.moved_bones(obj)]
+        positions = (bone.head for bone in stiv_blender.moved_bones(obj))
     elif obj.type == "MESH":
-        positions = [vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
+        positions = (vertex.co for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select)
     elif obj.type in {"CURVE", "SURFACE"}:
-        positions = [position for spline in obj.data.splines for position in _selected_on(spline)]
+        positions = (position for spline in obj.data.splines for position in _selected_on(spline))
     else:
-        positions = [point.co_deform[:] for point in obj.data.points if point.select]
+        positions = (point.co_deform for point in obj.data.points if point.select)
     matrix = np.array(obj.matrix_world)
-    return list(np.array(positions).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3])
+    local = np.fromiter(chain.from_iterable(positions), float).reshape(-1, 3)
+    return np.asarray(np.einsum("ij,kj->ik", local, matrix[:3, :3]) + matrix[:3, 3])
 
 
 def _selected_on(spline: bpy.types.Spline) -> Iterator[tuple[float, ...]]:

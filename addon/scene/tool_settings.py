@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
@@ -15,24 +16,26 @@ from ..transform.snap_search import SnapSearch
 from ..transform.snapping import Increments, Snap
 from ..transform.view import Vector
 from ..translations import translate
-from .frame import moved_objects, orientation_names, selected_active_point, selected_elements, selected_points
+from .frame import NO_POINTS, moved_objects, orientation_names, selected_active_point
 from .orientations import is_supported
 
 MIN_PIXELS = 12.0  # twice the pixels of the least step of a grid in a parallel view along an axis
 IMPERIAL = ("thou", "in", "ft", "yd", "ch", "fur", "mi")
 
 
-def read_snap(context: bpy.types.Context) -> Snap:
-    """Snapping of a drag. The targets are read when they are first needed, and stay as they are then."""
+def read_snap(context: bpy.types.Context, selection: Sequence[Vector]) -> Snap:
+    """Snapping of a drag. The targets are read when they are first needed, and stay as they are then.
+
+    selection: of `read_selection`.
+    """
     tools = context.scene.tool_settings
-    points = _source_points(context)
     return Snap(
         elements=_elements(tools),
         kinds=_kinds(tools),
         increments=_increments(context, tools),
         source=tools.snap_target,
-        points=points,
-        median=_median(context),
+        points=_source_points(context, selection),
+        median=_median(selection),
         active=selected_active_point(context),
         whole=tools.use_snap_peel_object,
         nearest_steps=max(tools.snap_face_nearest_steps, 1),
@@ -122,10 +125,10 @@ def _grid_steps(units: bpy.types.UnitSettings, grid: float, subdivisions: int) -
     return [length * grid for length in lengths.values()], lengths[base] * grid
 
 
-def _source_points(context: bpy.types.Context) -> Vector:
+def _source_points(context: bpy.types.Context, selection: Sequence[Vector]) -> Vector:
     """Points of the selection that can move onto a target: corners of bounding boxes, or selected points."""
     if context.mode != "OBJECT":
-        return selected_points(context)
+        return np.concatenate([NO_POINTS, *selection])
     graph = context.evaluated_depsgraph_get()
     corners = [corner for obj in moved_objects(context) for corner in _corners(obj, obj.evaluated_get(graph))]
     return np.array(corners, dtype=float).reshape(-1, 3)
@@ -139,14 +142,10 @@ def _corners(obj: bpy.types.Object, evaluated: bpy.types.Object) -> list[Vector]
     return [matrix[:3, :3] @ np.array(corner) + matrix[:3, 3] for corner in evaluated.bound_box]
 
 
-def _median(context: bpy.types.Context) -> Vector | None:
+def _median(selection: Sequence[Vector]) -> Vector | None:
     """The mean of the origins, or in Edit Mode of the medians of the objects; None without a selection."""
-    if context.mode == "OBJECT":
-        points = selected_points(context)
-    else:
-        each = [np.array(selected_elements(obj)) for obj in context.objects_in_mode]
-        points = np.array([points.mean(axis=0) for points in each if len(points)])
-    return np.asarray(points.mean(axis=0)) if len(points) else None
+    medians = [points.mean(axis=0) for points in selection if len(points)]
+    return np.asarray(np.mean(medians, axis=0)) if medians else None
 
 
 def read_proportional(context: bpy.types.Context) -> Proportional:

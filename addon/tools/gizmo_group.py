@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..operators.transform.start_drag import BLENDER_OPERATORS, constrained_axes, may_collide
-from ..scene.frame import read_frame, selected_points
+from ..scene.frame import read_frame, read_selection
 from .handles import HANDLES, Handle, line_range, opacity, placement
 from .shown_kinds import shown_kinds
 
@@ -44,10 +44,11 @@ class STIV_GGT_transform(bpy.types.GizmoGroup):
 
     def refresh(self, context: bpy.types.Context) -> None:
         """Place the handles: the selection, the pivot, the orientation or the tool may have changed."""
-        self.empty = is_transforming(context) or len(selected_points(context)) == 0
+        selection = [] if is_transforming(context) else read_selection(context)
+        self.empty = not any(map(len, selection))
         if self.empty:
             return
-        frame, kinds, collides = read_frame(context), shown_kinds(context), may_collide(context)
+        frame, kinds, collides = read_frame(context, selection), shown_kinds(context), may_collide(context)
         basis = np.eye(4)
         basis[:3, :3], basis[:3, 3] = frame.axes, frame.pivot
         self.basis = Matrix(basis.tolist())

@@ -6,6 +6,7 @@ cage vertex or a lattice point. A rigid body has two rows: its center and its ro
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,13 @@ def identity(vertex_count: int) -> Deformation:
 
     Raises InputError if `vertex_count` is negative.
     """
-    return _native.identity(as_count(vertex_count, "vertex_count"))
+    return _identity(as_count(vertex_count, "vertex_count"))
+
+
+@lru_cache(maxsize=8)
+def _identity(count: int) -> Deformation:
+    """One object for equal counts: the next edit recognises a session by its deformations."""
+    return _native.identity(count)
 
 
 def linear(matrix: Any, offset: ArrayLike | None = None) -> Deformation:

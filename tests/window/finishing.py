@@ -129,5 +129,28 @@ def esc_during_the_start(window: Window) -> Steps:
     assert state() == before
 
 
-_ALL = (click_after_the_last_move, esc_during_a_typed_value, esc_during_the_start)
+def a_second_drag_keeps_the_session(window: Window) -> Steps:
+    """The session of a confirmed drag of vertices serves the next one; after an undo too, and the wall still stops."""
+    yield from prepared(window, lambda: add_fine_ball(16), "Ball")
+    with window.override():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.ed.undo_push(message="edit mode")
+    sessions = []
+    for goal in ((0.3, 0.4, 0.0), (0.2, -0.4, 0.0), (WALL_FACE - HALF + 0.1, 0.0, 0.0)):
+        yield from start(window)
+        yield from window.until(lambda: progress_of_drag() == "RUNNING", "the start of the drag", 60.0)
+        sessions.append(drag_of_window().edit._solver.session)
+        window.move(*window.pixel(goal))
+        yield from click(window)
+        if len(sessions) == 2:
+            yield from window.undo()
+    assert sessions[0] is sessions[1] is sessions[2]
+    with window.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+    assert max(vertex.co.x for vertex in ball().data.vertices) < WALL_FACE
+    expect_free(window)
+
+
+_ALL = (click_after_the_last_move, esc_during_a_typed_value, esc_during_the_start, a_second_drag_keeps_the_session)
 FINISHING = {scenario.__name__: scenario for scenario in _ALL}

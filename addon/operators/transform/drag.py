@@ -20,7 +20,7 @@ from ...modal.request import Request
 from ...modal.state import Effect, State
 from ...native_module import Mixin
 from ...overlay import display
-from ...scene.frame import frame_in_new_view, orientation_names, read_frame
+from ...scene.frame import frame_in_new_view, orientation_names, read_frame, read_selection
 from ...scene.tool_settings import (
     read_proportional,
     read_snap,
@@ -90,10 +90,11 @@ class DragOperator(Mixin):
 
     def _start(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         scene = context.scene
-        self._frame = read_frame(context)
+        selection = read_selection(context)
+        self._frame = read_frame(context, selection)
         self._orientations = orientation_names(context)
         self._notes = unsupported_settings(context)
-        self._snap = read_snap(context)
+        self._snap = read_snap(context, selection)
         self._readers = readers(scene)
         self._length = functools.partial(length_text, units=scene.unit_settings)
         held = window_io.press_position(event, context.region) if self.release else None
@@ -231,6 +232,7 @@ class DragOperator(Mixin):
             insert_keyframes(context, edit)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
             values["outcome"] = drag_results.store(dragged)
+            edit.finish()
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             report_outcome(self, translate("stopped") if drag.stopped else outcome_text(result), write_failure(report))
         store_proportional(context, drag.state.proportional)

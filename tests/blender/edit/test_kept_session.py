@@ -10,6 +10,8 @@ from building import add_cube, add_modifier, cube_above_floor, edit_mode, shift
 
 from stiv.blender import BlenderEdit, EditSettings
 from stiv.blender.edit import kept_session
+from stiv.blender.edit.culled_edit import begin_culled_steps
+from stiv.task import run
 
 
 def pressed(depth: float) -> BlenderEdit:
@@ -43,6 +45,20 @@ def test_consecutive_edits_share_a_session_and_end_as_with_one_each() -> None:
     assert shared
     assert not fresh
     assert together == pytest.approx(apart, abs=1e-4)
+
+
+def test_consecutive_drags_share_a_session() -> None:
+    cage()
+    sessions = []
+    for depth in (0.3, 1.0, 0.2):
+        edit = run(begin_culled_steps(bpy.context, EditSettings(time_budget=0.5), kind="move"))
+        sessions.append(edit._solver.session)
+        for part in (0.5, 1.0):
+            edit.drag(shift(z=-part * depth), time_budget=0.5)
+        edit.settle()
+        assert edit.write().passed
+        edit.finish()
+    assert sessions[0] is sessions[1] is sessions[2]
 
 
 @pytest.mark.parametrize(

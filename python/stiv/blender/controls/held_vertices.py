@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils.kdtree import KDTree
 
-from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, to_local
+from stiv.blender.scene.arrays import Flags, Floats, Indices, apply_linear, as_matrix, to_local
 
 ON_PLANE = 1e-6  # distance of a vertex from its image, in sizes of the mesh, without merging
 
@@ -60,8 +60,8 @@ class HeldVertices:
         if not self.planes and self.leaders is None:
             return positions
         linear = frame[:3, :3]
-        motion = (positions - start) @ np.linalg.inv(linear).T
-        held = start + self._limited(motion) @ linear.T
+        motion = apply_linear(np.linalg.inv(linear), positions - start)
+        held = start + apply_linear(linear, self._limited(motion))
         return np.asarray(np.where(self._restricted[:, None], held, positions), np.float64)
 
     def _limited(self, motion: Floats) -> Floats:

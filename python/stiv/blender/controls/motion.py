@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiv import InputError
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.rotations import fixed_point, is_rotation, rotation_between, rotation_vector
-from stiv.blender.scene.arrays import Floats, transform_points
+from stiv.blender.scene.arrays import Floats, apply_linear, transform_points
 
 ROUNDING = 1e-9  # relative error of the matrix of a motion
 AXIS_DECIMALS = 9  # of an axis that is computed from a matrix, so that rounding does not change it
@@ -69,7 +69,7 @@ class Alignment:
 
     def turned(self, points: Floats, turn: Floats) -> Floats:
         """Points, (k, 3), rotated about the source."""
-        return np.asarray(self.source + (points - self.source) @ turn.T, np.float64)
+        return np.asarray(self.source + apply_linear(turn, points - self.source), np.float64)
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class Motion:
 
     def about(self, points: Floats, origins: Floats) -> Floats:
         """Transform points, (k, 3), each about its own origin, (k, 3) or (3,)."""
-        moved: Floats = origins + (points - origins) @ self.linear.T + self.shift
+        moved: Floats = origins + apply_linear(self.linear, points - origins) + self.shift
         return self.placed(points, moved)
 
     def shared(self, points: Floats, shares: NDArray[Any]) -> Floats:
@@ -161,7 +161,7 @@ class Motion:
             vector = rotation_vector(self.linear) if self.rotation is None else self.rotation
             moved = _turned(arms, vector, shares)
         else:
-            moved = arms + shares[:, None] * (arms @ self.linear.T - arms)
+            moved = arms + shares[:, None] * (apply_linear(self.linear, arms) - arms)
         return self.placed(points, self.pivot + moved + shares[:, None] * self.shift)
 
 

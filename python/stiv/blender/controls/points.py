@@ -11,7 +11,7 @@ from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.controls.response import Response
 from stiv.blender.controls.selection_distances import distances_along, island_centres, nearest_distances
-from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, apply_linear, transform_points
 
 ROUNDING = 1e-11  # relative error of the conversions between local and world space during an edit
 
@@ -144,7 +144,7 @@ def to_stored(frame: Floats, world: Floats, original: Singles) -> Singles:
     """
     inverse = np.linalg.inv(frame).astype(np.float64)
     exact = transform_points(inverse, world)
-    sizes = (np.abs(world) + np.abs(frame[:3, 3])) @ np.abs(inverse[:3, :3]).T
+    sizes = apply_linear(np.abs(inverse[:3, :3]), np.abs(world) + np.abs(frame[:3, 3]))
     resting = np.abs(exact - original) <= ROUNDING * sizes
     return np.asarray(np.where(resting, original, exact), np.float32)
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.scene.arrays import Indices
+from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -120,15 +120,23 @@ def _bent_quads(assembly: Assembly, number: int) -> FaceTriangles | None:
     first = np.flatnonzero(mesh.faces[:-1] == mesh.faces[1:])
     counts = np.bincount(mesh.faces) if len(mesh.faces) else np.empty(0, int)
     first = first[counts[mesh.faces[first]] == 2]
-    a, b, c = (q[mesh.triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    length = np.linalg.norm(normals, axis=1)
-    dots = (normals[first] * normals[first + 1]).sum(axis=1)
-    first = first[dots < BENT * length[first] * length[first + 1]]
+    one, two = _normals(q, mesh.triangles[first]), _normals(q, mesh.triangles[first + 1])
+    first = first[_dots(one, two) < BENT * np.sqrt(_dots(one, one) * _dots(two, two))]
     if len(first) == 0:
         return None
     other = np.concatenate([_other_cut(mesh.triangles[row], mesh.triangles[row + 1]) for row in first])
     return FaceTriangles(number, other, np.repeat(mesh.faces[first], 2))
+
+
+def _normals(q: Floats, triangles: Indices) -> Floats:
+    """Normals of triangles, (k, 3), twice as long as their areas."""
+    a, b, c = (q.take(triangles[:, k], axis=0) for k in range(3))
+    return np.asarray(np.cross(b - a, c - a))
+
+
+def _dots(a: Floats, b: Floats) -> Floats:
+    """Dot products of rows."""
+    return np.asarray(np.einsum("ij,ij->i", a, b))
 
 
 def _other_cut(one: Indices, two: Indices) -> Indices:
