@@ -25,6 +25,23 @@ def needed_libraries(module: str | Path) -> set[str]:
     return {line.split("[")[1].rstrip("]") for line in lines_of("readelf", "-d", module) if "(NEEDED)" in line}
 
 
+# Functions of the C library whose results differ between systems
+INEXACT = re.compile(
+    r"_?_?(a?(sin|cos|tan)h?|sincos|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|hypot|cbrt|fma)[fl]?"
+)
+
+
+def inexact_functions(names: set[str]) -> set[str]:
+    """Those of imported names whose results differ between systems."""
+    return {name for name in names if INEXACT.fullmatch(name)}
+
+
+def imported_names(module: str | Path) -> set[str]:
+    """Symbols that a Linux module needs from other libraries."""
+    rows = [line.split() for line in lines_of("readelf", "--dyn-syms", "--wide", module)]
+    return {row[7].split("@")[0] for row in rows if len(row) > 7 and row[6] == "UND"}
+
+
 def newest_glibc(module: str | Path) -> tuple[int, ...]:
     """The version of the C library that the module needs."""
     found = re.findall(r"GLIBC_(\d+)\.(\d+)", "\n".join(lines_of("readelf", "-V", module)))
@@ -48,6 +65,8 @@ class MacModule:
     libraries: set[str]
     oldest: tuple[int, ...]  # the version of macOS
     signed: bool
+    imported: set[str]
+    merged: set[str]  # names that the loader may take from another library, such as Blender's
 
 
 def mac_module(module: Path) -> MacModule:
@@ -63,7 +82,16 @@ def mac_module(module: Path) -> MacModule:
         {library.name for library in parsed.libraries if library.command == lief.MachO.LoadCommand.TYPE.LOAD_DYLIB},
         tuple(parsed.build_version.minos),
         parsed.has_code_signature,
+        {str(symbol.name) for symbol in parsed.imported_symbols},
+        {str(bound.symbol.name) for bound in parsed.bindings if bound.weak_import},
     )
+
+
+def fused_operations(module: Path) -> int:
+    """Multiplications with an addition in one rounding, in a module for arm64."""
+    code = "\n".join(lines_of("llvm-objdump", "--disassemble", "--no-show-raw-insn", module))
+    assert len(re.findall(r"\tfmul\b", code)) > 1000  # it is disassembled
+    return len(re.findall(r"\t(?:fn?m(?:add|sub)|fml[as])\b", code))
 
 
 def oldest_tags(wheel: Path) -> set[str]:

@@ -12,6 +12,9 @@ from pathlib import Path
 import pytest
 from modules import (
     exported_names,
+    fused_operations,
+    imported_names,
+    inexact_functions,
     libraries_by_delocate,
     mac_module,
     needed_libraries,
@@ -72,6 +75,7 @@ def test_modules_need_only_an_old_c_library(all_wheels: list[Path], tmp_path: Pa
         assert exported_names(module) == {"PyInit__native"}
         assert needed_libraries(module) <= C_LIBRARY | LOADERS
         assert newest_glibc(module) <= OLDEST
+        assert not inexact_functions(imported_names(module))
 
 
 def test_windows_modules_export_only_their_entry_and_need_windows_10(all_wheels: list[Path], tmp_path: Path) -> None:
@@ -91,6 +95,23 @@ def test_macos_modules_export_only_their_entry_and_need_macos_11(all_wheels: lis
         assert module.libraries == {"/usr/lib/libSystem.B.dylib"}
         assert module.oldest[:2] == (11, 0)
         assert module.signed or module.processor == "X86_64"  # arm64 loads only signed modules
+        assert "_nextafter" in module.imported and not inexact_functions(module.imported)
+        assert not [name for name in module.merged if name.startswith(("__Zn", "__Zd"))]  # operators new and delete
+
+
+def test_modules_for_arm64_round_every_product(all_wheels: list[Path], tmp_path: Path) -> None:
+    for wheel in [wheel for wheel in all_wheels if wheel.stem.endswith(("arm64", "aarch64"))]:
+        assert fused_operations(module_of(wheel, tmp_path)) == 0
+
+
+def test_paths_of_files_are_short_enough_for_windows(all_wheels: list[Path]) -> None:
+    below = r"C:\Users\twenty letters no more\AppData\Roaming\Blender Foundation\Blender\4.5\extensions"
+    packages = r"\.local\lib\python3.11\site-packages"
+    compiled = r"\__pycache__\.cpython-311.pyc.1234567890123"  # Python's temporary names are the longest
+    for wheel in all_wheels:
+        with zipfile.ZipFile(wheel) as archive:
+            longest = max(map(len, archive.namelist()))
+        assert len(below + packages + compiled) + 1 + longest < 260
 
 
 def test_auditwheel_and_delocate_find_the_systems_that_the_tags_name(all_wheels: list[Path], tmp_path: Path) -> None:
@@ -192,6 +213,11 @@ def test_a_module_replaces_the_one_in_a_wheel(tmp_path: Path) -> None:
     first = hashlib.sha256(made.read_bytes()).digest()
     portable_wheels.main(made_wheel(tmp_path), tmp_path / "out", "manylinux_2_17_x86_64", [module])
     assert hashlib.sha256(made.read_bytes()).digest() == first
+
+
+@pytest.mark.parametrize("name", ["cpython-313-aarch64-linux-gnu.so", "cpython-313-darwin.so", "cp313-win_amd64.pyd"])
+def test_the_version_of_a_module_is_in_its_name_on_every_platform(name: str) -> None:
+    assert portable_wheels.python_tag(Path(f"_native.{name}")) == "cp313"
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:
