@@ -130,7 +130,7 @@ def esc_during_the_start(window: Window) -> Steps:
 
 
 def a_second_drag_keeps_the_session(window: Window) -> Steps:
-    """The session of a confirmed drag of vertices serves the next one; after an undo too, and the wall still stops."""
+    """The session of a confirmed drag of vertices is used by the next one, after an undo too; the wall still stops."""
     yield from prepared(window, lambda: add_fine_ball(16), "Ball")
     with window.override():
         bpy.ops.object.mode_set(mode="EDIT")

@@ -60,7 +60,7 @@ class HeldVertices:
         if not self.planes and self.leaders is None:
             return positions
         linear = frame[:3, :3]
-        motion = apply_linear(np.linalg.inv(linear), positions - start)
+        motion = apply_linear(np.linalg.inv(linear).astype(np.float64), positions - start)
         held = start + apply_linear(linear, self._limited(motion))
         return np.asarray(np.where(self._restricted[:, None], held, positions), np.float64)
 
