@@ -140,10 +140,12 @@ class DragLoop:
         self._is_poor = False
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
-        self._budget = BUDGET
         self._writes_since: float | None = None  # until the next call, so that drawing counts
         self._run(calls.begin(state.request), self._take_first_edit)
-        if not self._advance_task(0.0):  # which reads the scene, up to the first job
+        began = time.perf_counter()
+        starts_job = not self._advance_task(0.0)  # reads the scene, which takes about as long as writing and drawing it
+        self._limit_budget(time.perf_counter() - began)
+        if starts_job:
             self._advance_task(START_WAIT)
 
     @property
@@ -188,7 +190,7 @@ class DragLoop:
 
     def _guarded(self, action: Callable[[], None]) -> Progress:
         if self._writes_since is not None:
-            self._budget = min(max(BUDGET, time.perf_counter() - self._writes_since), MAX_BUDGET)
+            self._limit_budget(time.perf_counter() - self._writes_since)
             self._writes_since = None
         if not self.progress.ended:
             try:
@@ -196,6 +198,10 @@ class DragLoop:
             except Exception as error:  # a modal operator must end, whatever went wrong
                 self._fail(error)
         return self.progress
+
+    def _limit_budget(self, shown_in: float) -> None:
+        """Let the next solve take as long as a state takes to be shown, in seconds."""
+        self._budget = min(max(BUDGET, shown_in), MAX_BUDGET)
 
     def _carry_out(self, event: Event) -> Effect:
         self.state, effect = step(self.state, event)

@@ -25,7 +25,7 @@ class FakeEdit:
     """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
     `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
-    from the name of a call to the turns that it takes. `writing`: seconds of each write. `budgets`: of all solves.
+    from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write. `budgets`: of all solves.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -37,6 +37,7 @@ class FakeEdit:
     shown: float = 0.0
     goals: list[float] = field(default_factory=list)
     budgets: list[float] = field(default_factory=list)
+    reading: float = 0.0
     writing: float = 0.0
     requests: list[Any] = field(default_factory=list)
     interference: bool = True
@@ -56,6 +57,7 @@ class FakeEdit:
 
     def begin_steps(self, request: Any) -> "Steps[FakeEdit]":
         """Replaces the beginning of an edit, of the first and of each that is requested later ("again")."""
+        time.sleep(self.reading)
         yield from self._delayed("begin")
         for name in ("begin", "again") if self.requests else ():
             if name in self.failing:
