@@ -418,7 +418,8 @@ def random_stack(random: np.random.Generator) -> Any:
     """A piece with two to four random modifiers; every third one is mirrored, first of all."""
     is_mirrored = random.integers(3) == 0
     ob = mirrored() if is_mirrored else add_sheet()
-    for place in random.choice(len(MODIFIERS), random.integers(1 if is_mirrored else 2, 4), replace=False):
+    fewest, most = (1, 3) if is_mirrored else (2, 4)
+    for place in random.choice(len(MODIFIERS), random.integers(fewest, most + 1), replace=False):
         MODIFIERS[place](ob, random)
     return ob
 

@@ -24,14 +24,15 @@ class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add a row for each intersecting pair of a selected object and another one."""
+        """Add a row for each intersecting pair of a selected object and another one; if there is none, with itself."""
         try:
             found = stiv_blender.check_scene(context, edit_settings(context.scene)).pairs
         except ValueError as error:
             return report_error(self, error)
         selected = {obj.name for obj in context.selected_objects}
         names = {tuple(sorted((pair.first.object, pair.second.object))) for pair in found}
-        pairs = sorted(pair for pair in names if len(set(pair)) == 2 and selected.intersection(pair))
+        chosen = sorted(pair for pair in names if selected.intersection(pair))
+        pairs = [pair for pair in chosen if pair[0] != pair[1]] or chosen
         if not pairs:
             self.report({"INFO"}, translate("The selection intersects no other object"))
             return {"CANCELLED"}
