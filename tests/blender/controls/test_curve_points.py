@@ -189,7 +189,7 @@ def test_a_modifier_that_uses_another_object_that_moves_is_refused_by_name() -> 
     curve, cube = add_nurbs("curve"), add_cube("Cube", (9, 0, 0))
     add_modifier(curve, "SIMPLE_DEFORM", angle=0.3, origin=cube)
     select(curve, cube)
-    with pytest.raises(stiv.InputError, match=f'{curve.name}: modifier "Simple_Deform" uses "Cube"; deselect one'):
+    with pytest.raises(stiv.InputError, match=f'{curve.name}: Simple Deform "Simple_Deform" uses "Cube"; deselect one'):
         begin()
 
 

@@ -176,9 +176,9 @@ def test_lattice_moved_away_from_its_mesh() -> None:
     add_modifier(cube, "LATTICE", "Bend", object=lattice)
     select(cube)
     accepted()
-    refused('Cube: modifier "Bend" depends on "Lattice"; select both', kind="rotate")
+    refused('Cube: Lattice "Bend" depends on "Lattice"; select both', kind="rotate")
     select(lattice)
-    refused('Cube: modifier "Bend" depends on "Lattice"')
+    refused('Cube: Lattice "Bend" depends on "Lattice"')
     select(cube, lattice)
     accepted()
     refused('Cube: moves, and so does its lattice "Lattice"; deselect one', DEFORM)
@@ -188,8 +188,8 @@ def test_objects_that_modifiers_refer_to() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     add_modifier(other, "BOOLEAN", "Cut", object=cube)
     select(cube)
-    refused('Other: modifier "Cut" depends on "Cube"')
-    refused('Other: modifier "Cut" depends on "Cube"', DEFORM)
+    refused('Other: Boolean "Cut" depends on "Cube"')
+    refused('Other: Boolean "Cut" depends on "Cube"', DEFORM)
     other.modifiers[0].show_viewport = other.modifiers[0].show_render = False
     accepted()
 
@@ -201,7 +201,7 @@ def test_objects_inside_geometry_nodes() -> None:
     node.inputs["Object"].default_value = cube
     add_modifier(other, "NODES", "Look").node_group = tree
     select(cube)
-    refused('Other: modifier "Look" depends on "Cube"')
+    refused('Other: Geometry Nodes "Look" depends on "Cube"')
 
 
 def test_inputs_of_geometry_nodes() -> None:
@@ -212,7 +212,7 @@ def test_inputs_of_geometry_nodes() -> None:
     modifier.node_group = tree
     give(modifier, socket.identifier, cube)
     select(cube)
-    refused('Other: modifier "Look" depends on "Cube"')
+    refused('Other: Geometry Nodes "Look" depends on "Cube"')
 
 
 def give(modifier: Any, socket: str, value: Any) -> None:

@@ -249,7 +249,7 @@ def test_a_modifier_that_uses_another_moving_object_is_refused() -> None:
     other.name = "Other"
     ob.modifiers[0].mirror_object = other
     select(ob, other)
-    with pytest.raises(stiv.InputError, match='Piece: modifier "Mirror" uses "Other"; deselect one'):
+    with pytest.raises(stiv.InputError, match='Piece: Mirror "Mirror" uses "Other"; deselect one'):
         begin()
 
 

@@ -261,7 +261,7 @@ def test_an_evaluation_that_differs_is_named(monkeypatch: pytest.MonkeyPatch) ->
     wrong = lambda data, stage: stiv.linear(stiv.linear_weights(subdivision.subdivide(data, stage))[0], shift_by(26))  # noqa: E731
     monkeypatch.setattr(cage_surface, "subdivide", wrong)
     select(ob)
-    refused("Cube: STIV and Blender disagree .*; apply its modifiers")
+    refused("Cube: its modifiers cannot be followed .*; apply them")
 
 
 def shift_by(count: int) -> np.ndarray:
@@ -280,7 +280,7 @@ def test_messages_fit_the_status_bar() -> None:
     of_reason = {reason: [kinds["LATTICE"]] for reason in lattice_reasons}
     of_reason |= {"before subdivision": [kinds["TRIANGULATE"]], "second subdivision": [kinds["SUBSURF"]]}
     of_reason |= {"projects": [kinds["SHRINKWRAP"]], "simulated": [kinds[kind] for kind in SIMULATIONS]}
-    of_reason["flips quads"] = [kinds["TRIANGULATE"]]
+    of_reason |= {"flips quads": [kinds["TRIANGULATE"]], "shows instances": [kinds["NODES"]]}
     of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
     messages = [
         f'{NAME}: {kind} "{NAME}" {text.format(other=NAME)}'

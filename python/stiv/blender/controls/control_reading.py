@@ -34,7 +34,7 @@ from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.dependencies import dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh, evaluation_tolerance
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
-from stiv.blender.scene.modifier_stack import modifier_error
+from stiv.blender.scene.modifier_stack import UnsupportedStackError, modifier_error
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
@@ -195,7 +195,9 @@ def _check_children(deformed: set[str], in_groups: set[str], meshes: Sequence[Vi
     shown = Counter((mesh.owner.name, mesh.read_from) for mesh in meshes)
     for (name, _), count in shown.items():
         if name in deformed and count > 1:
-            raise InputError(f"{name}: its nodes show instances; add Realize Instances to them")
+            ob = bpy.data.objects[name]
+            nodes = [each.name for each in ob.modifiers if each.type == "NODES"]
+            raise modifier_error(ob, nodes[0], "shows instances")
 
 
 def _check_surface(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> None:
@@ -236,4 +238,5 @@ def _refuse_difference(control_set: ControlSet, mesh: VisibleMesh | None, how: s
     for modifier in ob.modifiers:
         if modifier.type in SIMULATIONS and is_active(modifier, ob, VIEWPORT):
             raise modifier_error(ob, modifier.name, "simulated")
-    raise InputError(f"{name}: STIV and Blender disagree ({how}); apply its modifiers")
+    last = next((each.name for each in reversed(ob.modifiers) if is_active(each, ob, VIEWPORT)), "")
+    raise UnsupportedStackError(f"{name}: its modifiers cannot be followed ({how}); apply them", name, last)

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import bpy
 
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
+from stiv.blender.scene.references import modifier_title
 
 T = TypeVar("T", str, int)  # objects by name or session number
 
@@ -27,7 +28,7 @@ def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,
     """Other objects that active modifiers and constraints of an object refer to."""
     for modifier in ob.modifiers:
         if any(is_active(modifier, ob, evaluation) for evaluation in evaluations):
-            yield from _named(ob, f'modifier "{modifier.name}"', referenced_objects(modifier))
+            yield from _named(ob, modifier_title(modifier), referenced_objects(modifier))
     for constraint in ob.constraints:
         if not constraint.mute:
             yield from _named(ob, f'constraint "{constraint.name}"', referenced_objects(constraint))

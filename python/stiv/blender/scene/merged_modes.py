@@ -53,7 +53,7 @@ def read_apart(assembly: Assembly, placed: Placed, opened: OpenEvaluations) -> I
     for number in numbers:
         mesh, each = meshes[number], found.get(meshes[number].owner)
         if each is None or len(each.local) != mesh.size:
-            raise SceneChangedError(f"{mesh.owner.name}: Object Mode shows it otherwise than Edit Mode; begin again")
+            raise SceneChangedError("objects were shown, hidden or changed during the edit; begin again")
         meshes[number] = replace(mesh, read_from=VIEWPORT)
         other[number] = each if mesh.cropped is None else each.limited_to(mesh.cropped.vertices)
     if any(not _agree(placed[number], other[number]) for number in numbers):

@@ -12,7 +12,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.scene.evaluations import SHOWN, VIEWPORT, is_active, subdivision_levels
 from stiv.blender.scene.position_test import keep_positions
-from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.references import ObjectReference, modifier_title
 
 # Modifiers that change neither the positions nor the number and order of vertices. Others are found by trial.
 POSITION_PRESERVING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
@@ -30,6 +30,7 @@ MODIFIER_REASONS = {
     "projects": 'projects onto "{other}"; edit that',
     "same lattice": 'uses "{other}" again; apply it',
     "second subdivision": "is the second; apply the first",
+    "shows instances": "shows instances; realize them",
     "simulated": "simulates it; go to its start frame",
     "unsupported": "is not supported; apply it",
 }
@@ -132,10 +133,8 @@ class UnsupportedStackError(InputError):
 
 def modifier_error(ob: bpy.types.Object, modifier: str, reason: str, other: str = "") -> InputError:
     """The error for a modifier by its name; reason: a key of MODIFIER_REASONS, other: the object that it mentions."""
-    found = ob.modifiers[modifier]
-    kind = found.bl_rna.properties["type"].enum_items[found.type].name
     text = MODIFIER_REASONS[reason].format(other=other)
-    return UnsupportedStackError(f'{ob.name}: {kind} "{modifier}" {text}', ob.name, modifier)
+    return UnsupportedStackError(f"{ob.name}: {modifier_title(ob.modifiers[modifier])} {text}", ob.name, modifier)
 
 
 def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:
@@ -154,14 +153,9 @@ def _refusal(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str
 
 def _refuse_unseen(ob: bpy.types.Object, modifier: bpy.types.Modifier, evaluation: str) -> InputError:
     """The error for a modifier that is not shown now; short enough for the status bar."""
-    names = ob.name, modifier.name
-    if evaluation == VIEWPORT:
-        return UnsupportedStackError(
-            f'{ob.name}: Object Mode shows "{modifier.name}"; apply it or use Object Mode', *names
-        )
-    return UnsupportedStackError(
-        f'{ob.name}: the render shows "{modifier.name}"; apply it or set Guard to Viewport', *names
-    )
+    where = "Object Mode" if evaluation == VIEWPORT else "the render"
+    title = modifier_title(modifier)
+    return UnsupportedStackError(f"{ob.name}: {where} shows {title}; apply it", ob.name, modifier.name)
 
 
 def _subdivision(

@@ -16,6 +16,11 @@ def type_name(ob: bpy.types.Object) -> str:
     return name.lower()
 
 
+def modifier_title(modifier: bpy.types.Modifier) -> str:
+    """The modifier's type as Blender's menu names it, and its own name."""
+    return f'{modifier.bl_rna.properties["type"].enum_items[modifier.type].name} "{modifier.name}"'
+
+
 @dataclass(frozen=True)
 class ObjectReference:
     """An object by name and session number, which renaming and undo preserve."""
