@@ -79,6 +79,8 @@ def _text(guarded: stiv_blender.GuardedResult) -> str:
         texts.append(translate("corrected {}, blocked by {}").format(names, blocking))
     elif names:
         texts.append(translate("corrected {}").format(names))
+    if guarded.cut:
+        texts.append(translate("blocked: the topology changes here"))
     if guarded.placed:
         text = translate("put {} at the nearest free place")
         texts.append(text.format(listed(guarded.placed, translate)))

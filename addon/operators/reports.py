@@ -26,7 +26,7 @@ def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
 
 def outcome_text(result: stiv_blender.EditResult) -> str:
     """The status of a result, with the names of blocking objects."""
-    if result.status == "blocked" and not result.blocking and result.counters.get("infeasible"):
+    if stiv_blender.is_cut_by_topology(result):
         return translate("blocked: the topology changes here")
     return result_text(result.status, tuple(result.blocking), translate)
 

@@ -11,6 +11,7 @@ from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
+from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import ObjectsIntersectError
 from stiv.blender.edit.state_writer import WriteReport
 from stiv.blender.guard.accepted_scene import AcceptedScene
@@ -135,6 +136,7 @@ __all__ = [
     "guard_result_steps",
     "has_movable_bones",
     "intersection_text",
+    "is_cut_by_topology",
     "kept_twins",
     "may_have_surface",
     "morph",

@@ -104,6 +104,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     plain |= {"unguarded_text": lambda context, evaluations, carried: ""}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
+    stand_in.is_cut_by_topology = lambda result: False
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")

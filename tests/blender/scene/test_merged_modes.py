@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Edit Mode and Object Mode show alike is solved for once, and both are tested after each write."""
+"""Meshes that Edit Mode and Object Mode show alike are solved for once, and both are tested after each write."""
 
 from dataclasses import replace
 from typing import Any

@@ -30,6 +30,11 @@ def merge_results(results: Sequence[stiv.EditResult]) -> stiv.EditResult:
     )
 
 
+def is_cut_by_topology(result: stiv.EditResult) -> bool:
+    """Did the edit stop because the topology would change, without a contact?"""
+    return result.status == "blocked" and not result.blocking and result.counters.get("infeasible", 0) > 0
+
+
 STATUS = "unguarded"
 
 

@@ -16,6 +16,7 @@ from stiv.blender.controls.participants import EDITABLE_TYPES, make_participant,
 from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
@@ -40,6 +41,7 @@ class ToolCorrection:
         corrected: does the scene differ from the tool's result?
         names: objects that the tool changed.
         blocking: objects in contact.
+        cut: did it stop where the topology changes?
         message: why the correction is incomplete; "" if it is complete.
         deformers: changed objects without a surface that may deform others. They are not corrected, so the scene has to
             be tested.
@@ -50,6 +52,7 @@ class ToolCorrection:
     blocking: tuple[str, ...] = ()
     message: str = ""
     deformers: tuple[str, ...] = ()
+    cut: bool = False
 
 
 def correct_after_tool(
@@ -92,7 +95,8 @@ def correct_after_tool_steps(
         raise
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
     message = next((outcome.message for outcome in outcomes if outcome.message), "")
-    return ToolCorrection(True, names, tuple(blocking), message, deformers)
+    cut = any(outcome.cut for outcome in outcomes)
+    return ToolCorrection(True, names, tuple(blocking), message, deformers, cut)
 
 
 @dataclass(frozen=True)
@@ -104,12 +108,14 @@ class Outcome:
         reached: does the scene show its goal?
         blocking: objects in contact.
         message: why the result could not be written, or notes; may be "".
+        cut: did it stop where the topology changes?
     """
 
     edit: BlenderEdit
     reached: bool
     blocking: tuple[str, ...]
     message: str
+    cut: bool
 
 
 def _participates(change: Change, settings: EditSettings) -> bool:
@@ -248,7 +254,8 @@ def move_to_goal(
     report = edit.write()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
-    return Outcome(edit, reached and report.passed and report.result is None, blocking, message)
+    cut = any(map(is_cut_by_topology, results[-1:]))
+    return Outcome(edit, reached and report.passed and report.result is None, blocking, message, cut)
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:

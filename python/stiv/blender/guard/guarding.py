@@ -44,6 +44,7 @@ class GuardedResult:
         wrote: does the scene differ from the tool's result?
         corrected, placed: names of the objects that an edit corrected, and of new ones put at the nearest free place.
         blocking: names of the objects in contact.
+        cut: did a correction stop where the topology changes?
         pairs: the intersections that are left, without excluded pairs.
         reason: why a change was not corrected; "" otherwise.
         deformers: see `ToolCorrection`.
@@ -53,6 +54,7 @@ class GuardedResult:
     corrected: list[str] = field(default_factory=list)
     placed: list[str] = field(default_factory=list)
     blocking: list[str] = field(default_factory=list)
+    cut: bool = False
     pairs: tuple[FacePair, ...] = ()
     reason: str = ""
     deformers: tuple[str, ...] = ()
@@ -60,7 +62,7 @@ class GuardedResult:
     def add(self, outcome: ToolCorrection | None) -> None:
         """Add a correction."""
         if outcome is not None and outcome.corrected:
-            self.wrote = True
+            self.wrote, self.cut = True, self.cut or outcome.cut
             self.corrected += [name for name in outcome.names if name not in self.corrected]
             self.blocking += [name for name in outcome.blocking if name not in self.blocking]
 

@@ -21,9 +21,9 @@ COMPARED = ("local", "matrix", "triangles", "loose_edges")
 
 
 def merge_modes(meshes: Sequence[VisibleMesh], scene: bpy.types.Scene) -> tuple[VisibleMesh, ...]:
-    """Merge what Object Mode shows into what is shown now, where the modifiers and all values are equal.
+    """Merge each mesh of Object Mode into that of the present mode, if modifiers and all values are equal.
 
-    Modifiers too: one that Edit Mode hides may begin to act when the mesh moves.
+    Equal values alone are not enough: a modifier that Edit Mode hides may begin to act when the mesh moves.
     """
     counts = Counter((mesh.owner, mesh.read_from) for mesh in meshes)
     apart = {mesh.owner: mesh for mesh in meshes if mesh.read_from == VIEWPORT}
@@ -42,7 +42,7 @@ def merge_modes(meshes: Sequence[VisibleMesh], scene: bpy.types.Scene) -> tuple[
 
 def read_apart(assembly: Assembly, placed: Placed, opened: OpenEvaluations) -> Iterator[tuple[Assembly, Placed]]:
     """The assembly and positions as another evaluation shows its merged meshes, unless they still agree to the last
-    bit with the positions `placed`. Raises SceneChangedError if such a mesh is gone or has another size.
+    bit with the positions `placed`. Raises SceneChangedError if one of them is gone or has another size.
     """
     numbers = [number for number, mesh in enumerate(assembly.meshes) if VIEWPORT in mesh.also_in]
     if not numbers or VIEWPORT not in opened.read_from:
