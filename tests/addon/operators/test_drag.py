@@ -97,9 +97,9 @@ def edit() -> FakeEdit:
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> Iterator[tuple[Probe, Context]]:
-    monkeypatch.setitem(
-        sys.modules, "stiv.blender", SimpleNamespace(SceneChangedError=KeyError, Task=Task, kept_twins=nullcontext)
-    )
+    stand_in = SimpleNamespace(SceneChangedError=KeyError, Task=Task, kept_twins=nullcontext)
+    stand_in.is_cut_by_topology = lambda result: False
+    monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(
         drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)
     )
