@@ -12,7 +12,7 @@ import pytest
 from building import add, add_cube, add_grid, evaluated, mesh
 
 import stiv
-from stiv.blender import EditSettings, check_scene, morph
+from stiv.blender import EditSettings, Handles, MorphEdit, check_scene, morph
 
 SETTINGS = EditSettings(separation=0.01)
 
@@ -233,3 +233,59 @@ def test_an_object_that_intersects_itself_can_still_be_morphed() -> None:
     morph(bpy.context, {"Ball": {"Wide": 1.0}}, SETTINGS)
     assert widest(ball) == pytest.approx(1.99, abs=0.02)
     assert morph(bpy.context, {"Crossed": {"Up": 1.0}}, SETTINGS).status == "reached"
+
+
+def add_shirt(radius: float = 1.2) -> Any:
+    """A tube around the ball."""
+    bpy.ops.mesh.primitive_cylinder_add(radius=radius, depth=1.4, vertices=24, end_fill_type="NOTHING")
+    shirt = bpy.context.object
+    shirt.name = "Shirt"
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.subdivide(number_cuts=4)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return shirt
+
+
+@pytest.mark.parametrize("kind", ["vertices", "arap", "lattice"])
+def test_clothes_yield_to_a_body_that_changes(kind: str) -> None:
+    """With Yields: Others, the slider reaches its goal, and the shirt is wider by then."""
+    ball = ball_and_wall(5.0)
+    wide = add_key(ball, "Wide", scaled(1.6, 1.2))
+    shirt = add_shirt()
+    if kind == "arap":
+        shirt.vertex_groups.new(name="Grip").add(list(range(0, len(shirt.data.vertices), 3)), 1.0, "REPLACE")
+    if kind == "lattice":
+        lattice = bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice"))
+        lattice.data.points_u = lattice.data.points_v = lattice.data.points_w = 4
+        lattice.scale = (3, 3, 2)
+        bpy.context.collection.objects.link(lattice)
+        shirt.modifiers.new("Lattice", "LATTICE").object = lattice
+    before = widest(shirt)
+    alone = morph(bpy.context, {"Ball": {"Wide": 1.0}}, SETTINGS)
+    assert alone.status in ("corrected", "blocked") and wide.value < 0.4 and widest(shirt) == before
+    settings = EditSettings(
+        separation=0.01,
+        responders="unselected",
+        deformations={"Shirt": kind},
+        handles={"Shirt": Handles(groups=("Grip",))} if kind == "arap" else {},
+    )
+    morph(bpy.context, {"Ball": {"Wide": 1.0}}, settings)
+    assert check_scene(bpy.context).pairs == ()
+    assert wide.value == 1.0 and widest(shirt) > before + 0.2
+
+
+def test_a_drag_of_a_body_under_clothes_restores_both() -> None:
+    ball = ball_and_wall(1.7)
+    wide = add_key(ball, "Wide", scaled(2.0))
+    shirt = add_shirt()
+    before = evaluated(shirt)
+    settings = EditSettings(separation=0.01, responders="unselected", deformations={"Shirt": "vertices"})
+    edit = MorphEdit.begin(bpy.context, {"Ball": {"Wide": 0.0}}, settings)
+    for goal in np.linspace(0.1, 1.0, 10):
+        edit.advance(np.array([goal]), 0.04)
+        assert edit.show() == "" and edit.is_shown() and check_scene(bpy.context).pairs == ()
+    edit.advance(np.array([1.0]))
+    edit.show()
+    assert 0.4 < wide.value < 0.7 and edit.has_moved_clothes  # the shirt is between the ball and the wall
+    edit.restore()
+    assert wide.value == 0 and np.array_equal(evaluated(shirt), before)

@@ -12,7 +12,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels
 from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, Writer
-from stiv.blender.controls.garments import Garment
+from stiv.blender.controls.garments import Garment, stacked_weights
 from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
@@ -92,26 +92,18 @@ def make_bone_set(
 def dressed(bones: ControlSet, garments: Sequence[ControlSet]) -> ControlSet:
     """The control set of bones followed by those of garments, which have one deformation together."""
     sets = [bones, *garments]
-    weights, most = ([getattr(each, name) for each in sets] for name in ("weights", "max_weights"))
     axes = [np.eye(3)[None].repeat(len(s.controls), 0) if s.weight_axes is None else s.weight_axes for s in sets]
     return replace(
         bones,
         names=tuple(name for each in sets for name in each.names),
         controls=np.concatenate([each.controls for each in sets]),
-        weights=_along_axes(weights),
-        max_weights=_along_axes(most),
+        weights=stacked_weights([each.weights for each in sets]),
+        max_weights=stacked_weights([each.max_weights for each in sets]),
         weight_axes=np.concatenate(axes) if any(each.weight_axes is not None for each in garments) else None,
         rule=DressedGoal(bones.rule, len(bones.controls)),
         writer=DressedWriter(tuple((each.writer, len(each.controls)) for each in sets)),
         note=join_notes(*(each.note for each in sets)),
     )
-
-
-def _along_axes(weights: Sequence[Floats]) -> Floats:
-    """Weights of all sets, (m,), or (m, 3) if any set has weights along axes."""
-    if all(each.ndim == 1 for each in weights):
-        return np.concatenate(list(weights))
-    return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
 
 
 def check_rig(rig: bpy.types.Object) -> None:

@@ -96,6 +96,13 @@ def make_garments(
     return found
 
 
+def stacked_weights(weights: Sequence[Floats]) -> Floats:
+    """Weights of several sets of controls, (m,), or (m, 3) if any set has weights along axes."""
+    if all(each.ndim == 1 for each in weights):
+        return np.concatenate(list(weights))
+    return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
+
+
 def _mesh(
     context: bpy.types.Context, participant: Participant, meshes: Sequence[VisibleMesh], settings: EditSettings
 ) -> list[Garment]:

@@ -125,7 +125,7 @@ def _correct_keys(
     result, _ = edit.advance(wanted)
     settled = edit.settle()
     message = edit.show()
-    if np.array_equal(edit.values, wanted):
+    if np.array_equal(edit.values, wanted) and not edit.has_moved_clothes:
         return ToolCorrection(False, ())
     edit.insert_keyframes(context)
     return ToolCorrection(True, tuple(values), tuple(result.blocking or settled.blocking), message)

@@ -40,11 +40,12 @@ def morph(
     """Move values of shape keys toward goals, and write the closest ones without intersections.
 
     Blender evaluates the scene, so groups, relative keys, muted keys, modifiers and objects that follow the shape have
-    their effect. Goals beyond the range of a slider end at it. No given slider passes its goal. All other objects stay.
+    their effect. Goals beyond the range of a slider end at it. No given slider passes its goal. All other objects stay,
+    but clothes yield with `responders` "unselected" or "all": objects with their own deformation or the role "controls".
     Keyframes are inserted if Auto Keying is on.
 
     values        goals by names of object and key, such as {"Body": {"Wide": 1.0}}
-    settings      separation, guard, roles and exclusions; the other choices have no effect
+    settings      as of an edit in Object Mode; object_response and slide_out_of_axis have no effect
     others_yield  the other sliders of these objects respond too, so that the given ones come closer to their goals
 
     Raises InputError naming object and key, StartIntersectsError if objects intersect at the start; nothing changed.

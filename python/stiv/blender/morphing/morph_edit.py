@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 import stiv
+from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.edit.sessions import ObjectsIntersectError, body_separations
 from stiv.blender.morphing.key_sliders import KeySlider, find_sliders
 from stiv.blender.morphing.morphed_scene import MorphedScene
@@ -27,9 +28,10 @@ GIVEN_WEIGHT = 0.01  # response of the given sliders, if others yield
 class MorphEdit:
     """Sliders that move toward goals. The scene shows the values that passed the test of Blender's evaluation.
 
+    With `EditSettings.responders` "unselected" or "all", clothes yield: objects with their own deformation.
+
     Attributes:
         sliders: those that were read.
-        values: theirs that the scene shows, (k,).
     """
 
     def __init__(
@@ -53,16 +55,16 @@ class MorphEdit:
         upper = scene.upper if upper is None else upper
         try:
             self._jacobian = scene.jacobian()
-            ends = [np.where(given, each, scene.start) for each in (lower, upper)]
+            ends = [np.where(given, each, self.start) for each in (lower, upper)]
             scene.fix_resting_objects(ends, self._jacobian)
-            self._deformation = stiv.scalars(scene.evaluate, self._jacobian, lower=lower, upper=upper)
-            weights = np.where(given & others_yield, GIVEN_WEIGHT, 1.0)
-            self._session, excluded = _open_session(scene, self._deformation, weights)
+            self._deformation = self._make_deformation(lower, upper)
+            self._session, excluded = _open_session(scene, self._deformation, _weights(scene, given, others_yield))
         except BaseException:
             scene.write(scene.start)
             raise
         self._verifier = Verifier(scene.assembly, self._session.is_step_free, settings.threads, excluded)
-        self.values = scene.start
+        self._shown = scene.start
+        self._lower, self._upper = lower, upper
         self._path: list[Floats] = []
         self._blocked, self._calls = False, 0
 
@@ -87,7 +89,17 @@ class MorphEdit:
     @property
     def start(self) -> Floats:
         """The values at the start, (k,)."""
-        return self._scene.start
+        return self._scene.start[: len(self.sliders), 0]
+
+    @property
+    def values(self) -> Floats:
+        """The values that the scene shows, (k,)."""
+        return self._shown[: len(self.sliders), 0]
+
+    @property
+    def has_moved_clothes(self) -> bool:
+        """Have clothes yielded?"""
+        return not np.array_equal(self._shown[len(self.sliders) :], self._scene.start[len(self.sliders) :])
 
     def advance(self, goals: Floats, seconds: float = np.inf) -> tuple[stiv.EditResult, bool]:
         """Move toward goals, (k,), in increments; after some seconds, at the end of one.
@@ -95,14 +107,15 @@ class MorphEdit:
         Returns the last result, and whether the goals were tried to the end. `show` writes the values.
         """
         end = time.monotonic() + seconds
-        before, nearest = self._accepted, np.clip(goals, self._scene.lower, self._scene.upper)
+        before, nearest = self._accepted, np.clip(goals, self._lower, self._upper)
+        goals = nearest if self._scene.garments else goals  # limits of scalars alone replace goals beyond them
         longest = self._scene.longest_motion(self._jacobian, nearest - before) / INCREMENT
         count = int(np.clip(np.ceil(longest), 1, MOST_INCREMENTS))
         for number in range(1, count + 1):
             self._renew_jacobian()
             goal = goals if number == count else before + (number / count) * (goals - before)
             budget = None if seconds == np.inf else max(end - time.monotonic(), 0.5 * seconds)
-            result = self._session.drag(self._deformation.controls(goal), time_budget=budget)
+            result = self._session.drag(self._scene.with_values(self._scene.start, goal), time_budget=budget)
             self._note(result)
             if number < count and time.monotonic() > end:
                 return result, False
@@ -117,26 +130,26 @@ class MorphEdit:
     def show(self) -> str:
         """Write the last values that pass the test of Blender's evaluation; returns why later ones did not, or ""."""
         path, self._path, message = self._path, [], ""
-        for values in reversed(path):
-            accepted = self._scene.evaluate(values)
+        for controls in reversed(path):
+            accepted = self._scene.evaluate(controls)
             if accepted is None:
                 continue
             verification = self._verifier.verify(bpy.context, accepted)
             if verification.passed:
-                self._keep(values, is_last=values is path[-1])
+                self._keep(controls, is_last=controls is path[-1])
                 return message
             message = message or verification.message
-        self._scene.write(self.values)
+        self._scene.write(self._shown)
         if path:
-            self._keep(self.values, is_last=False)
+            self._keep(self._shown, is_last=False)
         return message
 
     def is_shown(self) -> bool:
         """Does the scene show the values of this edit, and are other objects as at its start?"""
-        return self._scene.shows(self.values)
+        return self._scene.shows(self._shown)
 
     def restore(self) -> None:
-        """Write the values of the start."""
+        """Write the start."""
         self._scene.write(self._scene.start)
 
     def insert_keyframes(self, context: bpy.types.Context) -> None:
@@ -147,31 +160,52 @@ class MorphEdit:
 
     @property
     def _accepted(self) -> Floats:
-        return self._deformation.values(self._session.controls)
+        return self._session.controls[: len(self.sliders), 0].copy()
+
+    def _make_deformation(self, lower: Floats, upper: Floats) -> stiv.ScalarDeformation | stiv.ObservedDeformation:
+        scene, count = self._scene, len(self.sliders)
+        if not scene.garments:
+            return stiv.scalars(scene.evaluate_values, self._jacobian, lower=lower, upper=upper)
+
+        def evaluate(controls: Floats) -> Floats | None:
+            values = controls[:count, 0]
+            return None if (values < lower).any() or (values > upper).any() else scene.evaluate(controls)
+
+        return stiv.observed(evaluate, scene.blocks(self._jacobian))
 
     def _note(self, result: stiv.EditResult) -> None:
-        self._path += [self._deformation.values(each) for each in result.path]
+        self._path += result.path
         self._blocked = result.status == "blocked"
         self._calls += 1
 
     def _renew_jacobian(self) -> None:
         """Renew the Jacobian sometimes, and after a blocked call."""
         if self._calls and (self._blocked or self._calls % CALLS == 0):
-            self._scene.write(self._accepted)
+            self._scene.write(self._session.controls)
             self._jacobian = self._scene.jacobian()
-            self._deformation.set_jacobian(self._jacobian)
+            if isinstance(self._deformation, stiv.ScalarDeformation):
+                self._deformation.set_jacobian(self._jacobian)
+            else:
+                self._deformation.set_jacobian(self._scene.blocks(self._jacobian))
 
-    def _keep(self, values: Floats, is_last: bool) -> None:
-        self.values = values
+    def _keep(self, controls: Floats, is_last: bool) -> None:
+        self._shown = controls
         if not is_last:
-            self._session.restore(self._deformation.controls(values))
+            self._session.restore(controls)
+
+
+def _weights(scene: MorphedScene, given: Flags, others_yield: bool) -> Floats:
+    """Response weights of all controls: the given sliders go to their goals if others or clothes yield."""
+    follows = bool(scene.garments) and scene.settings.responders == "unselected"
+    own = 0.0 if follows else GIVEN_WEIGHT if others_yield else 1.0
+    return stacked_weights([np.where(given, own, 1.0), *(each.controls.weights for each in scene.garments)])
 
 
 def _open_session(
-    scene: MorphedScene, deformation: stiv.ScalarDeformation, weights: Floats
+    scene: MorphedScene, deformation: stiv.Deformation, weights: Floats
 ) -> tuple[stiv.EditSession, Exclusions]:
     """A session, and its exclusions, with those of objects that intersect themselves at the start."""
-    excluded, controls = scene.settings.excluded, deformation.controls(scene.start)
+    excluded, controls = scene.settings.excluded, scene.start
     try:
         return _make_session(scene, deformation, weights, excluded, controls), excluded
     except stiv.StartIntersectsError as error:
@@ -184,7 +218,7 @@ def _open_session(
 
 def _make_session(
     scene: MorphedScene,
-    deformation: stiv.ScalarDeformation,
+    deformation: stiv.Deformation,
     weights: Floats,
     excluded: Exclusions,
     controls: Floats,
@@ -194,7 +228,17 @@ def _make_session(
         **settings.shared(),
         pair_separations=body_separations(assembly, settings),
         weights=weights,
+        weight_axes=_weight_axes(scene),
         exclude=find_excluded_triangles(excluded, assembly, assembly.positions, settings.threads),
         overlapping=excluded_bodies(excluded, assembly),
     )
     return stiv.EditSession(assembly.surface, deformation, controls, options)
+
+
+def _weight_axes(scene: MorphedScene) -> Floats | None:
+    axes = [each.controls.weight_axes for each in scene.garments]
+    if all(each is None for each in axes):
+        return None
+    counts = [len(each.controls.controls) for each in scene.garments]
+    found = [np.eye(3)[None].repeat(n, 0) if each is None else each for n, each in zip(counts, axes, strict=True)]
+    return np.concatenate([np.eye(3)[None].repeat(scene.count, 0), *found])
