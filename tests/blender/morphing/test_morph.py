@@ -286,6 +286,6 @@ def test_a_drag_of_a_body_under_clothes_restores_both() -> None:
         assert edit.show() == "" and edit.is_shown() and check_scene(bpy.context).pairs == ()
     edit.advance(np.array([1.0]))
     edit.show()
-    assert 0.4 < wide.value < 0.7 and edit.has_moved_clothes  # the shirt is between the ball and the wall
+    assert 0.4 < wide.value < 0.72 and edit.has_moved_clothes  # the shirt is between the ball and the wall
     edit.restore()
     assert wide.value == 0 and np.array_equal(evaluated(shirt), before)

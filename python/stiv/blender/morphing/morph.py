@@ -41,7 +41,7 @@ def morph(
 
     Blender evaluates the scene, so groups, relative keys, muted keys, modifiers and objects that follow the shape have
     their effect. Goals beyond the range of a slider end at it. No given slider passes its goal. All other objects stay,
-    but clothes yield with `responders` "unselected" or "all": objects with their own deformation or the role "controls".
+    but clothes yield with `responders` "unselected" or "all": objects with their own deformation, or role "controls".
     Keyframes are inserted if Auto Keying is on.
 
     values        goals by names of object and key, such as {"Body": {"Wide": 1.0}}
