@@ -69,6 +69,14 @@ def largest_acceleration(points: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(points, n=2, axis=0), axis=2).max())
 
 
+def joint_acceleration(rotations: np.ndarray) -> float:
+    """Largest change of the rotation from frame to frame, of rotations (F, b, 3, 3)."""
+    steps = np.einsum("fbij,fbkj->fbik", rotations[1:], rotations[:-1])
+    skew = np.stack([steps[..., 2, 1] - steps[..., 1, 2], steps[..., 0, 2] - steps[..., 2, 0],
+                     steps[..., 1, 0] - steps[..., 0, 1]], axis=-1) / 2  # fmt: skip
+    return float(np.linalg.norm(np.diff(skew, axis=0), axis=2).max())
+
+
 @pytest.mark.parametrize("name", ["walk", "pick"])
 def test_a_clip_is_corrected_by_its_keyframes(tmp_path: Path, name: str) -> None:
     make_clip(name)
@@ -81,6 +89,7 @@ def test_a_clip_is_corrected_by_its_keyframes(tmp_path: Path, name: str) -> None
     after = shapes(last)
     assert contents() == before_contents
     assert largest_acceleration(after) <= 1.1 * largest_acceleration(before)
+    assert joint_acceleration(bends(last)) <= 1.1 * joint_acceleration(poses)
     cosines = (np.einsum("fbij,fbij->fb", poses, bends(last)) - 1) / 2
     turns = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
     assert 0 < turns.mean() <= 3
