@@ -59,7 +59,7 @@ def main() -> None:
     for row in (COLUMNS, *rows):
         print(" ".join(f"{each!s:>8}" for each in row))
     print(
-        "pairs: intersecting, at quarters of frames and between them, in the input and after; bones: frames corrected by"
+        "pairs: intersecting, at quarters of frames and between them, in the input and after; bones: frames mended by"
         " bones alone; mean: change of an animated joint over all frames, degrees; moved: of the joints that changed;"
         " joints, points: largest acceleration beside that of the input"
     )

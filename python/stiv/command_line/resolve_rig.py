@@ -39,6 +39,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="largest acceleration, divided by that of the input (default: 1.1)",
     )  # fmt: skip
     group.add_argument(
+        "--allow-shapes", action="store_true", help="correct frames that bones alone cannot by corrective shape keys"
+    )
+    group.add_argument(
         "--joint-region", type=_not_negative, default=None, metavar="RADII",
         help="skin around joints that may fold, in radii of the limb; 0: none (default: the setting in the file)",
     )  # fmt: skip
@@ -70,7 +73,12 @@ def _resolve(arguments: argparse.Namespace) -> dict[str, Any]:
     settings = stored_settings(context, scene)
     guard = guarding.choose_animation_guard(context, arguments.guard or settings.guard)
     options = resolving.RigOptions(
-        dict(arguments.bone), arguments.max_turn, arguments.max_move, arguments.acceleration, arguments.hold
+        dict(arguments.bone),
+        arguments.max_turn,
+        arguments.max_move,
+        arguments.acceleration,
+        arguments.hold,
+        arguments.allow_shapes,
     )
     settings = resolving.with_options(settings, arguments.separation, arguments.joint_region)
     try:
@@ -108,7 +116,7 @@ def report_of(scene: Path, clip: Any, correction: Any, left: Sequence[str], guar
     frames = [
         {
             "frame": frame,
-            "status": "failed" if frame in correction.failed else "corrected" if distance > 0 else "unchanged",
+            "status": _status(frame, distance, correction),
             "intersected": was_needed,
             "turns": {name: round(turn, 6) for name, turn in zip(names, turns, strict=True) if turn > 0},
             "distance": distance,
@@ -129,20 +137,28 @@ def report_of(scene: Path, clip: Any, correction: Any, left: Sequence[str], guar
     }
 
 
+def _status(frame: int, distance: float, correction: Any) -> str:
+    if frame in correction.failed:
+        return "failed"
+    return "shaped" if frame in correction.shaped else "corrected" if distance > 0 else "unchanged"
+
+
 def _summary(scene: Path, report: dict[str, Any]) -> str:
     """The result as text."""
     failed = [frame["frame"] for frame in report["frames"] if frame["status"] == "failed"]
     if failed:
         return f"{scene}: bones alone cannot correct frames {_listed(failed)}; nothing was written"
+    shaped = [frame["frame"] for frame in report["frames"] if frame["status"] == "shaped"]
+    notes = [f"corrective shape keys at frames {_listed(shaped)}"] if shaped else []
     if report["pairs"]:
         lines = [f"{scene}: the evaluated result intersects; nothing was written"]
         return "\n".join(lines + [f"  {pair}" for pair in report["pairs"][:LISTED]])
-    corrected = sum(frame["status"] == "corrected" for frame in report["frames"])
+    corrected = sum(frame["status"] in ("corrected", "shaped") for frame in report["frames"])
     distance = max(frame["distance"] for frame in report["frames"])
     counts = f"{len(report['frames'])} frames, {sum(f['intersected'] for f in report['frames'])} intersected, "
     counts += f"{corrected} corrected; mean change of a joint {report['mean_turn']:.2f} degrees"
     figures = f"acceleration {report['acceleration']:.2f} times the input's; maximum distance {distance:.4g}"
-    return "; ".join([f"{scene}: {counts}", figures, *report["notes"]])
+    return "; ".join([f"{scene}: {counts}", figures, *notes, *report["notes"]])
 
 
 def _listed(frames: Sequence[int]) -> str:

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from building import add_cube, add_grid
+from mathutils import Matrix
 
 from blend_fixtures.moving_characters import make_clip
 from stiv.blender.scene.animation_curves import own_curves
@@ -145,6 +146,48 @@ def test_frames_that_bones_cannot_correct_are_named_and_nothing_is_written(tmp_p
     report = resolved(tmp_path, code=4)
     assert "bones alone cannot correct frames 2, 3; nothing was written" in capsys.readouterr().out
     assert not report["free"] and [f["frame"] for f in report["frames"] if f["status"] == "failed"] == [2, 3]
+
+
+def swinging_bar() -> None:
+    """A bar of 5 segments on a bone swings down by 16 degrees and touches a box."""
+    data = bpy.data.armatures.new("Rig")
+    rig = bpy.data.objects.new("Rig", data)
+    bpy.context.collection.objects.link(rig)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = data.edit_bones.new("Bar")
+    bone.head, bone.tail = (0, 0, 0), (1, 0, 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bar = add_grid("Bar", 8, 0.5, (0.5, 0, 0))
+    bar.data.transform(Matrix.Translation((0.5, 0, 0)) @ Matrix.Diagonal((1, 0.3, 1, 1)))
+    bar.location = (0, 0, 0)
+    bar.vertex_groups.new(name="Bar").add(range(len(bar.data.vertices)), 1, "REPLACE")
+    bar.parent = rig
+    bar.modifiers.new("Armature", "ARMATURE").object = rig
+    add_cube("Box", (0.8, 0, -0.4), 0.1, scale=(1, 3, 2.5))
+    rig.pose.bones["Bar"].rotation_mode = "XYZ"
+    for frame in range(1, 14):
+        rig.pose.bones["Bar"].rotation_euler = (0, 0, 0)
+        rig.pose.bones["Bar"].rotation_euler[0] = np.radians(-8 * (1 - np.cos((frame - 1) * np.pi / 6)))
+        rig.pose.bones["Bar"].keyframe_insert("rotation_euler", frame=frame)
+    bpy.context.scene.frame_end = 13
+
+
+def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, capsys) -> None:
+    swinging_bar()
+    assert findings(13)
+    before = bends(13)
+    resolved(tmp_path, "--max-turn", "1", "--joint-region", "0", code=4)
+    assert "bones alone cannot correct frames" in capsys.readouterr().out
+    report = resolved(tmp_path, "--max-turn", "1", "--joint-region", "0", "--allow-shapes")
+    assert findings(13) == [] and findings(13, 0.125) == []
+    keys = bpy.data.objects["Bar"].data.shape_keys.key_blocks
+    shaped = [frame["frame"] for frame in report["frames"] if frame["status"] == "shaped"]
+    assert 7 in shaped and {f"Corrective {frame}" for frame in shaped} <= {*keys.keys()}
+    cosines = (np.einsum("fbij,fbij->fb", before, bends(13)) - 1) / 2
+    assert 0.5 < np.degrees(np.arccos(np.clip(cosines, -1, 1))).max() <= 1.01
+    set_frame(bpy.context.scene, 1)
+    assert all(key.value == 0 for key in keys if key.name.startswith("Corrective"))
 
 
 def test_keyframes_elsewhere_keep_their_values_and_shapes(tmp_path: Path) -> None:

@@ -113,6 +113,20 @@ class AnimatedPart:
         turn = correction[len(self.location) :]
         return Values(tuple(location.tolist()), self._turned(base.rotation, turn) if turn.any() else base.rotation)
 
+    def correction_between(self, base: Values, one: Values, other: Values, fraction: float) -> Floats:
+        """The correction of a base, (k,), that gives stored values between two others, as linear keys do."""
+        weights, pairs = (1 - fraction, fraction), zip(_stored(one), _stored(other), strict=True)
+        mean = Values(*(tuple(np.average(pair, axis=0, weights=weights).tolist()) for pair in pairs))
+        location = (np.array(mean.location) - base.location)[list(self.location)]
+        if len(base.rotation) == 3:
+            turn = (np.array(mean.rotation) - base.rotation)[list(self.rotation)]
+        elif self.rotation:
+            after = quaternion_of(self.mode, base.rotation).inverted() @ quaternion_of(self.mode, mean.rotation)
+            turn = rotation_vector(np.array(after.to_matrix(), np.float64))
+        else:
+            turn = np.empty(0)
+        return np.concatenate([location, turn])
+
     def write(self, values: Values) -> None:
         """Write values, without a keyframe."""
         found = self.find()
@@ -132,6 +146,10 @@ class AnimatedPart:
         if axis.dot(mathutils.Vector(stored[1:])) < 0:
             axis, angle = -axis, -angle
         return (angle, *axis)
+
+
+def _stored(values: Values) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    return values.location, values.rotation
 
 
 def rotation_name(mode: str) -> str:

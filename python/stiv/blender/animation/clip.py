@@ -38,6 +38,7 @@ class Clip:
         meshes: all visible meshes; those that bones bend are divided at joints.
         divided: names of the objects that are divided.
         regions: the parts of each mesh.
+        moving_meshes: the objects whose meshes move, with the vertices of these, see `rows`.
         note: on the faces at joints; "" without any.
     """
 
@@ -115,12 +116,26 @@ class Clip:
         whole = self._read(values)
         return None if whole is None else whole[self._moving_rows]
 
-    def whole_surface(self, frame: float, correction: Floats) -> Floats:
-        """World positions of all meshes in the assembly, (N, 3). Raises InputError if their topology changes."""
+    @property
+    def rows(self) -> Indices:
+        """For each vertex of the assembly, its number in the meshes before they were divided, (N,)."""
+        return self._all_rows
+
+    @property
+    def size(self) -> float:
+        """Length of the diagonal of all meshes."""
+        return self._size
+
+    def whole_mesh(self, frame: float, correction: Floats) -> Floats:
+        """World positions of all meshes before they were divided. Raises InputError if their topology changes."""
         whole = self._read(np.append(correction, frame))
         if whole is None:
             raise InputError(f"a mesh changes its vertices at frame {frame:g}; apply the modifier that does this")
-        found: Floats = whole[self._all_rows]
+        return whole
+
+    def whole_surface(self, frame: float, correction: Floats) -> Floats:
+        """World positions of all meshes in the assembly, (N, 3). Raises InputError if their topology changes."""
+        found: Floats = self.whole_mesh(frame, correction)[self._all_rows]
         return found
 
     def jacobian(self, values: Floats, towards: float) -> Floats:
@@ -208,6 +223,11 @@ class Clip:
         rows = [first + _vertices(part) for first, own in zip(self._rows.tolist(), parts, strict=False) for part in own]
         self._all_rows = np.concatenate(rows)
         self._moving_rows = np.concatenate([np.empty(0, int), *(rows[k] for k in self.moving)])
+        self.moving_meshes = {
+            track.mesh.owner: np.arange(*self._rows[k : k + 2], dtype=np.int32)
+            for k, track in enumerate(tracks)
+            if track.kind != "still" and not track.mesh.is_instance
+        }
 
     def _weights(self, mesh: VisibleMesh) -> tuple[list[str], Floats]:
         bones = {bone.name for part in self.parts if (ob := part.owner.find()).pose for bone in ob.pose.bones}

@@ -31,7 +31,7 @@ class ClipSolver:
     """Solves for corrections. Every state is free of intersections, and so is the path to it."""
 
     def __init__(self, clip: Clip, settings: EditSettings) -> None:
-        self._clip, self._settings = clip, settings
+        self._clip, self.settings = clip, settings
         self.assembly: Assembly = clip.assembly
         self._static = stiv.IntersectionTest(self.assembly.surface, settings.threads)
         self._steps = stiv.StepCheck(self.assembly.surface, settings.threads)
@@ -81,7 +81,7 @@ class ClipSolver:
         whole = self._clip.whole_surface(float(values[-1]), values[:-1])
         weights = np.ones(len(values))
         weights[-1] = 0  # the time follows its goal
-        shared = self._settings.shared()
+        shared = self.settings.shared()
         if separation > 0:
             shared["separation"] = separation
         options = stiv.EditOptions(**shared, weights=weights)

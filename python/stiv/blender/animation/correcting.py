@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +13,7 @@ from stiv import InputError
 from stiv.blender.animation.animated_parts import Values, turn_between
 from stiv.blender.animation.clip import Clip
 from stiv.blender.animation.clip_solving import ClipSolver, Reached
+from stiv.blender.animation.corrective_keys import Corrective, CorrectiveSolver, runs_of
 from stiv.blender.animation.smoothing import envelope, largest_acceleration
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.settings import EditSettings
@@ -31,6 +32,7 @@ class Correction:
         frames: whole and ascending.
         values: (F, k), of the parts of the clip.
         failed: frames that have no correction, or still intersect, ascending.
+        shaped: frames that corrective shape keys correct, ascending.
         acceleration: largest one, divided by that of the input.
         turns: change of the rotation of each part at each frame, (F, p), degrees.
         distances: largest distance of a vertex from the animation at each frame, (F,).
@@ -44,6 +46,7 @@ class Correction:
     turns: Floats
     distances: Floats
     needed: Flags
+    shaped: tuple[int, ...] = ()
 
 
 def moments_of(frames: Sequence[int]) -> list[float]:
@@ -67,8 +70,9 @@ class Corrector:
         self._clip, self._frames, self._bound, self._on_frame = clip, list(frames), acceleration, on_frame
         self._solver = ClipSolver(clip, settings)
         none = np.zeros((len(frames), clip.count))
-        self._input = self._surfaces(none)
         self._values = self._part_values(none)
+        self._between: dict[tuple[int, float], Floats] = {}
+        self._input = self._surfaces(none)
         self._is_cyclic = self._repeats()
         self._input_acceleration = self._accelerations(none)
 
@@ -97,18 +101,64 @@ class Corrector:
             needed,
         )
 
-    def intersecting(self) -> list[float]:
-        """The moments at which the animation itself intersects, or begins or ends a motion that does."""
-        flags = self._failing(self._input).tolist()
-        return [moment for moment, is_bad in zip(moments_of(self._frames), flags, strict=True) if is_bad]
+    def correct_by_shapes(self, correction: Correction) -> tuple[Correction, list[Corrective]]:
+        """Shape keys for the frames that failed; those without a solution still fail. Raises InputError by name."""
+        solver = CorrectiveSolver(self._clip, self._solver, lambda moment: self._at(correction.values, moment))
+        bad = self._with_neighbours(self._failing(self._surfaces(correction.values)))
+        found: list[Corrective] = []
+        failed: set[int] = set()
+        distances = correction.distances.copy()
+        for run in runs_of(np.flatnonzero(bad).tolist()):
+            first, last = (self._frames[0] + place / 2 for place in run)
+            solved = solver.solve(first, last, (self._frames[0], self._frames[-1]))
+            if solved is None:
+                failed |= {frame for frame in self._frames if first <= frame <= last}
+                continue
+            found += solved.keys
+            for k in (k for k, frame in enumerate(self._frames) if frame in solved.surfaces):
+                distances[k] = _largest_distance(solved.surfaces[self._frames[k]], self._input[2 * k])
+        failed &= set(correction.failed)
+        shaped = tuple(sorted({frame for frame in self._frames if frame in {key.moment for key in found}}))
+        return replace(correction, failed=tuple(sorted(failed)), shaped=shaped, distances=distances), found
+
+    def _with_neighbours(self, moments: Flags) -> Flags:
+        """The moments, and those beside them, where the motion to the free pose begins and ends."""
+        found = moments.copy()
+        found[:-1] |= moments[1:]
+        found[1:] |= moments[:-1]
+        return found
+
+    def intersecting(self, moments: Sequence[float]) -> list[float]:
+        """The moments at which the animation itself intersects, or begins a motion to the next one that does."""
+        none = np.zeros(self._clip.count)
+        surfaces = [self._clip.whole_surface(moment, none) for moment in moments]
+        ends = zip(surfaces, [*surfaces[1:], surfaces[-1]], strict=True)
+        is_free = [self._solver.is_free(one) and self._solver.is_step_free(one, other) for one, other in ends]
+        return [moment for moment, free in zip(moments, is_free, strict=True) if not free]
 
     def _at(self, values: Floats, moment: float) -> Floats:
-        """Correction at any moment, (k,): linear between frames."""
-        place = moment - self._frames[0]
-        first = min(int(place), len(values) - 1)
-        last = min(first + 1, len(values) - 1)
-        found: Floats = values[first] + (place - first) * (values[last] - values[first])
-        return found
+        """Correction at any moment, (k,): linear keys of the changed parts also change their motion between frames."""
+        place, fraction = divmod(moment - self._frames[0], 1)
+        first = int(place)
+        if fraction == 0:
+            return np.asarray(values[first], np.float64)
+        ends = values[first : first + 2]
+        is_keyed = np.concatenate([np.full(each.shape[1], each.any()) for each in self._split(ends)])
+        linear = (1 - fraction) * ends[0] + fraction * ends[1]
+        return np.asarray(linear + np.where(is_keyed, self._linear_between(first, fraction), 0), np.float64)
+
+    def _split(self, values: Floats) -> list[Floats]:
+        """The columns of each part."""
+        return np.split(values, np.cumsum([part.count for part in self._clip.parts])[:-1], axis=1)
+
+    def _linear_between(self, first: int, fraction: float) -> Floats:
+        """The correction that gives linear interpolation between two frames, (k,)."""
+        if (first, fraction) not in self._between:
+            present = self._clip.pose(self._frames[first] + fraction, np.zeros(self._clip.count))
+            ends = zip(self._clip.parts, present, *self._values[first : first + 2], strict=True)
+            found = [part.correction_between(*own, fraction) for part, *own in ends]
+            self._between[first, fraction] = np.concatenate(found)
+        return self._between[first, fraction]
 
     def _surfaces(self, values: Floats) -> list[Floats]:
         return [self._clip.whole_surface(each, self._at(values, each)) for each in moments_of(self._frames)]
@@ -140,7 +190,7 @@ class Corrector:
         raw, failed = np.zeros((len(needed), self._clip.count)), np.zeros(len(needed), bool)
         if needed.all():
             raise InputError("all frames intersect; choose a range with a frame that is free")
-        for first, last in _runs(needed):
+        for first, last in runs_of(np.flatnonzero(needed).tolist()):
             found = [self._solve_run(first, last, forward, needed) for forward in (True, False)]
             best = min((each for each in found if each is not None), key=lambda each: each[1].sum())
             raw, failed = np.where(np.abs(best[0]) > np.abs(raw), best[0], raw), failed | best[1]
@@ -216,8 +266,7 @@ class Corrector:
 
     def _distances(self, values: Floats) -> Floats:
         surfaces = [self._clip.whole_surface(f, own) for f, own in zip(self._frames, values, strict=True)]
-        pairs = zip(surfaces, self._input[::2], strict=True)
-        return np.array([np.linalg.norm(one - other, axis=1).max() for one, other in pairs])
+        return np.array([_largest_distance(*pair) for pair in zip(surfaces, self._input[::2], strict=True)])
 
     def _repeats(self) -> bool:
         """Does the last frame show the first one again?"""
@@ -242,14 +291,10 @@ class Corrector:
         return max(after / before if before > 0 else (0.0 if after == 0 else np.inf) for after, before in pairs)
 
 
+def _largest_distance(one: Floats, other: Floats) -> float:
+    return float(np.linalg.norm(one - other, axis=1).max())
+
+
 def _larger(need: Floats, other: Floats, change: Floats) -> Floats:
     """Another need, (k,), where it goes further in the direction of a change."""
     return np.where((other - need) * np.sign(change) > 0, other, need)
-
-
-def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
-    """First and last place of each run."""
-    places = np.flatnonzero(flags)
-    for group in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1):
-        if len(group):
-            yield int(group[0]), int(group[-1])

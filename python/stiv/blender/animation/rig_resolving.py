@@ -13,11 +13,13 @@ from stiv import InputError
 from stiv.blender.animation.animated_parts import Limits, find_animated_parts
 from stiv.blender.animation.clip import Clip
 from stiv.blender.animation.correcting import Correction, Corrector, moments_of
+from stiv.blender.animation.corrective_keys import Corrective, write_correctives
 from stiv.blender.animation.keying import check_curves, key_corrections
 from stiv.blender.animation.tracks import read_tracks
 from stiv.blender.controls.joint_regions import Regions
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.frame_check import check_frames
+from stiv.blender.verify.keyed_frames import add_subframe_keys
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,7 @@ class RigOptions:
         move: largest change of a location along an axis, in its units; infinite: a tenth of the surface's size.
         acceleration: largest acceleration, divided by that of the input.
         hold: names of objects that keep their animation.
+        allow_shapes: correct frames that bones cannot by shape keys.
     """
 
     bones: Mapping[str, float | None] = field(default_factory=dict)
@@ -38,6 +41,7 @@ class RigOptions:
     move: float = float("inf")
     acceleration: float = 1.1
     hold: Collection[str] = ()
+    allow_shapes: bool = False
 
 
 def resolve_rig(
@@ -52,9 +56,14 @@ def resolve_rig(
         raise InputError("--write rig needs at least two frames in steps of 1")
     clip = _read_clip(context, frames, options, settings)
     check_curves(clip.parts)
-    correction = Corrector(clip, frames, settings, options.acceleration, on_frame).correct()
+    corrector = Corrector(clip, frames, settings, options.acceleration, on_frame)
+    correction = corrector.correct()
+    correctives: list[Corrective] = []
+    if correction.failed and options.allow_shapes:
+        correction, correctives = corrector.correct_by_shapes(correction)
     if not correction.failed:
         key_corrections(clip, frames, correction.values)
+        write_correctives(correctives)
     clip.restore(frames[0])
     return clip, correction
 
@@ -73,8 +82,9 @@ def remaining(
     the faces around joints.
     """
     clip = _read_clip(context, frames, options, settings, corrected.regions)
-    bad = Corrector(clip, frames, settings, options.acceleration).intersecting()
-    looks = check_frames(context, moments_of(frames), evaluations=evaluations)
+    moments = add_subframe_keys(moments_of(frames))
+    bad = Corrector(clip, frames, settings, options.acceleration).intersecting(moments)
+    looks = check_frames(context, moments, evaluations=evaluations)
     found = [
         str(each)
         for look in looks
