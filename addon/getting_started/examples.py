@@ -11,6 +11,7 @@ import bpy
 import bpy.utils.previews
 from bpy.props import EnumProperty, IntProperty
 
+from .. import stiv_blender
 from ..translations import translate
 
 FOLDER = Path(__file__).absolute().parents[1] / "examples"  # an extension run from its sources has none
@@ -18,18 +19,22 @@ FOLDER = Path(__file__).absolute().parents[1] / "examples"  # an extension run f
 
 @dataclass(frozen=True)
 class Step:
-    """One step: a text, the objects that it selects, and an operator with its properties."""
+    """One step: a text, the objects and bones that it selects, and an operator with its properties."""
 
     text: str
     objects: tuple[str, ...]
     operator: str
     properties: dict[str, Any] = field(default_factory=dict)
+    bones: tuple[str, ...] = ()
 
 
 EXAMPLES = (
     ("dress_figure", "Dress Figure", "A shirt that cuts a figure, and a hat and glasses to put on"),
     ("pot_plant", "Pot Plant", "A plant above a vase that is narrower than the plant"),
     ("pack_box", "Pack Box", "A monkey, a ring and other objects above a box"),
+    ("pose_arm", "Pose Arm", "A character whose arms stop at its body"),
+    ("morph_body", "Morph Body", "A figure with shape keys under a shirt that yields"),
+    ("clean_walk", "Clean Walk", "A walk cycle whose forearms cut the hips"),
 )
 STEP_TEXTS = {
     "contract": "Shrink the figure out of its shirt",
@@ -39,6 +44,11 @@ STEP_TEXTS = {
     "plant": "Drag the plant down into the vase",
     "monkey": "Drag the monkey into the box",
     "torus": "Drag the ring into the box",
+    "arm": "Lower the arm onto the body",
+    "forearm": "Bend the elbow",
+    "heavier": "Drag Heavier; the shirt makes room",
+    "both_keys": "Set both keys at once",
+    "walk": "Check this frame: the arms cut the hips",
 }
 STEPS = {
     "dress_figure": (
@@ -52,6 +62,15 @@ STEPS = {
         Step(STEP_TEXTS["monkey"], ("Suzanne",), "move"),
         Step(STEP_TEXTS["torus"], ("Torus",), "move"),
     ),
+    "pose_arm": (
+        Step(STEP_TEXTS["arm"], ("Rig",), "rotate", bones=("Arm.L",)),
+        Step(STEP_TEXTS["forearm"], ("Rig",), "rotate", bones=("Forearm.L",)),
+    ),
+    "morph_body": (
+        Step(STEP_TEXTS["heavier"], ("Body",), "morph_drag"),
+        Step(STEP_TEXTS["both_keys"], ("Body",), "morph"),
+    ),
+    "clean_walk": (Step(STEP_TEXTS["walk"], ("Body",), "check"),),
 }
 KEY = "stiv_example"  # property of an example's scene: its identifier
 
@@ -109,9 +128,14 @@ class STIV_OT_example_step(bpy.types.Operator):
         if None in objects:
             self.report({"ERROR"}, translate("The example has changed; open it again"))
             return {"CANCELLED"}
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
         for ob in context.view_layer.objects:
             ob.select_set(ob in objects)
         context.view_layer.objects.active = objects[0]
+        if steps[self.step].bones:
+            bpy.ops.object.mode_set(mode="POSE")
+            stiv_blender.select_bones(objects[0], steps[self.step].bones)
         operator = getattr(bpy.ops.stiv, steps[self.step].operator)
         return set(operator(mode, **steps[self.step].properties)) - {"RUNNING_MODAL"} or {"FINISHED"}
 

@@ -11,6 +11,7 @@ from ..translations import translate
 from .base import SidebarPanel
 
 PICTURE_SCALE = 4.0  # of an icon
+COLUMNS = 3
 
 
 class STIV_PT_getting_started(SidebarPanel, bpy.types.Panel):
@@ -41,7 +42,7 @@ def draw_steps(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
 
 def draw_examples(layout: bpy.types.UILayout) -> None:
     """The pictures of the examples, each above its button."""
-    row = layout.row(align=True)
+    row = layout.grid_flow(row_major=True, columns=COLUMNS, even_columns=True, align=True)
     for identifier, name, _ in examples.EXAMPLES:
         column = row.column(align=True)
         column.template_icon(examples.picture(identifier), scale=PICTURE_SCALE)

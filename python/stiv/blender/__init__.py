@@ -44,7 +44,7 @@ from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.modifier_stack import UnsupportedStackError
-from stiv.blender.scene.pose_bones import moved_bones
+from stiv.blender.scene.pose_bones import moved_bones, select_bones
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
 from stiv.blender.scene.stack_twin import kept_twins
@@ -156,6 +156,7 @@ __all__ = [
     "revert",
     "run_steps",
     "run_to_end",
+    "select_bones",
     "select_faces",
     "separate",
     "separate_steps",

@@ -34,9 +34,32 @@ def test_two_steps_dress_the_figure():
 
 
 def test_the_plant_and_the_box_begin_without_intersections():
-    for name in ("pot_plant", "pack_box"):
+    for name in ("pot_plant", "pack_box", "morph_body"):
         bpy.ops.stiv.open_example(example=name)
         assert pairs() == 0
+
+
+def test_a_step_selects_a_bone_in_pose_mode_and_the_next_one_another():
+    bpy.ops.stiv.open_example(example="pose_arm")
+    for step, name in enumerate(("Arm.L", "Forearm.L")):
+        assert bpy.ops.stiv.example_step(step=step) == {"FINISHED"}
+        assert bpy.context.mode == "POSE"
+        assert [bone.name for bone in bpy.context.selected_pose_bones] == [name]
+
+
+def test_the_shirt_of_the_example_makes_room():
+    bpy.ops.stiv.open_example(example="morph_body")
+    shirt = bpy.data.objects["Shirt"].data
+    before = max(vertex.co.xy.length for vertex in shirt.vertices)
+    assert bpy.ops.stiv.morph(keys=[{"name": "Heavier", "value": 1.0}]) == {"FINISHED"}
+    assert bpy.data.shape_keys[0].key_blocks["Heavier"].value == 1.0
+    assert pairs() == 0 and max(vertex.co.xy.length for vertex in shirt.vertices) > before + 0.05
+
+
+def test_the_walk_cuts_itself_at_the_frame_of_the_example():
+    bpy.ops.stiv.open_example(example="clean_walk")
+    assert bpy.ops.stiv.example_step(step=0) == {"FINISHED"}
+    assert "Body" in bpy.context.window_manager.stiv_check.summary and bpy.context.window_manager.stiv_check.intersects
 
 
 def test_a_step_of_a_changed_example_is_refused():

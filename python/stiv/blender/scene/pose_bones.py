@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import bpy
 
@@ -23,6 +23,14 @@ def is_hidden(bone: bpy.types.PoseBone) -> bool:
 def selected_bones(rig: bpy.types.Object) -> list[bpy.types.PoseBone]:
     """The visible selected bones of an armature."""
     return [bone for bone in rig.pose.bones if is_selected(bone) and not is_hidden(bone)]
+
+
+def select_bones(rig: bpy.types.Object, names: Collection[str]) -> None:
+    """Select these bones alone; the first becomes active."""
+    for bone in rig.pose.bones:
+        owner = bone if hasattr(bone, "select") else bone.bone
+        owner.select = bone.name in names
+    rig.data.bones.active = rig.data.bones.get(next(iter(names), ""))
 
 
 def moved_bones(rig: bpy.types.Object, with_children: bool = False) -> list[bpy.types.PoseBone]:
