@@ -25,7 +25,8 @@ class FakeEdit:
     """`statuses`: those of the next solves; `failing`: from the name of a call to the exception that it raises.
 
     `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
-    from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write. `budgets`: of all solves.
+    from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write.
+    `budgets`: of all solves.
     """
 
     statuses: list[str] = field(default_factory=list)
