@@ -15,6 +15,7 @@ from oracles import rational
 import stiv
 from blend_fixtures.characters import make_character, select_bones
 from stiv.blender import BlenderEdit, EditSettings, Motion, WriteReport
+from stiv.blender.scene.driver_cycles import find_driver_cycle
 
 SETTINGS = EditSettings(separation=0.01)
 SHOULDER = (0.5, 0, 1.35)
@@ -329,6 +330,62 @@ def cyclic(rig: Any, body: Any) -> None:
     variable.targets[0].id, variable.targets[0].bone_target = rig, "Forearm.L"
 
 
+def add_driver(owner: Any, path: str, read_from: Any, read: str) -> None:
+    """A driver that reads a property, or the transform of a bone ("bone NAME") or an object ("")."""
+    driver = owner.driver_add(path)
+    driver = driver[0].driver if isinstance(driver, list) else driver.driver
+    variable = driver.variables.new()
+    target = variable.targets[0]
+    if read and not read.startswith("bone "):
+        target.id_type = "KEY" if isinstance(read_from, bpy.types.Key) else "OBJECT"
+        target.id, target.data_path = read_from, read
+    else:
+        variable.type = "TRANSFORMS"
+        target.id, target.bone_target = read_from, read.removeprefix("bone ")
+    driver.expression = variable.name
+
+
+def cyclic_through_a_property(rig: Any, body: Any) -> None:
+    """A bone from a property of the rig, that from a shape key, and that from the bone's child."""
+    body.shape_key_add(name="Basis")
+    key = body.shape_key_add(name="Fist")
+    rig["grip"] = 0.0
+    add_driver(key, "value", rig, "bone Forearm.L")
+    add_driver(rig, '["grip"]', body.data.shape_keys, 'key_blocks["Fist"].value')
+    add_driver(rig.pose.bones["Arm.L"], "location", rig, '["grip"]')
+
+
+def cyclic_through_a_constraint(rig: Any, body: Any) -> None:
+    """An object on the hand drives the influence of a constraint of the arm."""
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.collection.objects.link(empty)
+    empty.parent, empty.parent_type, empty.parent_bone = rig, "BONE", "Forearm.L"
+    constraint = rig.pose.bones["Arm.L"].constraints.new("COPY_ROTATION")
+    constraint.target, constraint.influence = bpy.data.objects["Box"], 0.0
+    add_driver(constraint, "influence", empty, "")
+
+
+def cyclic_elsewhere(rig: Any, body: Any) -> None:
+    """Two properties of another object drive each other, and one of them a bone."""
+    box = bpy.data.objects["Box"]
+    box["one"] = box["two"] = 0.0
+    add_driver(box, '["one"]', box, '["two"]')
+    add_driver(box, '["two"]', box, '["one"]')
+    add_driver(rig.pose.bones["Head"], "location", box, '["one"]')
+
+
+def test_drivers_without_a_cycle_are_followed() -> None:
+    """Raw channels of a bone differ from its transform, and a property may drive several bones."""
+    rig, _, _ = box_below_hand()
+    box = bpy.data.objects["Box"]
+    rig["curl"] = box["level"] = 0.0
+    add_driver(rig, '["curl"]', rig, 'pose.bones["Arm.L"].location[0]')
+    add_driver(rig.pose.bones["Forearm.L"], "scale", rig, '["curl"]')
+    add_driver(rig.pose.bones["Arm.L"], "location", box, "")
+    add_driver(box, '["level"]', rig, "bone Head")
+    assert find_driver_cycle(rig) == ("", "")
+
+
 def at_rest(rig: Any, body: Any) -> None:
     rig.data.pose_position = "REST"
 
@@ -347,6 +404,9 @@ def locked(rig: Any, body: Any) -> None:
     [
         (unskinned, "Rig: it deforms no visible mesh; parent one to it"),
         (cyclic, r"Rig: a driver of Arm.L depends on itself; remove it"),
+        (cyclic_through_a_property, r"a driver of .* depends on itself; remove it"),
+        (cyclic_through_a_constraint, r"Rig: a driver of Arm.L depends on itself; remove it"),
+        (cyclic_elsewhere, r'Box: a driver of \["\w+"\] depends on itself; remove it'),
         (at_rest, "Rig: it shows its rest position; choose Pose Position"),
         (nothing, "no bone is selected; select one"),
         (locked, "Rig: the rotation of Arm.L is locked; unlock it"),

@@ -17,11 +17,12 @@ from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
 from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.driver_cycles import find_driver_cycle
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_visible
 from stiv.blender.scene.pose_bones import is_hidden, moved_bones, selected_bones
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import find_driver_cycle, find_followers
+from stiv.blender.scene.rig_followers import find_followers
 from stiv.blender.settings import EditSettings
 
 CHANNELS = {"move": (LOCATION,), "rotate": (ROTATION,), "scale": (SCALE,)}  # that respond
@@ -112,8 +113,9 @@ def check_rig(rig: bpy.types.Object) -> None:
         raise InputError(f"{rig.name}: it is linked; make a library override of it")
     if rig.data.pose_position == "REST":
         raise InputError(f"{rig.name}: it shows its rest position; choose Pose Position")
-    if driven := find_driver_cycle(rig):
-        raise InputError(f"{rig.name}: a driver of {driven} depends on itself; remove it")
+    owner, driven = find_driver_cycle(rig)
+    if driven:
+        raise InputError(f"{owner}: a driver of {driven} depends on itself; remove it")
 
 
 def _moved_bones(rig: bpy.types.Object, kind: str, individual: bool) -> list[BoneChannels]:

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds the objects that move with rigs, and drivers that depend on what they drive."""
+"""Finds the objects that move with rigs."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import bpy
 
 from stiv.blender.scene.dependencies import add_dependents, dependencies, referenced_objects
 from stiv.blender.scene.evaluations import RENDER, VIEWPORT
-
-BONE = re.compile(r'pose\.bones\["((?:[^"\\]|\\.)*)"\]')
-INDEX = re.compile(r"\[\d+\]$")
-Node = tuple[str, str]  # name of an object; of one of its bones, a data path, or "" for the object itself
 
 
 def find_followers(scene: bpy.types.Scene, rigs: set[str]) -> set[str]:
@@ -49,56 +44,3 @@ def find_driver_targets(owner: bpy.types.ID | None) -> Iterator[bpy.types.Driver
     animation = getattr(owner, "animation_data", None)
     for curve in () if animation is None else animation.drivers:
         yield from (target for variable in curve.driver.variables for target in variable.targets)
-
-
-def find_driver_cycle(rig: bpy.types.Object) -> str:
-    """The bone, or the data path, of a driver of a rig that depends on what it drives; empty if there is none."""
-    graph: dict[Node, set[Node]] = {}
-    drivers = [] if rig.animation_data is None else list(rig.animation_data.drivers)
-    for bone in rig.pose.bones:
-        node = (rig.name, bone.name)
-        graph.setdefault(node, set())
-        if bone.parent is not None:
-            graph[node].add((rig.name, bone.parent.name))
-        for constraint in bone.constraints:
-            target = getattr(constraint, "target", None)
-            if not constraint.mute and target == rig and getattr(constraint, "subtarget", ""):
-                graph[node].add((rig.name, constraint.subtarget))
-    for curve in drivers:
-        driven = _driven_by(rig, curve)
-        if found := BONE.match(curve.data_path):
-            graph.setdefault((rig.name, found.group(1)), set()).add(driven)
-        for variable in curve.driver.variables:
-            for target in variable.targets:
-                if target.id == rig:
-                    graph.setdefault(driven, set()).add(_read_by(rig.name, variable, target))
-    cyclic = (curve.data_path for curve in drivers if _reaches(_driven_by(rig, curve), graph))
-    path = next(cyclic, "")
-    found = BONE.match(path)
-    return path if found is None else found.group(1)
-
-
-def _driven_by(rig: bpy.types.Object, curve: bpy.types.FCurve) -> Node:
-    """The property that a driver writes."""
-    return rig.name, f"{curve.data_path}[{curve.array_index}]"
-
-
-def _read_by(rig: str, variable: bpy.types.DriverVariable, target: bpy.types.DriverTarget) -> Node:
-    """The property or bone that a target of a driver reads."""
-    if variable.type != "SINGLE_PROP":
-        return rig, target.bone_target
-    return rig, target.data_path if INDEX.search(target.data_path) else f"{target.data_path}[0]"
-
-
-def _reaches(start: Node, graph: Mapping[Node, set[Node]]) -> bool:
-    """Does a node depend on itself?"""
-    seen: set[Node] = set()
-    waiting = list(graph.get(start, ()))
-    while waiting:
-        node = waiting.pop()
-        if node == start:
-            return True
-        if node not in seen:
-            seen.add(node)
-            waiting += graph.get(node, ())
-    return False
