@@ -14,6 +14,7 @@ import stiv
 from stiv.blender import (
     BlenderEdit,
     EditSettings,
+    Task,
     check_scene,
     compare,
     correct_after_tool,
@@ -246,6 +247,33 @@ def test_an_edit_stops_where_the_topology_changes(way: str) -> None:
     assert edit.write().passed
     assert len(evaluated(ob)) == len(ob.data.vertices)
     assert min(np.linalg.norm(np.diff(evaluated(ob)[:7], axis=0), axis=1)) > 0.1
+
+
+@pytest.mark.parametrize("way", ["deforming", "edit mode"])
+def test_a_long_tick_ends_with_the_present_evaluation(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tick in contact evaluates hundreds of times: Esc ends it before the next evaluation but one."""
+    ob = STACKS["Geometry Nodes, Subdivision Surface"]()
+    add_body()
+    open_piece(ob, way)
+    edit, calls, evaluate = begin(), [], StackBlock.evaluate
+
+    def counted(block: StackBlock, positions: np.ndarray) -> np.ndarray | None:
+        calls.append(None)
+        return evaluate(block, positions)
+
+    monkeypatch.setattr(StackBlock, "evaluate", counted)
+    before = edit.controls.copy()
+    task = Task(edit.drag_steps(shift(0.3, 0, -3)))
+    while len(calls) < 20:
+        assert not task.advance(0.001)
+    task.cancel()
+    asked = len(calls)
+    while not task.advance(0.001):
+        pass
+    assert len(calls) <= asked + 1
+    assert task.result.status == "cancelled" and np.array_equal(edit.controls, before)
+    edit.drag(shift(0, 0, -0.1))
+    assert edit.write().passed and not np.array_equal(edit.controls, before)
 
 
 def test_a_modifier_that_uses_another_moving_object_is_refused() -> None:
