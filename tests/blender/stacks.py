@@ -250,6 +250,23 @@ def relaxed_after_posing() -> Any:
     return ob
 
 
+def relaxed_and_smooth() -> Any:
+    ob = relaxed_after_posing()
+    subdivided(ob)
+    return ob
+
+
+def posed_by_quaternions() -> Any:
+    ob = posed()
+    ob.modifiers[0].use_deform_preserve_volume = True
+    return ob
+
+
+def displaced_by_a_texture() -> Any:
+    texture = bpy.data.textures.new("Clouds", "CLOUDS")
+    return on_sheet("DISPLACE", strength=0.1, texture=texture)()
+
+
 def screwed() -> Any:
     ob = add_strip()
     add_modifier(ob, "SCREW", steps=8, render_steps=8)
@@ -335,9 +352,13 @@ STACKS = {
     "Armature": posed,
     "Armature, Subdivision Surface": posed_and_smooth,
     "Armature, Corrective Smooth": relaxed_after_posing,
+    "Armature, Corrective Smooth, Subdivision Surface": relaxed_and_smooth,
+    "Armature by dual quaternions": posed_by_quaternions,
+    "Displace by a texture": displaced_by_a_texture,
     "Displace": on_sheet("DISPLACE", strength=0.1),
     "Curve": along_a_curve,
     "Simple Deform": on_sheet("SIMPLE_DEFORM", deform_method="BEND", deform_axis="Y", angle=0.5),
+    "Twist": on_sheet("SIMPLE_DEFORM", deform_method="TWIST", deform_axis="X", angle=0.3),
     "Warp": warped,
     "Wave": on_sheet("WAVE", height=0.1, time_offset=-20),
     "Cast": on_sheet("CAST", factor=0.2),

@@ -100,6 +100,7 @@ MESSAGES = {
     'shape key "{}" {}': "形态键“{}”{}",
     'shows the cage "{}" and is hidden; show it': "显示笼“{}”但被隐藏；请显示它",
     "shows instances; realize them": "显示实例；请添加“实现实例”",
+    "shows no surface; disable it": "不显示任何表面；请禁用它",
     "simulates it; go to its start frame": "在模拟它；请转到其起始帧",
     "still intersects {}; clear its locks": "仍与 {} 相交；请清除其锁定",
     "strand {} has a value that is not finite; delete it": "发束 {} 有非有限值；请删除",

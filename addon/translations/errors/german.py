@@ -100,6 +100,7 @@ MESSAGES = {
     'shape key "{}" {}': 'Formschlüssel "{}" {}',
     'shows the cage "{}" and is hidden; show it': 'zeigt den Käfig "{}" und ist ausgeblendet; einblenden',
     "shows instances; realize them": "zeigt Instanzen; Instanzen realisieren hinzufügen",
+    "shows no surface; disable it": "zeigt keine Oberfläche; deaktivieren",
     "simulates it; go to its start frame": "simuliert es; zum Startframe gehen",
     "still intersects {}; clear its locks": "schneidet noch {}; Sperren lösen",
     "strand {} has a value that is not finite; delete it": "Strähne {} hat einen nicht endlichen Wert; löschen",

@@ -100,6 +100,7 @@ MESSAGES = {
     'shape key "{}" {}': "シェイプキー「{}」{}",
     'shows the cage "{}" and is hidden; show it': "ケージ「{}」を表示しますが非表示です。表示してください",
     "shows instances; realize them": "インスタンスを表示しています。「インスタンス実体化」を追加してください",
+    "shows no surface; disable it": "サーフェスを表示しません。無効にしてください",
     "simulates it; go to its start frame": "がシミュレートしています。開始フレームに移動してください",
     "still intersects {}; clear its locks": "まだ {} と交差しています。ロックを解除してください",
     "strand {} has a value that is not finite; delete it": "ストランド {} に有限でない値があります。削除してください",

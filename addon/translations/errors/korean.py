@@ -100,6 +100,7 @@ MESSAGES = {
     'shape key "{}" {}': '셰이프 키 "{}" {}',
     'shows the cage "{}" and is hidden; show it': '케이지 "{}"을(를) 보여 주지만 숨겨져 있음; 표시하세요',
     "shows instances; realize them": "인스턴스를 표시함; 인스턴스 실현을 추가하세요",
+    "shows no surface; disable it": "표면을 표시하지 않음; 비활성화하세요",
     "simulates it; go to its start frame": "이(가) 시뮬레이션함; 시작 프레임으로 이동하세요",
     "still intersects {}; clear its locks": "아직 {}와(과) 교차함; 잠금을 해제하세요",
     "strand {} has a value that is not finite; delete it": "가닥 {}에 유한하지 않은 값이 있음; 삭제하세요",

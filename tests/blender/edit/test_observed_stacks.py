@@ -187,8 +187,8 @@ def simulated() -> Any:
     return ob
 
 
-def with_modifier(kind: str, **settings: Any) -> Any:
-    ob = add_sheet(12)
+def with_modifier(kind: str, count: int = 12, **settings: Any) -> Any:
+    ob = add_sheet(count)
     add_modifier(ob, "MIRROR", "Both", use_axis=(False, True, False), use_mirror_merge=False)
     add_modifier(ob, kind, "It", **settings)
     return ob
@@ -207,6 +207,9 @@ REFUSED = {
     'Piece: Decimate "It" changes topology; apply it': lambda: with_modifier("DECIMATE", ratio=0.5),
     'Piece: Edge Split "It" changes topology; apply it': lambda: with_modifier("EDGE_SPLIT", split_angle=0.1),
     'Piece: Triangulate "It" flips quads; set Quad Method to Fixed': triangulated_and_smooth,
+    'Piece: Remesh "It" changes topology; apply it': lambda: with_modifier("REMESH", mode="BLOCKS"),
+    'Piece: Skin "It" changes topology; apply it': lambda: with_modifier("SKIN", count=2),
+    'Piece: Bevel "It" changes topology; apply it': lambda: with_modifier("BEVEL", angle_limit=0.05, width=0.02),
     'Piece: Ocean "It" hides edits; disable it': lambda: with_modifier("OCEAN", resolution=2),
 }
 
@@ -224,6 +227,13 @@ def test_what_no_edit_can_follow_is_refused(message: str, mode: str) -> None:
     assert snapshot() == before
     if mode == "OBJECT" and "projects" not in message:
         BlenderEdit.begin(bpy.context, EditSettings(), "move")  # it moves as a whole
+
+
+def test_a_modifier_without_a_surface_is_named() -> None:
+    ob = with_modifier("MASK")
+    select(ob)
+    with pytest.raises(stiv.InputError, match='Piece: Mask "It" shows no surface; disable it'):
+        begin()
 
 
 def test_the_way_out_of_turning_diagonals_is_one() -> None:

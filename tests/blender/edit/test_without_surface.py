@@ -78,5 +78,5 @@ def test_a_mesh_that_shows_only_points_is_refused_by_name() -> None:
     cube = add_cube("Cube")
     cube.modifiers.new("Nodes", "NODES").node_group = tree
     select(cube)
-    with pytest.raises(InputError, match="Cube: has no surface that deforms; set its deformation to Rigid"):
+    with pytest.raises(InputError, match='Cube: Geometry Nodes "Nodes" shows no surface; disable it'):
         BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")

@@ -190,8 +190,9 @@ def refused(pattern: str, settings: EditSettings = DEFORM) -> None:
 
 
 SHADING = [
-    "NODES", "COLLISION", "WELD", "DATA_TRANSFER", "VERTEX_WEIGHT_EDIT", "CLOTH", "SOFT_BODY", "DYNAMIC_PAINT",
-    "MESH_SEQUENCE_CACHE",
+    "NODES", "COLLISION", "WELD", "DATA_TRANSFER", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "VERTEX_WEIGHT_PROXIMITY",
+    "UV_PROJECT", "UV_WARP", "WEIGHTED_NORMAL", "NORMAL_EDIT", "SURFACE", "EXPLODE", "CLOTH", "SOFT_BODY",
+    "DYNAMIC_PAINT", "FLUID", "MESH_CACHE", "MESH_SEQUENCE_CACHE",
 ]  # fmt: skip
 
 
@@ -281,6 +282,7 @@ def test_messages_fit_the_status_bar() -> None:
     of_reason |= {"before subdivision": [kinds["TRIANGULATE"]], "second subdivision": [kinds["SUBSURF"]]}
     of_reason |= {"projects": [kinds["SHRINKWRAP"]], "simulated": [kinds[kind] for kind in SIMULATIONS]}
     of_reason |= {"flips quads": [kinds["TRIANGULATE"]], "shows instances": [kinds["NODES"]]}
+    of_reason["no surface"] = [kinds[kind] for kind in ("MASK", "BUILD", "NODES", "REMESH", "MESH_TO_VOLUME")]
     of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
     messages = [
         f'{NAME}: {kind} "{NAME}" {text.format(other=NAME)}'

@@ -27,7 +27,7 @@ from stiv.blender.controls.rigid_groups import (
 )
 from stiv.blender.controls.rigid_placement import make_rigid_set
 from stiv.blender.controls.shared_meshes import other_users
-from stiv.blender.controls.stack_refusals import SIMULATIONS
+from stiv.blender.controls.stack_refusals import SIMULATIONS, no_surface_error
 from stiv.blender.controls.subdivision import stack_deformations
 from stiv.blender.controls.transform_locks import drop_locked
 from stiv.blender.scene.arrays import Floats
@@ -127,7 +127,7 @@ def _shown_as(name: str, meshes: Sequence[VisibleMesh], settings: EditSettings) 
     if not indices and shown != name:
         raise InputError(f'{shown}: shows the cage "{name}" and is hidden; show it')
     if not any(len(meshes[index].local) for index in indices):
-        raise InputError(f"{name}: has no surface that deforms; set its deformation to Rigid")
+        raise no_surface_error(bpy.data.objects[name])
     return indices
 
 

@@ -8,10 +8,12 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
+from stiv import InputError
 from stiv.blender.scene.arrays import Singles
-from stiv.blender.scene.evaluations import is_active
+from stiv.blender.scene.evaluations import VIEWPORT, is_active
+from stiv.blender.scene.mesh_reading import read_cage
 from stiv.blender.scene.modifier_stack import modifier_error
-from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin
+from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin, open_twin
 
 SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 SMALL = (0.0, 0.001, 0.003)  # moves that may not change the topology, in sizes of the mesh
@@ -57,6 +59,17 @@ def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agre
     if not _has_effect(found, moves):
         name = _first(twin, moves, lambda each: not _has_effect(each, moves))
         raise modifier_error(ob, name, "simulated" if ob.modifiers[name].type in SIMULATIONS else "ignores vertices")
+
+
+def no_surface_error(ob: bpy.types.Object) -> InputError:
+    """The error for an object without a visible surface, with the modifier that removes it, if one does."""
+    if ob.type == "MESH" and any(each.show_viewport for each in ob.modifiers):
+        with open_twin(ob, bpy.context.scene, VIEWPORT) as twin:
+            local = [read_cage(ob)]
+            if len(local[0]) > 0 == len(twin.evaluate(local[0]).positions):
+                name = _first(twin, local, lambda found: len(found[0].positions) == 0)
+                return modifier_error(ob, name, "no surface")
+    return InputError(f"{ob.name}: has no surface that deforms; set its deformation to Rigid")
 
 
 def _keeps_topology(found: list[EvaluatedStack], agree: Comparison = EvaluatedStack.has_topology_of) -> bool:

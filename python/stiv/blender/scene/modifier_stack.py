@@ -26,6 +26,7 @@ MODIFIER_REASONS = {
     "deformed lattice": 'deforms it; select "{other}" instead',
     "flips quads": "flips quads; set Quad Method to Fixed",
     "ignores vertices": "hides edits; disable it",
+    "no surface": "shows no surface; disable it",
     "of lattice": "deforms the lattice; apply it",
     "projects": 'projects onto "{other}"; edit that',
     "same lattice": 'uses "{other}" again; apply it',
