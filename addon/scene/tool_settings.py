@@ -188,6 +188,6 @@ def unsupported_settings(context: bpy.types.Context) -> list[str]:
             notes.append(translate("Individual Origins are not supported with proportional editing; using the median"))
     if context.mode != "OBJECT" and tools.use_snap and tools.use_snap_align_rotation:
         notes.append(translate("aligning rotation to the snap target is not supported"))
-    if context.mode == "POSE" and any(rig.pose.use_mirror_x or rig.pose.use_auto_ik for rig in context.objects_in_mode):
-        notes.append(translate("X-Axis Mirror and Auto IK are not supported"))
+    if context.mode == "POSE" and any(rig.pose.use_auto_ik for rig in context.objects_in_mode):
+        notes.append(translate("Auto IK is not supported; add Inverse Kinematics"))
     return notes

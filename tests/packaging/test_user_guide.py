@@ -14,7 +14,7 @@ BLENDERS = {
     "Increment", "Individual Origins", "Inverse Kinematics", "Is Viewport", "Item", "Join", "Keymap", "Lattice",
     "Library Override", "Make",
     "Mesh", "Mirror", "Normal", "Object", "Object Gizmos", "Options", "Parent", "Preferences", "Projected",
-    "Quad Method", "Realize Instances", "Rest Position", "STIV", "Shape Key Edit Mode",
+    "Quad Method", "Realize Instances", "Relative Mirror", "Rest Position", "STIV", "Shape Key Edit Mode",
     "Snap To", "Topology Mirror", "Transform",
     "Transform Modal Map", "Undo", "Vertex", "View", "Volume",
 }  # fmt: skip

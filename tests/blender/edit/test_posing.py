@@ -178,6 +178,40 @@ def test_individual_origins_curl_a_chain() -> None:
         assert rig.pose.bones[name].rotation_quaternion.angle == pytest.approx(np.radians(40), abs=1e-5)
 
 
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ"])
+def test_x_axis_mirror_moves_both_sides_which_stop_together(mode: str) -> None:
+    """One box below one hand stops both arms, at mirror images of each other; a difference at the start stays."""
+    rig, body, box = box_below_hand(rotation_mode=mode)
+    left, right = rig.pose.bones["Arm.L"], rig.pose.bones["Arm.R"]
+    right.rotation_mode = "ZXY"
+    rig.pose.use_mirror_x = True
+    rig.pose.bones["Forearm.R"].scale = (1.1, 1.1, 1.1)
+    bpy.context.view_layer.update()
+    result, report, edit = apply("rotate", turn(np.radians(60), "Y", SHOULDER))
+    assert result.status == "corrected" and report.passed
+    assert intersecting(body, box) == 0 and 0.005 < lowest(body) < 0.03
+    bpy.context.view_layer.update()
+    assert np.allclose(right.tail, np.array(left.tail) * (-1, 1, 1), atol=1e-5) and right.tail.z < 1.3
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    edit.insert_keyframes(bpy.context)
+    paths = {curve.data_path for curve in curves_of(rig)}
+    assert 'pose.bones["Arm.R"].rotation_euler' in paths and not any("Forearm" in path for path in paths)
+    edit.restore()
+    assert tuple(right.rotation_euler) == (0, 0, 0)
+    select_bones(rig, "Arm.L", "Arm.R")  # both selected: each moves by itself
+    result, report, _ = apply("rotate", turn(np.radians(-20), "Y", SHOULDER))
+    assert report.passed and right.tail.z < left.tail.z
+
+
+def curves_of(rig: Any) -> list[Any]:
+    action = rig.animation_data.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [
+        curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves
+    ]
+
+
 def test_other_bones_yield_if_asked() -> None:
     """The arm follows its goal exactly, and other bones turn away from the box."""
     rig, body, box = box_below_hand()

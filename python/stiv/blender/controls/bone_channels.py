@@ -24,6 +24,7 @@ LOCATION, ROTATION, SCALE = slice(0, 3), slice(3, 7), slice(7, 10)  # of the cha
 ANGLES, VECTOR, COMPONENTS = "angles", "vector", "components"
 AXIS_ANGLE = "AXIS_ANGLE"
 ROTATION_NAMES = {"QUATERNION": "rotation_quaternion", AXIS_ANGLE: "rotation_axis_angle"}  # others: rotation_euler
+FLIP = mathutils.Matrix.Diagonal((-1, 1, 1, 1))  # mirrors X
 LONGEST_TURN = 0.2  # radians of a step: its chords leave an arc by 0.5 % of the radius
 
 
@@ -74,6 +75,56 @@ class StoredChannels:
     rotation: tuple[float, ...]
     scale: tuple[float, ...]
 
+    @classmethod
+    def read(cls, bone: bpy.types.PoseBone) -> StoredChannels:
+        """Read a bone."""
+        return cls(tuple(bone.location), tuple(_rotation(bone)), tuple(bone.scale))
+
+    def write(self, bone: bpy.types.PoseBone) -> None:
+        """Write all channels."""
+        for name, values in self._rows(bone):
+            _write(bone, name, values)
+
+    def changed(self, bone: bpy.types.PoseBone) -> list[str]:
+        """The properties of a bone that differ."""
+        return [name for name, values in self._rows(bone) if tuple(getattr(bone, name)) != values]
+
+    def _rows(self, bone: bpy.types.PoseBone) -> list[tuple[str, tuple[float, ...]]]:
+        return [("location", self.location), (_rotation_name(bone), self.rotation), ("scale", self.scale)]
+
+
+@dataclass(frozen=True, eq=False)
+class MirroredBone:
+    """The bone on the other side, which X-Axis Mirror moves along.
+
+    Attributes:
+        name: of the bone.
+        stored: its channels at the start.
+        offset: its matrix relative to the mirror image of the other bone's, (4, 4), at the start.
+    """
+
+    name: str
+    stored: StoredChannels
+    offset: mathutils.Matrix
+
+    @classmethod
+    def read(cls, bone: bpy.types.PoseBone, other: bpy.types.PoseBone) -> MirroredBone:
+        """Read the other bone of a bone that moves."""
+        offset = _mirror_image(bone).inverted_safe() @ other.matrix_basis
+        return cls(other.name, StoredChannels.read(other), offset)
+
+    def write(self, bone: bpy.types.PoseBone, rests: bool) -> None:
+        """Write the mirror image of a bone; at its start, the own start to the last bit."""
+        other = bone.id_data.pose.bones[self.name]
+        if rests:
+            self.stored.write(other)
+        else:
+            other.matrix_basis = _mirror_image(bone) @ self.offset
+
+
+def _mirror_image(bone: bpy.types.PoseBone) -> mathutils.Matrix:
+    return FLIP @ bone.matrix_basis @ FLIP
+
 
 @dataclass(frozen=True, eq=False)
 class BoneChannels:
@@ -97,6 +148,7 @@ class BoneChannels:
         frame: from the channels to the world.
         free: the channels without a lock, ascending.
         lower, upper: limits, (10,).
+        mirrored: the bone on the other side that moves along; None without X-Axis Mirror.
     """
 
     rig: ObjectReference
@@ -111,12 +163,13 @@ class BoneChannels:
     free: Indices
     lower: Floats
     upper: Floats
+    mirrored: MirroredBone | None = None
 
     @classmethod
     def read(cls, rig: bpy.types.Object, bone: bpy.types.PoseBone, selected: bool) -> BoneChannels:
         """Read a bone with all its free channels."""
         form = _form(bone)
-        stored = StoredChannels(tuple(bone.location), tuple(_rotation(bone)), tuple(bone.scale))
+        stored = StoredChannels.read(bone)
         quaternion = _quaternion(bone)
         start = np.zeros(10)
         start[LOCATION], start[SCALE] = stored.location, stored.scale
@@ -188,15 +241,12 @@ class BoneChannels:
         rotation = self.stored.rotation if self._rests(ROTATION, channels) else self._rotation_of(channels[ROTATION])
         _write(bone, _rotation_name(bone), rotation)
         _write(bone, "scale", self.stored.scale if self._rests(SCALE, channels) else channels[SCALE])
+        if self.mirrored is not None:
+            self.mirrored.write(bone, bool((channels == self.start).all()))
 
-    def properties(self, bone: bpy.types.PoseBone) -> list[tuple[slice, str, bool]]:
-        """The ranges of the channels, their properties of the bone, and whether these differ from the start."""
-        rows = (
-            (LOCATION, "location", self.stored.location),
-            (ROTATION, _rotation_name(bone), self.stored.rotation),
-            (SCALE, "scale", self.stored.scale),
-        )
-        return [(channels, name, tuple(getattr(bone, name)) != start) for channels, name, start in rows]
+    def property_of(self, channels: slice, bone: bpy.types.PoseBone) -> str:
+        """The property of a bone with a range of its channels."""
+        return {LOCATION.start: "location", SCALE.start: "scale"}.get(channels.start, _rotation_name(bone))
 
     def find(self) -> bpy.types.PoseBone:
         """The bone at present. Raises SceneChangedError if it is gone."""

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from stiv import InputError
-from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels
+from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels, MirroredBone
 from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, Writer
 from stiv.blender.controls.garments import Garment, stacked_weights
 from stiv.blender.controls.joined_seams import join_notes
@@ -20,7 +20,7 @@ from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_visible
-from stiv.blender.scene.pose_bones import is_hidden, moved_bones, selected_bones
+from stiv.blender.scene.pose_bones import is_hidden, is_selected, moved_bones, selected_bones
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.rig_followers import find_followers
 from stiv.blender.settings import EditSettings
@@ -72,7 +72,8 @@ def make_bone_set(
     for rig, participant in zip(rigs, participants, strict=True):
         found = list(participant.bones) or _moved_bones(rig, kind, individual)
         if settings.responders != "selected" and not participant.bones and not garments:
-            found += _other_bones(rig, {each.name for each in found})
+            moved = {name for each in found for name in (each.name, each.mirrored and each.mirrored.name) if name}
+            found += _other_bones(rig, moved)
         bones += found
         given = 0.0 if garments and settings.responders == "unselected" else 1.0
         responses += [np.full(10, given) if participant.bones else _weights(bone, kind, settings) for bone in found]
@@ -125,7 +126,15 @@ def _moved_bones(rig: bpy.types.Object, kind: str, individual: bool) -> list[Bon
     able = [bone for bone in bones if len(bone.limited_to(*CHANNELS[kind]).free)]
     if bones and not able:
         raise InputError(_locked_message(rig, rig.pose.bones[bones[0].name], kind))
-    return able
+    return [_with_mirrored(rig, each) for each in able] if rig.pose.use_mirror_x else able
+
+
+def _with_mirrored(rig: bpy.types.Object, channels: BoneChannels) -> BoneChannels:
+    """The bone with the one on the other side, unless that is selected too."""
+    bone, other = rig.pose.bones[channels.name], rig.pose.bones.get(bpy.utils.flip_name(channels.name))
+    if other is None or other == bone or is_selected(other):
+        return channels
+    return replace(channels, mirrored=MirroredBone.read(bone, other))
 
 
 def _locked_message(rig: bpy.types.Object, bone: bpy.types.PoseBone, kind: str) -> str:
@@ -206,9 +215,16 @@ class BoneWriter:
         options = keyframe_options(context)
         for each in self.scalars.bones:
             bone = each.find()
-            for channels, name, has_changed in each.properties(bone):
-                if has_changed or (each.selected and channels == self.keyed[-1]):
-                    bone.keyframe_insert(name, group=bone.name, options=options)
+            always = {each.property_of(self.keyed[-1], bone)} if each.selected else set()
+            _insert(bone, always.union(each.stored.changed(bone)), options)
+            if each.mirrored is not None:
+                other = bone.id_data.pose.bones[each.mirrored.name]
+                _insert(other, always.union(each.mirrored.stored.changed(other)), options)
+
+
+def _insert(bone: bpy.types.PoseBone, names: Collection[str], options: set[str]) -> None:
+    for name in sorted(names):
+        bone.keyframe_insert(name, group=bone.name, options=options)
 
 
 @dataclass(frozen=True)
