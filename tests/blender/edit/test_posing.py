@@ -316,12 +316,17 @@ def among_boxes() -> tuple[Any, Any, list[Any]]:
 
 def pose_at_random(random: np.random.Generator, rig: Any) -> tuple[str, str]:
     """Rotate a random bone; the status, and why the pose could not be written."""
+    head, axis, angle = random_rotation(random, rig)
+    result, report, _ = apply("rotate", turn(angle, axis, head))
+    return result.status, "" if report.passed else report.message
+
+
+def random_rotation(random: np.random.Generator, rig: Any) -> tuple[np.ndarray, str, float]:
+    """Select a random bone: its head, an axis and an angle."""
     bones = ["Arm.L", "Forearm.L", "Arm.R", "Forearm.R", "Thigh.L", "Shin.L", "Chest", "Spine"]
     name, axis = str(random.choice(bones)), str(random.choice(list("XYZ")))
     select_bones(rig, name)
-    head = np.array(rig.pose.bones[name].head)
-    result, report, _ = apply("rotate", turn(random.uniform(-1.2, 1.2), axis, head))
-    return result.status, "" if report.passed else report.message
+    return np.array(rig.pose.bones[name].head), axis, random.uniform(-1.2, 1.2)
 
 
 def count_intersections(body: Any, obstacles: list[Any]) -> int:

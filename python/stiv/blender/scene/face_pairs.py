@@ -18,10 +18,12 @@ def find_face_pairs(
 ) -> tuple[FacePair, ...]:
     """All intersections at positions `q`, (N, 3), without duplicates, including those of loose edges and vertices.
 
-    meeting: intersecting pairs of triangles, (k, 2), if known.
+    intersecting: pairs of triangles, (k, 2), if known.
     """
     faces = stiv.find_intersections(q, assembly.surface, threads=threads) if intersecting is None else intersecting
-    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
+    none = np.empty((0, 2), np.int32)
+    loose = _has_loose_elements(assembly.surface)
+    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads) if loose else (none, none)
     counts = Counter(
         [
             *((assembly.face(a), assembly.face(b)) for a, b in faces.tolist()),
@@ -33,6 +35,13 @@ def find_face_pairs(
         if (first, second) in counts:  # pairs of two faces occur in both orders
             counts[first, second] += counts.pop((second, first))
     return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
+
+
+def _has_loose_elements(surface: stiv.Surface) -> bool:
+    """Has a surface edges or vertices without triangles?"""
+    used = np.zeros(surface.vertex_count, bool)
+    used[surface.triangles] = True
+    return len(surface.loose_edges) > 0 or not bool(used.all())
 
 
 class EventElements:
