@@ -20,4 +20,5 @@ chmod +x "$folder/usr/bin/python"
 
 export PYTHONPATH="$folder/stiv:$folder/packages" PYTHONDONTWRITEBYTECODE=1
 "$folder/usr/bin/python" -m stiv.command_line self-test
-"$folder/usr/bin/python" -m pytest -q -p no:cacheprovider -m "not blender" $(cat "$here/core_tests.txt")
+"$folder/usr/bin/python" -m pytest -q -p no:cacheprovider -o faulthandler_timeout=3600 -m "not blender" \
+    $(cat "$here/core_tests.txt")
