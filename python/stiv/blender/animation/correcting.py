@@ -20,6 +20,7 @@ from stiv.blender.settings import EditSettings
 
 WIDTHS = (2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 26, 32)  # frames over which a correction is held and averaged
 ROUNDS = 12  # of smoothing and solving what intersects again
+PATIENCE = 3  # rounds that may pass without fewer intersecting moments
 MORE = 1.15  # factor of a need that smoothing did not meet
 SMALL = 1e-6  # radians or units below which a correction is none
 
@@ -82,13 +83,17 @@ class Corrector:
         failing = self._failing(self._input)
         needed = self._frames_of(failing)
         raw, failed = self._solve(needed)
-        smooth, need = none, raw.copy()
+        smooth, need, fewest, stalled = none, raw.copy(), 2 * len(self._frames), 0
         for _ in range(ROUNDS):
             smooth = self._smooth(need)
             again = self._failing(self._surfaces(smooth)) & ~self._moments_of(failed)
-            if not again.any():
+            stalled = 0 if again.sum() < fewest else stalled + 1
+            fewest = min(fewest, int(again.sum()))
+            if not again.any() or stalled > PATIENCE:
                 break
-            need = self._raise(need, smooth, raw, again)
+            before, need = need, self._limited(self._raise(need, smooth, raw, again))
+            if np.array_equal(before, need):
+                break
         left = self._frames_of(self._failing(self._surfaces(smooth))) | failed
         names = tuple(frame for frame, is_left in zip(self._frames, left.tolist(), strict=True) if is_left)
         return Correction(
