@@ -115,6 +115,27 @@ def test_only_the_chosen_bones_change_and_no_more_than_allowed(tmp_path: Path) -
     assert most["Forearm.L"] > 1 and most["Arm.L"] <= 2 * 3**0.5 + 0.1
 
 
+def test_the_target_of_an_inverse_kinematics_is_corrected_and_the_constraint_stays(tmp_path: Path) -> None:
+    make_clip("walk")
+    rig = bpy.data.objects["Rig"]
+    rig.animation_data_clear()
+    for bone in rig.pose.bones:
+        bone.rotation_euler = (0, 0, 0)
+    hand = bpy.data.objects.new("Hand", None)
+    bpy.context.collection.objects.link(hand)
+    places = [0.5 - 0.5 * np.cos(2 * np.pi * k / 24) for k in range(25)]
+    key(hand, "location", [(1.05 - 0.76 * along, -0.15, 0.5) for along in places])
+    reach = rig.pose.bones["Forearm.L"].constraints.new("IK")
+    reach.target, reach.chain_count = hand, 2
+    before = bends(25)
+    assert findings(25)
+    report = resolved(tmp_path, "--joint-region", "0")
+    assert findings(25) == [] and report["free"]
+    np.testing.assert_array_equal(bends(25), before)  # of the bones' own channels
+    rig = bpy.data.objects["Rig"]
+    assert rig.animation_data is None and rig.pose.bones["Forearm.L"].constraints[0].target.name == "Hand"
+
+
 def key(ob, path: str, values) -> None:
     """Linear keyframes from frame 1 on."""
     for frame, value in enumerate(values, 1):
@@ -226,14 +247,14 @@ BAD = {
     "Rig: NLA strips move it; bake them to an action": pushed_down,
     "its curve has a modifier; bake the action": repeated,
     "Rig: it shows its rest position; choose Pose Position": lambda rig: setattr(rig.data, "pose_position", "REST"),
-    "Rig: it deforms no visible mesh; parent one to it": lambda rig: bpy.data.objects.remove(bpy.data.objects["Body"]),
+    "Rig: it deforms no visible mesh; parent one to it": lambda rig: bpy.data.objects.remove(bpy.data.objects["Bar"]),
     "Rig: it has no keyframes in frames 100 to 110": lambda rig: rig.users_scene[0].__setattr__("frame_start", 100),
 }
 
 
 @pytest.mark.parametrize("message", BAD)
 def test_bad_input_is_refused_by_name(tmp_path: Path, capsys, message: str) -> None:
-    make_clip("walk")
+    swinging_bar()
     BAD[message](bpy.data.objects["Rig"])
     bpy.context.scene.frame_end = max(bpy.context.scene.frame_end, bpy.context.scene.frame_start + 10)
     resolved(tmp_path, code=2)
@@ -245,9 +266,23 @@ def test_bad_input_is_refused_by_name(tmp_path: Path, capsys, message: str) -> N
 @pytest.mark.parametrize(("options", "message"), [
     (("--bone", "Tail*"), "Tail*: no keyframes move a bone or object of this name"),
     (("--hold", "Ghost"), "Ghost: there is no object of this name; remove it from --hold"),
-    (("--frames", "1:25:2"), "--write rig needs at least two frames in steps of 1"),
+    (("--frames", "1:13:2"), "--write rig needs at least two frames in steps of 1"),
 ])  # fmt: skip
 def test_bad_options_are_refused_by_name(tmp_path: Path, capsys, options, message: str) -> None:
-    make_clip("walk")
+    swinging_bar()
     resolved(tmp_path, *options, code=2)
     assert message in capsys.readouterr().err
+
+
+def test_a_linked_rig_without_an_override_is_refused(tmp_path: Path, capsys) -> None:
+    swinging_bar()
+    library = tmp_path / "library.blend"
+    save_blend(library)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, linked):
+        linked.objects = ["Rig", "Bar", "Box"]
+    for ob in linked.objects:
+        bpy.context.collection.objects.link(ob)
+    bpy.context.scene.frame_end = 13
+    resolved(tmp_path, code=2)
+    assert "Rig: it is linked; make a library override of it" in capsys.readouterr().err
