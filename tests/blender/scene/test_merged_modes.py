@@ -45,10 +45,21 @@ def test_equal_modes_are_one_mesh_until_object_mode_shows_another(monkeypatch: p
     assert edit.write().passed
 
 
-@pytest.mark.parametrize("make", [posed, lambda: hidden_in_edit_mode()])
+@pytest.mark.parametrize("make", [posed, lambda: hidden_in_edit_mode(), lambda: with_an_empty_key()])
 def test_what_only_one_mode_shows_stays_guarded(make: Any) -> None:
     edit = begin(make())
     assert shown_in(edit) == [{"shown"}, {"viewport", "render"}]
+    edit.drag(shift(0, 0, -0.6))
+    assert edit.write().passed
+
+
+def with_an_empty_key() -> Any:
+    """A piece with a new shape key at half its value: Object Mode shows half of each edit."""
+    ob = pushed_and_smooth()
+    ob.shape_key_add(name="Basis")
+    ob.shape_key_add(name="New").value = 0.5
+    ob.active_shape_key_index = 1
+    return ob
 
 
 def hidden_in_edit_mode() -> Any:

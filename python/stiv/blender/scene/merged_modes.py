@@ -23,7 +23,8 @@ COMPARED = ("local", "matrix", "triangles", "loose_edges")
 def merge_modes(meshes: Sequence[VisibleMesh], scene: bpy.types.Scene) -> tuple[VisibleMesh, ...]:
     """Merge each mesh of Object Mode into that of the present mode, if modifiers and all values are equal.
 
-    Equal values alone are not enough: a modifier that Edit Mode hides may begin to act when the mesh moves.
+    Equal values alone are not enough. A modifier that Edit Mode hides may begin to act when the mesh moves. An empty
+    shape key moves the mesh of Object Mode by its value only.
     """
     counts = Counter((mesh.owner, mesh.read_from) for mesh in meshes)
     apart = {mesh.owner: mesh for mesh in meshes if mesh.read_from == VIEWPORT}
@@ -62,6 +63,8 @@ def read_apart(assembly: Assembly, placed: Placed, opened: OpenEvaluations) -> I
 
 def _are_alike(mesh: VisibleMesh, other: VisibleMesh, scene: bpy.types.Scene) -> bool:
     ob = mesh.owner.find()
+    if ob.type == "MESH" and ob.data.shape_keys is not None:
+        return False
     return signature(ob, scene, SHOWN) == signature(ob, scene, VIEWPORT) and all(
         np.array_equal(getattr(mesh, name), getattr(other, name)) for name in COMPARED
     )
