@@ -21,6 +21,8 @@ constexpr double least_energy_drop_rate = 1.5e-3;  // relative, for each round o
 constexpr double growing_rate = 1.5;               // of the rate of the pull before
 constexpr double least_detour_gain = 0.1;          // relative drop of the energy
 constexpr double missing_growth = 2;               // of the way to the goal, until a drag tries a detour again
+constexpr double least_leap_gain = 0.02;           // relative drop of the energy; below it the leap gained little
+constexpr double missing_growth_to_leap = 1.25;    // of the way to the goal, until a drag leaps again
 
 /// The accepted controls, plus the motion of the goal since it was last followed; the goal itself if it was reached
 /// then.
@@ -165,6 +167,22 @@ void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
   call.report.blocked = was_blocked && call.report.blocked;
 }
 
+void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimits limits) {
+  const auto leap_again = [&] {
+    const double missing = longest_displacement(call.accepted.surface, aim.surface);
+    if (!is_far(call, aim) || missing < missing_growth_to_leap * drag.missing_at_leap) return;
+    const double before = energy(call.accepted.surface, aim.surface);
+    leap(call, aim, drag);
+    const double after = energy(call.accepted.surface, aim.surface);
+    drag.missing_at_leap = after > (1 - least_leap_gain) * before ? missing : 0;
+    if (after < before) limits.poor_pulls = 1;
+  };
+  const bool leaps_first = !call.execution.has_time_budget();
+  if (leaps_first) leap_again();
+  pull_until_settled(call, aim, limits);
+  if (!leaps_first) leap_again();
+}
+
 bool detour(EditCall& call, const Aim& aim) {
   const bool is_one_body = call.context.deformation().rotation_rows().size() == 1;
   if (!is_one_body || !is_far(call, aim) || call.execution.has_time_budget()) return false;
@@ -178,9 +196,9 @@ bool detour(EditCall& call, const Aim& aim) {
   return false;
 }
 
-bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag) {
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag, double least_way) {
   const double missing = longest_displacement(call.accepted.surface, aim.surface);
-  if (!(missing > missing_growth * drag.missing_at_detour)) return false;
+  if (!(missing > std::max(least_way, missing_growth * drag.missing_at_detour))) return false;
   const bool passes = detour(call, aim);
   drag.missing_at_detour = passes || !is_far(call, aim) ? 0 : missing;
   return passes;

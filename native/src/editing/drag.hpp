@@ -20,6 +20,7 @@ struct DragProgress {
   bool stride_took_several_calls = false;  ///< and had contacts
   bool is_leaping = false;       ///< the time budget ended a leap, which the next call to the same goal resumes
   double missing_at_detour = 0;  ///< way to the goal when the last detour failed; 0: none did
+  double missing_at_leap = 0;    ///< the same at the last leap, if it gained little; else 0
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
 };
@@ -50,14 +51,19 @@ void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits
 /// goal has passed. A leap that fails does not block the call, and is not repeated.
 void leap(EditCall& call, const Aim& aim, DragProgress& drag);
 
+/// Pulls, and leaps if the last leap gained clearly, or the way to the goal has grown since. Without a time budget, the
+/// leap comes first and leaves less to pull. With one, pulls are accepted sooner.
+void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimits limits);
+
 /// Moves a rigid body that an obstacle keeps far from its goal aside, across the way to it, and lets it leap from
 /// there. Ends where it began if no way aside lowers the energy clearly. Returns whether one did. Does nothing near the
 /// goal, with a time budget, or unless the controls are those of one rigid body: among several, the others shall be
 /// pushed. (mathematics.md, "Deep goals")
 bool detour(EditCall& call, const Aim& aim);
 
-/// The same for a drag, which tries a detour again only when the way to the goal has doubled since one failed.
-bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag);
+/// The same for a drag, if the way to the goal is longer than `least_way`. Tries again only when it has doubled since a
+/// detour failed.
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag, double least_way);
 
 /// The longest displacement of a vertex between two surfaces.
 double longest_displacement(const Positions& from, const Positions& to);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "editing/drag.hpp"
+#include "editing/drag_trail.hpp"
 #include "editing/edit_result.hpp"
 #include "editing/feasible_state.hpp"
 #include "editing/sub_edit_loop.hpp"
@@ -14,6 +15,8 @@
 namespace stiv {
 
 namespace {
+
+constexpr double least_gain_of_edit = 1e-3;  // relative drop of the energy after a drag
 
 /// Whether a goal counts as followed when the time budget ends its call.
 enum class FollowedGoal {
@@ -50,6 +53,7 @@ class EditSession::Implementation {
     checked_ = controls;
     progress_.reset();
     queries_.clear_cache();
+    trail_.begin(controls);
     drag_ = {.followed = last_feasible(context_, state, context_.limits().nearest(goal), execution)};
     goal_ = goal;
     accepted_ = std::move(state);
@@ -63,47 +67,54 @@ class EditSession::Implementation {
   }
 
   EditResult edit(const Controls& goal, Execution& execution) {
-    return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
+    const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
-      drag_.missing_at_detour = 0;
+      drag_.missing_at_detour = drag_.missing_at_leap = 0;
       forget_leaps();
-      if (longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance() ||
-          context_.options().max_sub_edits == 1) {
+      const bool is_near = longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
+      if (is_near || context_.options().max_sub_edits == 1)
         run_sub_edits_by_steps(call, aim);
-      } else {
-        const Controls start = accepted_.controls;
-        approach_by_sub_goals(call, aim);
-        refine(call, aim);
-        if (detour(call, aim)) refine(call, aim);
-        if (!moves_pinned_controls(context_.options(), start, aim.controls)) return_to_best(call, aim);
-      }
-    });
+      else
+        edit_toward(call, aim);
+    };
+    EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
+    trail_.begin(accepted_.controls);
+    return result;
   }
 
   EditResult drag(const Controls& goal, Execution& execution) {
-    return carry_out(goal, execution, FollowedGoal::as_the_work_recorded, [&](EditCall& call, const Aim& aim) {
+    const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
       if (aim.controls != drag_.followed.controls) forget_leaps();
       if (drag_.is_leaping) leap(call, aim, drag_);
       follow_goal(call, aim, drag_);
-      pull_until_settled(call, aim, limits);
-      leap(call, aim, drag_);
-      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
-    });
+      pull_and_leap(call, aim, drag_, limits);
+      if (detour_of_drag(call, aim, drag_, 2 * context_.far_distance())) pull_until_settled(call, aim, limits);
+    };
+    EditResult result = carry_out(goal, execution, FollowedGoal::as_the_work_recorded, work);
+    if (result.status != EditStatus::cancelled) trail_.add(goal, result.path);
+    return result;
   }
 
   EditResult settle(Execution& execution) {
     const Controls goal = goal_;
-    return carry_out(goal, execution, FollowedGoal::after_any_acceptance, [&](EditCall& call, const Aim& aim) {
+    const auto work = [&](EditCall& call, const Aim& aim) {
       PullLimits limits{.poor_pulls = poor_pulls_before_end(call.execution)};
       if (is_dragging_) limits.distance = context_.pull_distance();
       if (drag_.is_leaping) leap(call, aim, drag_);
       pull_until_settled(call, aim, limits);
       if (!is_dragging_) return;
       leap(call, aim, drag_);
-      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
-    });
+      if (detour_of_drag(call, aim, drag_, context_.far_distance())) pull_until_settled(call, aim, limits);
+      edit_from_start(call, aim);
+    };
+    EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
+    if (result.status == EditStatus::budget)
+      trail_.add(goal, result.path);
+    else if (result.status != EditStatus::cancelled)
+      trail_.begin(accepted_.controls);
+    return result;
   }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
@@ -150,6 +161,49 @@ class EditSession::Implementation {
   void forget_leaps() {
     drag_.is_leaping = false;
     drag_.leapt_from.reset();
+  }
+
+  void edit_toward(EditCall& call, const Aim& aim) {
+    const Controls start = accepted_.controls;
+    approach_by_sub_goals(call, aim);
+    refine(call, aim);
+    if (detour(call, aim)) refine(call, aim);
+    if (!moves_pinned_controls(context_.options(), start, aim.controls)) return_to_best(call, aim);
+  }
+
+  bool can_edit_from_start(const EditCall& call, const Aim& aim) const {
+    const EditOptions& options = context_.options();
+    const bool may_differ = options.max_sub_edits > 1 && accepted_.controls != context_.stored(aim.controls);
+    const bool may_return = options.excluded.empty() && options.overlapping.empty() && trail_.is_known();
+    return may_differ && may_return && !call.execution.has_time_budget() &&
+           trail_.is_straight(context_, aim.controls) &&
+           !moves_pinned_controls(options, trail_.start(), aim.controls);
+  }
+
+  /// A drag straight to a far goal may end where an edit from its start would not. Makes that edit as well, and keeps
+  /// the better result. Its path leads back to the start.
+  void edit_from_start(EditCall& call, const Aim& aim) {
+    if (!can_edit_from_start(call, aim)) return;
+    State start{trail_.start(), context_.surface_at(trail_.start(), call.execution)};
+    if (longest_displacement(start.surface, aim.surface) <= context_.far_distance()) return;
+    DragTrail trail = trail_;
+    trail.add(aim.controls, call.report.path);
+    if (!trail.is_known()) return;
+    const State dragged = std::exchange(accepted_, std::move(start));
+    EditReport report = std::exchange(call.report, {});
+    const double missing = energy(dragged.surface, aim.surface);
+    progress_.reset();
+    queries_.clear_cache();
+    edit_toward(call, aim);
+    if (energy(accepted_.surface, aim.surface) < (1 - least_gain_of_edit) * missing) {
+      std::vector<Controls> way = trail.way_back();
+      report.path.insert(report.path.end(), way.begin() + 1, way.end());
+      call.report.path.insert(call.report.path.begin(), report.path.begin(), report.path.end());
+    } else {
+      call.report = std::move(report);
+      accepted_ = dragged;
+    }
+    queries_.clear_cache();
   }
 
   /// The first solution is linearized where the surfaces met on the way to the goal, possibly far from the result.
@@ -216,6 +270,7 @@ class EditSession::Implementation {
   State accepted_;
   Controls goal_;  ///< of the last call, as given
   DragProgress drag_;
+  DragTrail trail_;  ///< of the drag since the last edit, settling or restoration
   std::optional<RoundProgress> progress_;  ///< of a call that the time budget ended
   Controls checked_;                       ///< last restored; a drag that is cancelled goes back to them
   bool is_dragging_ = false;
