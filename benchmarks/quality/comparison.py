@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares edits, settled edits and drags with converged solutions of an interior-point method."""
+"""Compares edits, settled edits, drags and confirmed drags with converged solutions of an interior-point method."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from blend_fixtures.scenes.families import Edit
 from stiv import InputError
 
 Array = NDArray[np.float64]
-WAYS = ("stop", "edit", "settled", "drag", "ipc")
+WAYS = ("stop", "edit", "settled", "drag", "confirmed", "ipc")
 DRAG_STEPS = 20
 SETTLE_CALLS = 12  #: at most
 NEGLIGIBLE = 1e-9  #: of the energy at the start; below it, an edit reached its goal
@@ -83,6 +83,8 @@ def _by_stiv(edit: Edit) -> dict[str, _Found]:
     found["settled"] = surface, seconds + found["edit"][1], True
     goals = edit.controls + (edit.goal - edit.controls) * np.arange(1, DRAG_STEPS + 1)[:, None, None] / DRAG_STEPS
     found["drag"] = timed(dragged, lambda: [dragged.drag(goal) for goal in goals])
+    surface, seconds, _ = timed(dragged, dragged.settle)  # as Blender does when a drag is confirmed
+    found["confirmed"] = surface, seconds + found["drag"][1], True
     return found
 
 

@@ -168,16 +168,17 @@ void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
 }
 
 void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimits limits) {
+  const bool is_rigid = !call.context.deformation().rotation_rows().empty();
   const auto leap_again = [&] {
     const double missing = longest_displacement(call.accepted.surface, aim.surface);
     if (!is_far(call, aim) || missing < missing_growth_to_leap * drag.missing_at_leap) return;
     const double before = energy(call.accepted.surface, aim.surface);
     leap(call, aim, drag);
     const double after = energy(call.accepted.surface, aim.surface);
-    drag.missing_at_leap = after > (1 - least_leap_gain) * before ? missing : 0;
+    drag.missing_at_leap = !is_rigid && after > (1 - least_leap_gain) * before ? missing : 0;
     if (after < before) limits.poor_pulls = 1;
   };
-  const bool leaps_first = !call.execution.has_time_budget();
+  const bool leaps_first = !is_rigid && !call.execution.has_time_budget();
   if (leaps_first) leap_again();
   pull_until_settled(call, aim, limits);
   if (!leaps_first) leap_again();
@@ -196,9 +197,9 @@ bool detour(EditCall& call, const Aim& aim) {
   return false;
 }
 
-bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag, double least_way) {
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag) {
   const double missing = longest_displacement(call.accepted.surface, aim.surface);
-  if (!(missing > std::max(least_way, missing_growth * drag.missing_at_detour))) return false;
+  if (!(missing > missing_growth * drag.missing_at_detour)) return false;
   const bool passes = detour(call, aim);
   drag.missing_at_detour = passes || !is_far(call, aim) ? 0 : missing;
   return passes;

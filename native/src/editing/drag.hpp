@@ -51,8 +51,9 @@ void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits
 /// goal has passed. A leap that fails does not block the call, and is not repeated.
 void leap(EditCall& call, const Aim& aim, DragProgress& drag);
 
-/// Pulls, and leaps if the last leap gained clearly, or the way to the goal has grown since. Without a time budget, the
-/// leap comes first and leaves less to pull. With one, pulls are accepted sooner.
+/// Pulls, and leaps. A surface that deforms leaps only if its last leap gained clearly, or the way to the goal has
+/// grown since. Without a time budget, it leaps first, which leaves less to pull. Leaps turn rigid bodies too far for
+/// that.
 void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimits limits);
 
 /// Moves a rigid body that an obstacle keeps far from its goal aside, across the way to it, and lets it leap from
@@ -61,9 +62,8 @@ void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimit
 /// pushed. (mathematics.md, "Deep goals")
 bool detour(EditCall& call, const Aim& aim);
 
-/// The same for a drag, if the way to the goal is longer than `least_way`. Tries again only when it has doubled since a
-/// detour failed.
-bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag, double least_way);
+/// The same for a drag, which tries a detour again only when the way to the goal has doubled since one failed.
+bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag);
 
 /// The longest displacement of a vertex between two surfaces.
 double longest_displacement(const Positions& from, const Positions& to);

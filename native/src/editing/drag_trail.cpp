@@ -25,15 +25,13 @@ void DragTrail::add(const Controls& goal, const std::vector<Controls>& path) {
   accepted_.clear();
 }
 
-bool DragTrail::is_straight(const EditContext& context, const Controls& goal) const {
+bool DragTrail::is_straight(const Controls& goal, double tolerance) const {
   const Controls way = goal - start();
   const double length = way.squaredNorm();
-  Eigen::VectorXd tolerance = Eigen::VectorXd::Constant(way.rows(), context.pull_distance());
-  for (const Index row : context.deformation().rotation_rows()) tolerance[row] = context.options().pull_limit;
   return length > 0 && std::all_of(goals_.begin(), goals_.end(), [&](const Controls& passed) {
            const Controls moved = passed - start();
            const double fraction = std::clamp(moved.cwiseProduct(way).sum() / length, 0.0, 1.0);
-           return ((moved - fraction * way).rowwise().norm().array() <= tolerance.array()).all();
+           return (moved - fraction * way).rowwise().norm().maxCoeff() <= tolerance;
          });
 }
 

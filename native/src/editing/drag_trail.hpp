@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "editing/edit_context.hpp"
+#include "stiv/types.hpp"
 
 namespace stiv {
 
@@ -18,8 +18,8 @@ class DragTrail {
   const Controls& start() const { return accepted_.front(); }
   /// The accepted controls, from the last to the start.
   std::vector<Controls> way_back() const { return {accepted_.rbegin(), accepted_.rend()}; }
-  /// Were all goals close to the straight line from the start to this goal?
-  bool is_straight(const EditContext& context, const Controls& goal) const;
+  /// Were all goals close to the straight line from the start to this goal? No control may be a rotation.
+  bool is_straight(const Controls& goal, double tolerance) const;
 
  private:
   std::vector<Controls> goals_, accepted_;

@@ -90,7 +90,7 @@ class EditSession::Implementation {
       if (drag_.is_leaping) leap(call, aim, drag_);
       follow_goal(call, aim, drag_);
       pull_and_leap(call, aim, drag_, limits);
-      if (detour_of_drag(call, aim, drag_, 2 * context_.far_distance())) pull_until_settled(call, aim, limits);
+      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::as_the_work_recorded, work);
     if (result.status != EditStatus::cancelled) trail_.add(goal, result.path);
@@ -106,7 +106,7 @@ class EditSession::Implementation {
       pull_until_settled(call, aim, limits);
       if (!is_dragging_) return;
       leap(call, aim, drag_);
-      if (detour_of_drag(call, aim, drag_, context_.far_distance())) pull_until_settled(call, aim, limits);
+      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
       edit_from_start(call, aim);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
@@ -175,8 +175,8 @@ class EditSession::Implementation {
     const EditOptions& options = context_.options();
     const bool may_differ = options.max_sub_edits > 1 && accepted_.controls != context_.stored(aim.controls);
     const bool may_return = options.excluded.empty() && options.overlapping.empty() && trail_.is_known();
-    return may_differ && may_return && !call.execution.has_time_budget() &&
-           trail_.is_straight(context_, aim.controls) &&
+    return may_differ && may_return && context_.deformation().rotation_rows().empty() &&
+           !call.execution.has_time_budget() && trail_.is_straight(aim.controls, context_.pull_distance()) &&
            !moves_pinned_controls(options, trail_.start(), aim.controls);
   }
 
@@ -270,7 +270,7 @@ class EditSession::Implementation {
   State accepted_;
   Controls goal_;  ///< of the last call, as given
   DragProgress drag_;
-  DragTrail trail_;  ///< of the drag since the last edit, settling or restoration
+  DragTrail trail_;                        ///< of the drag since the last edit, settling or restoration
   std::optional<RoundProgress> progress_;  ///< of a call that the time budget ended
   Controls checked_;                       ///< last restored; a drag that is cancelled goes back to them
   bool is_dragging_ = false;

@@ -63,7 +63,8 @@ class EditSession {
   /// (mathematics.md, "Deep goals")
   EditResult drag(const Controls& goal, Execution& execution);
 
-  /// Solves again from the accepted state toward the last goal until the energy no longer falls. It never grows.
+  /// Solves again from the accepted state toward the last goal until the energy no longer falls. It never grows. After
+  /// a straight drag to a far goal, also makes the edit from its start, and keeps the better result.
   EditResult settle(Execution& execution);
 
   /// Makes an earlier accepted state (undo, Esc) the accepted one. The next drag's increment counts from `goal`. Clears

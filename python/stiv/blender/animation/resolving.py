@@ -126,7 +126,9 @@ class _Solver:
         first, last = self.deformation.surface(start), self.deformation.surface(end)
         if self._steps.is_free(first, last) and self._steps.is_free(last, first):
             return [end]
-        return path if np.array_equal(path[-1], end) else [*path, end]
+        returns = [step for step, state in enumerate(path) if np.array_equal(state, start)]
+        path = path[returns[-1] + 1 :] if returns else path  # settling may go back and take another way
+        return path if path and np.array_equal(path[-1], end) else [*path, end]
 
     def _is_free_backward(self, states: list[Floats]) -> bool:
         """Is the path also free in the opposite direction? Tested separately."""
