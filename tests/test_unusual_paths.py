@@ -10,6 +10,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import numpy as np
 import pytest
 from json_schemas import read_valid
 
@@ -51,7 +52,8 @@ def stiv_mesh(path: Path) -> None:
 def test_a_batch_runs_for_a_user_with_this_home(folder: Path) -> None:
     job = write_job(folder, 2, repeat=1)
     home = {"HOME": str(folder), "USERPROFILE": str(folder), "TEMP": str(folder), "TMPDIR": str(folder)}
-    search = {"PYTHONPATH": str(Path(stiv.__file__).parents[1])}
+    packages = [str(Path(package.__file__).parents[1]) for package in (stiv, np)]
+    search = {"PYTHONPATH": os.pathsep.join(packages)}
     command = [sys.executable, "-m", "stiv.command_line", "batch", str(job), "--workers", "1"]
     done = subprocess.run(
         command, env=os.environ | home | search, capture_output=True, encoding="utf-8", errors="replace", timeout=120,

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from jobs import NAME, record, results, write_job
 from json_schemas import read_valid
@@ -151,8 +152,8 @@ def test_killed_workers_cost_a_retry_and_a_killed_parent_a_second_run(tmp_path):
 
 
 def started(job) -> subprocess.Popen:
-    packages = str(Path(stiv.__file__).parents[1])
-    environment = {**os.environ, "PYTHONPATH": packages}
+    packages = [str(Path(package.__file__).parents[1]) for package in (stiv, np)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(packages)}
     command = [sys.executable, "-m", "stiv.command_line", "batch", str(job), "--workers", "2"]
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
