@@ -7,6 +7,7 @@ Usage: example_files.py DOCUMENTS   with the folder of the documents; the files 
 
 import os
 import re
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -81,6 +82,7 @@ def main(documents: Path) -> None:
     faces = [" ".join(str(corner + 1 + first) for corner in face) for first in (0, 8) for face in FACES]
     Path("scan.obj").write_text("".join(f"v {line}\n" for line in corners) + "".join(f"f {line}\n" for line in faces))
     Path("known.json").write_text('{"schema": "stiv-baseline", "version": 1, "accepted": []}')
+    shutil.copy(documents.parent / "blend_fixtures/examples/clean_walk.blend", "character.blend")
     Path("blend_fixtures").symlink_to(documents.parent / "blend_fixtures")
     blocks = {name: re.search(r"```json\n(.*?)```", (documents / f"{name}.md").read_text(), re.DOTALL)[1]
               for name in ("batch", "edit_scripts")}  # fmt: skip

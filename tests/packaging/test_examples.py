@@ -28,7 +28,7 @@ COMMANDS = {name: found for name, text in DOCUMENTS.items() if (found := COMMAND
 PLACEHOLDERS = {"K/N": "1/2", "A:B": "1:2"}
 
 WRITTEN = {
-    "animation": ["resolved.blend", "frames.json"],
+    "animation": ["resolved.blend", "frames.json", "clean.blend"],
     "batch": ["report.json", "out/vase.blend", "out/walk.blend", "out/cow.blend", "out/cow.json", "out/assets.json"],
     "checks": ["checks.xml", "checks.json"],
     "edit_scripts": ["OUT.blend"],
