@@ -46,8 +46,10 @@ def about(pivot: Vector, linear: Vector) -> Vector:
 def orthonormal(axes: Vector) -> Vector:
     """Orthonormal columns (3, 3) from the matrix of an object, which may be scaled, mirrored or sheared.
 
-    Gram-Schmidt in the order x, y. Degenerate axes give the identity.
+    Gram-Schmidt in the order x, y, in double precision: matrices of Blender 5 are read in single precision, and the
+    core asks for more. Degenerate axes give the identity.
     """
+    axes = np.asarray(axes, np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
         x = axes[:, 0] / np.linalg.norm(axes[:, 0])
         y = axes[:, 1] - x * (x @ axes[:, 1])

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from stiv_addon.transform.frame import pivot_of
+from stiv_addon.transform.frame import orthonormal, pivot_of
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [5.0, 3.0, 1.0]])
 CURSOR = np.array([9.0, 9.0, 9.0])
@@ -31,3 +31,11 @@ def test_without_an_active_element_the_pivot_is_the_median() -> None:
 def test_nothing_selected_turns_about_the_cursor() -> None:
     pivot = pivot_of(np.empty((0, 3)), "MEDIAN_POINT", cursor=CURSOR, active=None)
     np.testing.assert_array_equal(pivot, CURSOR)
+
+
+def test_axes_of_a_matrix_in_single_precision_are_orthonormal_in_double() -> None:
+    turn, rest = np.radians(30.0), np.eye(3)
+    rest[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    axes = orthonormal(rest.astype(np.float32)).astype(float)
+    assert np.abs(axes.T @ axes - np.eye(3)).max() < 1e-15
+    assert axes == pytest.approx(rest, abs=1e-7)
