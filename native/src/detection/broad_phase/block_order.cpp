@@ -7,7 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "detection/broad_phase/curve_order.hpp"
 #include "detection/broad_phase/median_split.hpp"
+#include "detection/broad_phase/window_order.hpp"
 
 namespace stiv {
 
@@ -16,40 +18,28 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Items = std::span<NumberedPoint>;
 
-/// Below this number of items, sharing the work takes longer.
-constexpr std::size_t few = 4096;
-
-/// The first half is the largest power of two times `run` that fits, so halves of all sizes end where nodes of the tree
-/// end. The second one is empty if a single run is left.
-std::array<Items, 2> split(Items items, std::size_t run) {
-  if (items.size() <= run) return {items, {}};
-  std::size_t half = run;
-  while (2 * half < items.size()) half *= 2;
-  split_at_median(items, half);
-  return {items.first(half), items.subspan(half)};
-}
+/// Runs in a window. More of them cost more time, and yield slightly closer runs.
+constexpr std::size_t runs_in_window = 128;
 
 void order_spatially(Items items, std::size_t run) {
-  if (items.size() <= run) return;
-  for (const Items half : split(items, run)) order_spatially(half, run);
+  if (items.size() <= window_capacity) {
+    order_window(items, run);
+    return;
+  }
+  const std::size_t half = size_of_first_part(items.size(), run);
+  split_at_median(items, half);
+  order_spatially(items.first(half), run);
+  order_spatially(items.subspan(half), run);
 }
 
-/// The threads share the parts of each of the first levels, then the parts below them.
+/// A curve replaces the first levels of median splits, which cost the most and matter the least.
 void order_spatially(Items items, std::size_t run, const Execution& execution) {
-  constexpr int shared_levels = 5;
-  std::vector<Items> parts{items};
-  for (int level = 0; level < shared_levels; ++level) {
-    std::vector<Items> halves(2 * parts.size());
-    execution.for_chunks(static_cast<Index>(parts.size()), 1, [&](Index part, Index, Index) {
-      const auto k = static_cast<std::size_t>(part);
-      const auto [first, second] = split(parts[k], run);
-      halves[2 * k] = first;
-      halves[2 * k + 1] = second;
-    });
-    parts = std::move(halves);
-  }
-  execution.for_chunks(static_cast<Index>(parts.size()), 1,
-                       [&](Index part, Index, Index) { order_spatially(parts[static_cast<std::size_t>(part)], run); });
+  const std::size_t window = run * runs_in_window;
+  if (items.size() > window) sort_along_curve(items);
+  execution.for_chunks(
+      static_cast<Index>(items.size()), static_cast<Index>(window), [&](Index begin, Index end, Index) {
+        order_spatially(items.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)), run);
+      });
 }
 
 void order_spatially(std::span<Index> numbers, const Points& centres, std::size_t run, const Execution& execution) {
@@ -59,10 +49,7 @@ void order_spatially(std::span<Index> numbers, const Points& centres, std::size_
     const Eigen::Vector3f& centre = centres[number];
     items.push_back({{centre[0], centre[1], centre[2]}, number});
   }
-  if (items.size() < few)
-    order_spatially(items, run);
-  else
-    order_spatially(items, run, execution);
+  order_spatially(items, run, execution);
   std::transform(items.begin(), items.end(), numbers.begin(), [](const NumberedPoint& item) { return item.number; });
 }
 
@@ -107,7 +94,9 @@ Points centres_of_blocks(const std::vector<Index>& places, const Points& centres
 
 std::vector<Index> block_order(const Points& centres, const std::vector<Index>& groups, Index block,
                                const Execution& execution) {
-  const std::vector<Index> places = order_in_groups(centres, groups, block, execution);
+  std::vector<Index> places = order_in_groups(centres, groups, block, execution);
+  const auto differs = [&](Index group) { return group != groups.front(); };
+  if (std::none_of(groups.begin(), groups.end(), differs)) return places;
   const Points block_centres = centres_of_blocks(places, centres, block);
   std::vector<Index> blocks(block_centres.size());
   std::iota(blocks.begin(), blocks.end(), 0);
