@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "detection/broad_phase/block_order.hpp"
 
@@ -49,9 +50,12 @@ class TaskList {
     const Index other_level = task.other_level >= task.level ? task.other_level - 1 : task.other_level;
     const auto [begin, end] = children(a_, task.level, task.node, level);
     const auto [other_begin, other_end] = children(b_, task.other_level, task.other_node, other_level);
-    for (Index node = begin; node < end; ++node)
+    const PackedBox& other_box = b_.levels()[task.other_level].boxes[task.other_node];
+    for (Index node = begin; node < end; ++node) {
+      if (!may_meet(a_.levels()[level].boxes[node], other_box)) continue;
       for (Index other = same ? node : other_begin; other < other_end; ++other)
         add(tasks, {level, node, other_level, other});
+    }
     return true;
   }
 
@@ -110,11 +114,11 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
 }
 
 void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
-  constexpr Index chunk_size = 8192;
+  constexpr Index large_chunk = 8192;
   corner_size_ = corners.size;
   const std::size_t size = corners.size;
   corners_.resize(order_.size() * size);
-  execution.for_chunks(static_cast<Index>(order_.size()), chunk_size, [&](Index begin, Index end, Index) {
+  execution.for_chunks(static_cast<Index>(order_.size()), large_chunk, [&](Index begin, Index end, Index) {
     for (Index place = begin; place < end; ++place) {
       const Index primitive = order_[place];
       for (std::size_t k = 0; k < size; ++k)
@@ -141,6 +145,52 @@ void Bvh::summarise(std::size_t level, std::size_t node) {
     all.include(box);
   }
   levels_[level].boxes[node] = all;
+}
+
+void Bvh::summarise_all(const Execution& execution) {
+  for (std::size_t level = 1; level < levels_.size(); ++level)
+    execution.for_chunks(static_cast<Index>(levels_[level].nodes.size()), chunk_size,
+                         [&](Index begin, Index end, Index) {
+                           for (Index node = begin; node < end; ++node)
+                             summarise(level, static_cast<std::size_t>(node));
+                         });
+}
+
+/// Sorts the blocks by marking them: blocks are few, and each is listed many times.
+void Bvh::find_touched(std::span<const Index> primitives) {
+  constexpr std::size_t bits = 64;
+  is_touched_.resize((order_.size() / width + bits - 1) / bits, 0);
+  for (const Index primitive : primitives) {
+    const auto block = static_cast<std::size_t>(places_[primitive] / width);
+    is_touched_[block / bits] |= std::uint64_t{1} << block % bits;
+  }
+  touched_.clear();
+  for (std::size_t word = 0; word < is_touched_.size(); ++word)
+    for (std::uint64_t left = std::exchange(is_touched_[word], 0); left != 0; left &= left - 1)
+      touched_.push_back(static_cast<Index>(word * bits) + std::countr_zero(left));
+}
+
+void Bvh::summarise_touched() {
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    parents_.clear();
+    for (const Index node : touched_)
+      if (parents_.empty() || parents_.back() != node / width) parents_.push_back(node / width);
+    for (const Index node : parents_) summarise(level, static_cast<std::size_t>(node));
+    std::swap(touched_, parents_);
+  }
+}
+
+void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution) {
+  if (levels_.empty()) return;
+  execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size,
+                       [&](Index begin, Index end, Index) { refit_blocks(nullptr, begin, end, vertices.data()); });
+  summarise_all(execution);
+}
+
+void Bvh::refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices) {
+  find_touched(primitives);
+  refit_blocks(touched_.data(), 0, static_cast<Index>(touched_.size()), vertices.data());
+  summarise_touched();
 }
 
 std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupTable& groups, std::size_t about) const {

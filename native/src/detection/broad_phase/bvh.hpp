@@ -78,6 +78,10 @@ class Bvh {
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
+  /// The same where a primitive's box is the union of those of its corners (at least one).
+  void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
+  void refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices);
+
   /// Other corners for the same primitives.
   void set_corners(const CornerRows& corners, const Execution& execution);
 
@@ -102,7 +106,7 @@ class Bvh {
 
   /// A node as traversals read it.
   struct Node {
-    alignas(32) float planes[7][width];  ///< PackedBox::values of eight children, absent ones empty
+    alignas(32) float planes[8][width];  ///< PackedBox::values of eight children, absent ones empty
   };
   struct Level {
     std::vector<Node> nodes;
@@ -124,6 +128,13 @@ class Bvh {
 
   template <class BoxOf>
   void refit_block(std::size_t block, const BoxOf& box_of);
+  /// Blocks number `begin` to `end` of a list, or of all (nullptr).
+  void refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices);
+  void find_touched(std::span<const Index> primitives);
+  void summarise_touched();
+  void summarise_all(const Execution& execution);
+
+  static constexpr Index chunk_size = 512;
 
   Index size_ = 0;
   std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
@@ -131,7 +142,8 @@ class Bvh {
   std::vector<Level> levels_;  // blocks first, the root last
   std::vector<Index> corners_;
   Index corner_size_ = 0;
-  std::vector<Index> touched_, parents_;  // work space of refit_some
+  std::vector<std::uint64_t> is_touched_;  // work space of refit_some: a bit for each block, zero between calls
+  std::vector<Index> touched_, parents_;   // the blocks, ascending
 };
 
 /// Centers of boxes, zero where one is infinite.
@@ -152,37 +164,18 @@ void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
 
 template <class BoxOf>
 void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
-  constexpr Index chunk_size = 512;
-  for (std::size_t level = 0; level < levels_.size(); ++level) {
-    const auto count = static_cast<Index>(levels_[level].nodes.size());
-    execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
-      for (Index node = begin; node < end; ++node)
-        if (level == 0)
-          refit_block(static_cast<std::size_t>(node), box_of);
-        else
-          summarise(level, static_cast<std::size_t>(node));
-    });
-  }
+  if (levels_.empty()) return;
+  execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index block = begin; block < end; ++block) refit_block(static_cast<std::size_t>(block), box_of);
+  });
+  summarise_all(execution);
 }
 
 template <class BoxOf>
 void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
-  // Consecutive primitives mostly share a block, and refitting a block twice is harmless.
-  touched_.clear();
-  for (const Index primitive : primitives) {
-    const Index block = places_[primitive] / width;
-    if (touched_.empty() || touched_.back() != block) touched_.push_back(block);
-  }
-  std::sort(touched_.begin(), touched_.end());
-  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  find_touched(primitives);
   for (const Index block : touched_) refit_block(static_cast<std::size_t>(block), box_of);
-  for (std::size_t level = 1; level < levels_.size(); ++level) {
-    parents_.clear();
-    for (const Index node : touched_)
-      if (parents_.empty() || parents_.back() != node / width) parents_.push_back(node / width);
-    for (const Index node : parents_) summarise(level, static_cast<std::size_t>(node));
-    std::swap(touched_, parents_);
-  }
+  summarise_touched();
 }
 
 }  // namespace stiv

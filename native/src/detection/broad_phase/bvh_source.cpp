@@ -155,7 +155,8 @@ class BvhSource final : public CandidateSource {
   /// Calls `take(batch)` with the pairs of a task, batch by batch, until it returns false.
   template <class Take>
   void traverse(EventKind kind, Index task, const Take& take) const {
-    PairBuffer found;
+    static thread_local PairBuffer found;  // a step has hundreds of tasks, most of them with few pairs
+    found.count = 0;
     found.limit = batch_size;
     found.full = [&](PairBuffer& some) {
       const bool more = take(some);
@@ -164,6 +165,7 @@ class BvhSource final : public CandidateSource {
     };
     first_tree(kind).overlaps(of(kind).tasks[task], second_tree(kind), bodies_, found);
     if (found.count > 0) take(found);
+    found.full = nullptr;
   }
 
   /// Appends the pairs that may interfere in this step or in a nearby one.

@@ -84,19 +84,31 @@ using FloatMask = hn::Mask<Floats>;
 
 constexpr std::size_t width = 8;
 
-HWY_INLINE hn::Vec<Floats> opposed(const Bvh::Node& node, const float* box, std::size_t plane, std::size_t opposite,
+/// A box as its numbers lie in memory: those of a PackedBox follow each other, those of a child of a node do not.
+template <std::size_t stride>
+struct BoxView {
+  const float* values;
+
+  HWY_INLINE hn::Vec<Floats> all(std::size_t k) const { return hn::Set(Floats(), values[k * stride]); }
+};
+
+HWY_INLINE BoxView<1> view(const PackedBox& box) { return {box.values.data()}; }
+HWY_INLINE BoxView<width> child(const Bvh::Node& node, std::size_t lane) { return {&node.planes[0][lane]}; }
+
+template <class Box>
+HWY_INLINE hn::Vec<Floats> opposed(const Bvh::Node& node, Box box, std::size_t plane, std::size_t opposite,
                                    std::size_t lane) {
-  const Floats d;
-  return hn::Add(hn::Load(d, node.planes[plane] + lane), hn::Set(d, box[opposite]));
+  return hn::Add(hn::Load(Floats(), node.planes[plane] + lane), box.all(opposite));
 }
 
 /// Lanes of a node, starting at `lane`, that may meet a box (see may_meet).
-HWY_INLINE FloatMask meeting_lanes(const Bvh::Node& node, const float* box, std::size_t lane) {
+template <class Box>
+HWY_INLINE FloatMask meeting_lanes(const Bvh::Node& node, Box box, std::size_t lane) {
   const Floats d;
   const auto x = hn::Max(opposed(node, box, 0, 3, lane), opposed(node, box, 3, 0, lane));
   const auto y = hn::Max(opposed(node, box, 1, 4, lane), opposed(node, box, 4, 1, lane));
   const auto z = hn::Max(opposed(node, box, 2, 5, lane), opposed(node, box, 5, 2, lane));
-  const auto rest = hn::Min(hn::Load(d, node.planes[6] + lane), hn::Set(d, box[6]));
+  const auto rest = hn::Min(hn::Load(d, node.planes[6] + lane), box.all(6));
   return hn::Le(hn::Max(hn::Max(x, y), hn::Max(z, rest)), hn::Zero(d));
 }
 
@@ -107,11 +119,11 @@ HWY_INLINE unsigned bits_of(FloatMask mask) {
 }
 
 /// A bit for each of the eight children that may meet a box.
-HWY_INLINE unsigned meeting_children(const Bvh::Node& node, const float* box) {
+HWY_INLINE unsigned meeting_children(const Bvh::Node& node, const PackedBox& box) {
   const Floats d;
   unsigned bits = 0;
   for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d))
-    bits |= bits_of(meeting_lanes(node, box, lane)) << lane;
+    bits |= bits_of(meeting_lanes(node, view(box), lane)) << lane;
   return bits;
 }
 
@@ -146,7 +158,7 @@ void meet_blocks(const Traversal& t, Index block, Index other) {
   const Floats d;
   const Ints i;
   const Bvh::Node &a = t.a.nodes[0][block], &b = t.b.nodes[0][other];
-  unsigned left = meeting_children(a, t.b.boxes[0][other].values.data());
+  unsigned left = meeting_children(a, t.b.boxes[0][other]);
   if (left == 0) return;
   t.reserve();
   Index* const first = t.found->first.data();
@@ -156,11 +168,9 @@ void meet_blocks(const Traversal& t, Index block, Index other) {
   const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(other) * Bvh::width;
   for (; left != 0; left &= left - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(left));
-    alignas(32) float box[8];
-    for (std::size_t plane = 0; plane < 7; ++plane) box[plane] = a.planes[plane][k];
     const auto primitive = hn::Set(i, t.a.order[static_cast<std::size_t>(block) * width + k]);
     for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
-      FloatMask mask = meeting_lanes(b, box, lane);
+      FloatMask mask = meeting_lanes(b, child(a, k), lane);
       if constexpr (size_a > 0)
         mask = apart_lanes<size_a, size_b>(t.a.corners + static_cast<std::size_t>(block) * width * size_a + k,
                                            t.b.corners + static_cast<std::size_t>(other) * width * size_b, lane, mask);
@@ -192,26 +202,22 @@ void descend(const Traversal& t, const Bvh::Task& root) {
       meet_blocks<size_a, size_b>(t, pair.node, pair.other_node);
       if (t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
     } else if (level > other_level) {
-      unsigned left =
-          meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node].values.data());
+      unsigned left = meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node]);
       for (; left != 0; left &= left - 1)
         stack[top++] = {pair.level - 1, pair.node * Bvh::width + std::countr_zero(left), pair.other_level,
                         pair.other_node};
     } else if (level < other_level) {
-      unsigned left =
-          meeting_children(t.b.nodes[other_level][pair.other_node], t.a.boxes[level][pair.node].values.data());
+      unsigned left = meeting_children(t.b.nodes[other_level][pair.other_node], t.a.boxes[level][pair.node]);
       for (; left != 0; left &= left - 1)
         stack[top++] = {pair.level, pair.node, pair.other_level - 1,
                         pair.other_node * Bvh::width + std::countr_zero(left)};
     } else {
       const bool same = t.same_tree && pair.node == pair.other_node;
-      unsigned left =
-          meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node].values.data());
+      unsigned left = meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node]);
       for (; left != 0; left &= left - 1) {
         const int k = std::countr_zero(left);
         const Index child = pair.node * Bvh::width + k;
-        unsigned others =
-            meeting_children(t.b.nodes[level][pair.other_node], t.a.boxes[level - 1][child].values.data());
+        unsigned others = meeting_children(t.b.nodes[level][pair.other_node], t.a.boxes[level - 1][child]);
         if (same) others &= ~0U << k;
         for (; others != 0; others &= others - 1)
           stack[top++] = {pair.level - 1, child, pair.level - 1,

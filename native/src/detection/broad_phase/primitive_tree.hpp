@@ -23,13 +23,12 @@ class PrimitiveTree {
 
   /// Brings the boxes up to date after `change` of the vertices' boxes.
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
-    const auto box_of = [&](Index primitive) { return swept.box_of(row(primitive)); };
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
-      tree_->refit(box_of, execution);
+      tree_->refit_corners(swept.boxes(), execution);
     } else if (change == SweptVertices::Change::some) {
-      tree_->refit_some(incidence_->primitives_with(swept.changed()), box_of);
+      tree_->refit_some_corners(incidence_->primitives_with(swept.changed()), swept.boxes());
     }
   }
 
