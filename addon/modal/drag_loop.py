@@ -19,7 +19,11 @@ if TYPE_CHECKING:
     from ..stiv_blender import Edit, EditResult, Motion, Steps, Task, WriteReport
     from ..transform import Transform
 
+FRAME = 1.0 / 60.0  # seconds that a tick waits for a solve
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
+FITTING = 0.75 * FRAME  # seconds of a solve and of writing that happen one after the other: the state is newer then
+LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would lose what is not accepted yet
+HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 DOUBLINGS = 4  # of a budget that ends before a state is accepted, at most; of an unfinished goal, fewer
@@ -98,7 +102,8 @@ class DragLoop:
 
     Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. The
     start and each solve are tasks, whose jobs run beside Blender: a tick waits for a job no longer than a frame, and
-    the next tick continues. While the mouse rests, budgets grow and the drag settles; the next motion cancels that. If
+    the next tick continues. While an accepted state is written, evaluated and tested, the next solve runs already. While
+    the mouse rests, budgets grow and the drag settles; the next motion cancels that. If
     the budget of a solve ends before a state is accepted, the next solve continues with the
     same goal: with a new goal each time, none would be reached.
 
@@ -131,6 +136,7 @@ class DragLoop:
         self._confirmed = False
         self._unfinished: Goal | None = None
         self._unwritten = False
+        self._shown_beside = False  # the last state was written while a solve ran, and is to be tested completely
         self._settled = False
         self._refusal = ""
         self._solves = 0
@@ -141,17 +147,20 @@ class DragLoop:
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._writes_since: float | None = None  # until the next call, so that drawing counts
+        self._written_in = 0.0  # seconds of the last writing; before the first one, of reading
         self._run(calls.begin(state.request), self._take_first_edit)
         began = time.perf_counter()
         starts_job = not self._advance_task(0.0)  # reads the scene, which takes about as long as writing and drawing it
-        self._limit_budget(time.perf_counter() - began)
+        self._written_in = time.perf_counter() - began
+        self._limit_budget(self._written_in)
         if starts_job:
             self._advance_task(START_WAIT)
 
     @property
     def at_rest(self) -> bool:
         """Whether nothing is left to solve until the next event."""
-        return self.progress.ended or not (self._pending or self._unwritten or self._task is not None)
+        unfinished = self._pending or self._unwritten or self._shown_beside or self._task is not None
+        return self.progress.ended or not unfinished
 
     @property
     def shows_soon(self) -> bool:
@@ -228,10 +237,12 @@ class DragLoop:
             self._task.cancel()
 
     def _advance(self) -> None:
-        end, solves = time.perf_counter() + BUDGET, self._solves
+        end, solves = time.perf_counter() + FRAME, self._solves
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
                 return
+        if self._shown_beside and not self._pending and self._task is None:
+            self._unwritten = True
         if self._unwritten and not self._solves_on():
             self._write()
         if self._confirmed and self.at_rest and (self._settled or self.result is None):
@@ -292,8 +303,10 @@ class DragLoop:
         is_new = self._unfinished is None
         self._unfinished = None
         doublings = min(self._empty, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
-        budget = (FINAL_BUDGET if self._confirmed else self._budget) * 2**doublings
-        steps = self.edit.drag_steps(goal.motion, time_budget=budget)
+        hand_over = None if self._confirmed or self._rests() else max(HAND_OVER, self._written_in / 2)
+        budget = FINAL_BUDGET if self._confirmed else self._budget
+        budget = (budget if hand_over is None else max(budget, LONG_BUDGET)) * 2**doublings
+        steps = self.edit.drag_steps(goal.motion, time_budget=budget, hand_over=hand_over)
         can_cancel = is_new and self._fruitless > 0 and not self._confirmed
         self._run(_noting(steps), lambda found: self._take_solved(goal, found), can_cancel)
 
@@ -452,14 +465,52 @@ class DragLoop:
             self._task.cancel()
 
     def _write(self) -> None:
-        assert self.edit is not None
         self._unwritten = False
-        self._writes_since = time.perf_counter()
+        self._writes_since = begun = time.perf_counter()
+        if not (self._drags_on() and self._write_beside_solve()):
+            self._write_at_once()
+        self._written_in = time.perf_counter() - begun
+
+    def _write_at_once(self) -> None:
+        assert self.edit is not None
+        self._unwritten = self._shown_beside = False
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
         self.written = self.result if self.report is None or not self.report.message else None
         self.turned = self.edit.turned  # a session in a job cannot be asked
+
+    def _drags_on(self) -> bool:
+        """Whether the next work is another solve of the same edit, and takes too long for the same frame."""
+        same = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
+        solved = self.result.timings["total"] if self.result is not None else 0.0
+        return same and solved + self._written_in > FITTING
+
+    def _write_beside_solve(self) -> bool:
+        """Write the accepted state while the next solve runs; returns whether the state passed the test."""
+        assert self.edit is not None
+        taken, result = self.edit.take_state(), self.result
+        if taken is None:
+            return False
+        self._begin_solve()
+        if self._task is not None:
+            self._task.start()
+        report = self.edit.write_taken(taken)
+        if report is None:
+            self._end_solve()
+            return False
+        self.report, self.written, self.turned = report, result, taken.turned
+        self._shown_beside = True
+        return True
+
+    def _end_solve(self) -> None:
+        """Cancel a solve and wait for its end, which takes milliseconds; its goal is solved for again."""
+        if self._task is None:
+            return
+        self._pending = self._can_cancel = True
+        self._task.cancel()
+        while not self._advance_task(FRAME):
+            pass
 
     def _fail(self, error: Exception) -> None:
         self.error = None if self.stopped else error

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import bpy
+import numpy as np
 
 import stiv
 from benchmarks.sessions.frame_times import goal_matrix, name_of
@@ -39,6 +40,14 @@ class Drag(Protocol):
     @property
     def report(self) -> Any:
         """Report of the last writing, a WriteReport, or None."""
+
+    @property
+    def written(self) -> Any:
+        """The result that the scene shows, a stiv.EditResult, or None."""
+
+    @property
+    def written_for(self) -> float:
+        """The position of the mouse for which it was solved."""
 
     @property
     def error(self) -> Exception | None:
@@ -72,8 +81,8 @@ class Tick:
     Attributes:
         at: end of the tick, since the start of the drag.
         seconds: duration, which blocks the interface.
-        solving: time of the core in it.
-        shown: whether it wrote, evaluated, read back and tested an accepted state.
+        solving: time of the core for the result that it took; the solve may have begun in the tick before.
+        shown: whether it wrote, evaluated, read back and tested an accepted state that differs from the last one.
         behind: with `shown`, the delay of the displayed state behind the mouse.
         touches: whether anything was in contact.
         passed: whether the displayed state passed the exact test.
@@ -138,7 +147,7 @@ class _Dragging:
     settings_of: Callable[[Any], EditSettings]
     new_drag: NewDrag
     ticks: list[Tick] = field(default_factory=list)
-    solved_for: float = 0.0
+    shown: Floats | None = None  # controls
 
     def stage(self) -> DraggedStage:
         begun = time.perf_counter()
@@ -172,7 +181,6 @@ class _Dragging:
         return edit
 
     def _goal(self, where: float) -> Floats:
-        self.solved_for = where
         return goal_matrix(self.step, where, self._pivot)
 
     def _tick(self, drag: Drag) -> None:
@@ -182,12 +190,19 @@ class _Dragging:
         report, previous, begun = drag.report, drag.result, self._now()
         drag.tick()
         ended = self._now()
-        shown = drag.report is not report
-        behind = ended - self.solved_for / SPEED if shown else 0.0
-        result = drag.result
-        if result is None or result is previous:  # a job is still running
+        writes, result = drag.report is not report, drag.result
+        shown = writes and self._is_new(drag.written)
+        behind = ended - drag.written_for / SPEED if shown else 0.0
+        if result is None or (result is previous and not writes):  # a job is still running
             return
         touches = result.rounds > 0 or len(result.events) > 0
-        passed = not shown or drag.report.passed
+        passed = not writes or drag.report.passed
         self.ticks.append(Tick(ended, ended - begun, result.timings["total"], shown, behind, touches, passed))
         time.sleep(max(0.0, TICK - (ended - begun)))
+
+    def _is_new(self, written: Any) -> bool:
+        """Whether the scene shows another shape than before."""
+        if written is None or (self.shown is not None and np.array_equal(written.controls, self.shown)):
+            return False
+        self.shown = written.controls
+        return True

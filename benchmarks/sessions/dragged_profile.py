@@ -31,13 +31,31 @@ def _stage(stage: Any) -> dict[str, Any]:
     return {**values, "ticks": {name: [getattr(tick, name) for tick in stage.ticks] for name in TICK_VALUES}}
 
 
+def shapes_a_second(stage: dict[str, Any]) -> tuple[float, float]:
+    """New shapes shown a second while the mouse moved: the least over any second, and the median of 1 / distance."""
+    at, span = _while_moving(stage, "at"), min(1.0, stage["moving"])
+    starts = np.concatenate([[0.0], at[at <= stage["moving"] - span]])
+    counts = [np.count_nonzero((at > start) & (at <= start + span)) for start in starts]
+    return min(counts) / span, float(1.0 / np.median(shown_apart(stage)))
+
+
+def frames_missed(stage: dict[str, Any], rate: float = 60.0) -> int:
+    """Most consecutive frames at this rate without a new shape, while the mouse moved."""
+    ends = np.append(_while_moving(stage, "at"), stage["moving"])
+    return max(0, int(np.round(rate * np.diff(ends, prepend=0.0).max())) - 1)
+
+
 def dragged_text(rows: Sequence[dict[str, Any]]) -> str:
     """A line per scene and number of threads, in milliseconds.
 
     "ticks", "apart" and "behind" are maximum / 95 % / median: of the time that a tick blocks the interface,
-    of the time between displayed states while the mouse moves, and of their delay behind the mouse.
+    of the time between displayed states while the mouse moves, and of their delay behind the mouse. "shapes"
+    are those shown a second, least over a second / median; "missed" are the most frames in a row without one.
     """
-    head = f"{'as dragged':10} {'threads':>7} {'ticks':>17} {'apart':>17} {'behind':>17} {'settling':>8} {'begin':>6}"
+    head = (
+        f"{'as dragged':10} {'threads':>7} {'shapes':>9} {'missed':>6} {'ticks':>17} {'apart':>17} {'behind':>17}"
+        f" {'settling':>8} {'begin':>6}"
+    )
     return "\n".join([head, *(_line(row["scene"], part) for row in rows for part in row["dragged"])])
 
 
@@ -49,7 +67,9 @@ def _line(scene: str, part: dict[str, Any]) -> str:
     settling = 1000 * max(stage["settling"] for stage in stages)
     begin = 1000 * max(stage["beginning"] for stage in stages)
     figures = " ".join(f"{_percentiles(values):>17}" for values in (seconds, apart, behind))
-    return f"{scene:10} {part['threads']:7d} {figures} {settling:8.0f} {begin:6.0f}"
+    least = min(shapes_a_second(stage)[0] for stage in stages)
+    shapes, missed = f"{least:.0f} / {1.0 / np.median(apart):.0f}", max(map(frames_missed, stages))
+    return f"{scene:10} {part['threads']:7d} {shapes:>9} {missed:6d} {figures} {settling:8.0f} {begin:6.0f}"
 
 
 def shown_apart(stage: dict[str, Any]) -> Any:

@@ -93,6 +93,16 @@ class ScriptedDrag:
         return self.drag.result
 
     @property
+    def written(self) -> Any:
+        """The result that the scene shows."""
+        return self.drag.written
+
+    @property
+    def written_for(self) -> float:
+        """The position of the mouse for which it was solved."""
+        return float(self.drag.transform)
+
+    @property
     def report(self) -> Any:
         """Report of the last writing."""
         return self.drag.report

@@ -58,6 +58,11 @@ struct StepCheck {
     return is_step_free(detector, intersections, start, end, {separation}, execution);
   }
 
+  bool is_end_free(const PositionsView& start, const PositionsView& end) {
+    Execution execution(threads);
+    return intersections.is_free(end, moved_vertices(start, end), execution);
+  }
+
   Detector detector;
   IntersectionTest intersections;
   int threads;
@@ -106,7 +111,8 @@ void bind_acceptance(py::module_& module) {
       .def("find", &CachedIntersectionTest::find, positions, Release());
   py::class_<StepCheck>(module, "StepCheck")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
-      .def("is_free", &StepCheck::is_free, start, end, separation, Release());
+      .def("is_free", &StepCheck::is_free, start, end, separation, Release())
+      .def("is_end_free", &StepCheck::is_end_free, start, end, Release());
 }
 
 }  // namespace stiv::bindings

@@ -82,12 +82,23 @@ SessionCall edit_to(const DoubleArray& goal) {
   };
 }
 
-SessionCall drag_to(const DoubleArray& goal, const std::optional<double>& time_budget) {
-  if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
-    throw InputError("time_budget must be a positive number of seconds");
-  return [to = controls_from(goal, "goal"), time_budget](EditSession& session, Execution& execution) {
-    if (time_budget) execution.set_time_budget(*time_budget, BudgetEnd::after_checkpoint);
-    return session.drag(to, execution);
+/// Limits of a drag's call, in seconds.
+struct DragTimes {
+  std::optional<double> time_budget, hand_over;
+
+  void check() const {
+    if (time_budget && !(*time_budget > 0 && std::isfinite(*time_budget)))
+      throw InputError("time_budget must be a positive number of seconds");
+    if (hand_over && !(*hand_over >= 0 && std::isfinite(*hand_over)))
+      throw InputError("hand_over must be a number of seconds, 0 or more");
+  }
+};
+
+SessionCall drag_to(const DoubleArray& goal, const DragTimes& times) {
+  times.check();
+  return [to = controls_from(goal, "goal"), times](EditSession& session, Execution& execution) {
+    if (times.time_budget) execution.set_time_budget(*times.time_budget, BudgetEnd::after_checkpoint);
+    return session.drag(to, execution, times.hand_over);
   };
 }
 
@@ -254,6 +265,7 @@ void bind_editing(py::module_& module) {
   const auto progress = py::arg("progress") = py::none();
   const py::arg surface("surface"), deformation("deformation"), controls("controls"), options("options"), goal("goal");
   const auto time_budget = py::arg("time_budget") = py::none();
+  const auto hand_over = py::arg("hand_over") = py::none();
   using Token = const CancelToken*;
   py::class_<Session, std::shared_ptr<Session>>(module, "EditSession")
       .def(py::init([](std::shared_ptr<Surface> from, std::shared_ptr<Deformation> map, const DoubleArray& start,
@@ -273,8 +285,10 @@ void bind_editing(py::module_& module) {
       .def(
           "drag",
           [](Session& session, const DoubleArray& to, Token token, const py::object& report,
-             const std::optional<double>& budget) { return session.call(drag_to(to, budget), token, report); },
-          goal, cancel, progress, time_budget)
+             const std::optional<double>& budget, const std::optional<double>& after) {
+            return session.call(drag_to(to, {budget, after}), token, report);
+          },
+          goal, cancel, progress, time_budget, hand_over)
       .def(
           "settle",
           [](Session& session, Token token, const py::object& report) {
@@ -285,10 +299,9 @@ void bind_editing(py::module_& module) {
           "start_edit", [](Session& session, const DoubleArray& to) { return session.start_call(edit_to(to)); }, goal)
       .def(
           "start_drag",
-          [](Session& session, const DoubleArray& to, const std::optional<double>& budget) {
-            return session.start_call(drag_to(to, budget));
-          },
-          goal, time_budget)
+          [](Session& session, const DoubleArray& to, const std::optional<double>& budget,
+             const std::optional<double>& after) { return session.start_call(drag_to(to, {budget, after})); },
+          goal, time_budget, hand_over)
       .def("start_settle", [](Session& session) { return session.start_call(settle_session); })
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
       .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))

@@ -166,6 +166,7 @@ class EditSession:
         cancel: CancelToken | None = None,
         progress: Progress | None = None,
         time_budget: float | None = None,
+        hand_over: float | None = None,
     ) -> EditResult:
         """Solve one mouse move of a drag toward the absolute ``goal``, (m, 3).
 
@@ -174,8 +175,11 @@ class EditSession:
 
         ``time_budget``, in seconds, replaces that of the options. If it ends a call before anything is accepted, the
         next call with the same goal continues. Another goal starts again with the whole increment.
+
+        ``hand_over``, in seconds: the call ends at the first state that it accepts after this time, with the status
+        "budget", so that the state can be shown while the next call continues from it.
         """
-        values = self._session.drag(as_doubles(goal, "goal"), cancel, progress, time_budget)
+        values = self._session.drag(as_doubles(goal, "goal"), cancel, progress, time_budget, hand_over)
         return result_of(values, self._topology)
 
     def settle(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
@@ -186,9 +190,11 @@ class EditSession:
         """Start :meth:`edit` as a job."""
         return self._job(self._session.start_edit(as_doubles(goal, "goal")))
 
-    def start_drag(self, goal: ArrayLike, *, time_budget: float | None = None) -> Job[EditResult]:
+    def start_drag(
+        self, goal: ArrayLike, *, time_budget: float | None = None, hand_over: float | None = None
+    ) -> Job[EditResult]:
         """Start :meth:`drag` as a job."""
-        return self._job(self._session.start_drag(as_doubles(goal, "goal"), time_budget))
+        return self._job(self._session.start_drag(as_doubles(goal, "goal"), time_budget, hand_over))
 
     def start_settle(self) -> Job[EditResult]:
         """Start :meth:`settle` as a job."""

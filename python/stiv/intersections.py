@@ -102,6 +102,15 @@ class StepCheck:
         last = as_floats(end, "end", (self._vertex_count, 3))
         return self._native.is_free(first, last, as_number(separation, "separation", 0))
 
+    def is_end_free(self, start: ArrayLike, end: ArrayLike) -> bool:
+        """Return whether the end of a step is free; the path to it is not tested.
+
+        Only pairs with a vertex that moves are tested, so `start` must be free.
+        """
+        first = as_floats(start, "start", (self._vertex_count, 3))
+        last = as_floats(end, "end", (self._vertex_count, 3))
+        return self._native.is_end_free(first, last)
+
 
 def _prepared(vertices: ArrayLike, triangles: Surface | ArrayLike, all_bodies: bool) -> tuple[Surface, Floats]:
     q = as_floats(vertices, "vertices", (None, 3))

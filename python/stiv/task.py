@@ -87,6 +87,10 @@ class Task(Generic[Result]):
         """The result of the steps. Only when done."""
         return self._done[0]
 
+    def start(self) -> None:
+        """Take the first step, which starts the first job; its result is left to `advance`."""
+        self._step()
+
     def advance(self, seconds: float = 0.0) -> bool:
         """Continue for about some seconds, or until a step asks for a turn; return whether the task is done."""
         end = time.perf_counter() + seconds

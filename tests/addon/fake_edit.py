@@ -3,7 +3,7 @@
 
 import time
 from dataclasses import dataclass, field
-from types import MappingProxyType
+from types import SimpleNamespace
 from typing import Any
 
 from stiv.task import Steps, Task
@@ -17,7 +17,12 @@ class FakeResult:
     path: tuple[float, ...] = ()
     energy: float = 0.0
     blocking = ()
-    timings = MappingProxyType({"total": 0.0})
+    seconds: float = 0.0
+
+    @property
+    def timings(self) -> dict[str, float]:
+        """Those of the core."""
+        return {"total": self.seconds}
 
 
 @dataclass
@@ -26,7 +31,8 @@ class FakeEdit:
 
     `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
     from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write.
-    `budgets`: of all solves.
+    `solving`: seconds that each solve reports. `budgets`, `hand_overs`: of all solves. `taking`: whether states can be
+    taken from the session; `flips`: whether Blender then shows them with intersections.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -38,8 +44,12 @@ class FakeEdit:
     shown: float = 0.0
     goals: list[float] = field(default_factory=list)
     budgets: list[float] = field(default_factory=list)
+    hand_overs: list[float | None] = field(default_factory=list)
     reading: float = 0.0
     writing: float = 0.0
+    solving: float = 0.0
+    taking: bool = True
+    flips: bool = False
     requests: list[Any] = field(default_factory=list)
     interference: bool = True
     moving = frozenset({"Box"})
@@ -72,8 +82,9 @@ class FakeEdit:
         self.interference = on
         return ""
 
-    def drag_steps(self, matrix: Any, *, time_budget: float) -> "Steps[Any]":
+    def drag_steps(self, matrix: Any, *, time_budget: float, hand_over: float | None) -> "Steps[Any]":
         self.budgets.append(time_budget)
+        self.hand_overs.append(hand_over)
         yield from self._delayed("drag")
         self._called("drag")
         return self._solve(matrix)
@@ -104,7 +115,19 @@ class FakeEdit:
                 yield None
                 self.busy = False
 
+    def take_state(self) -> Any:
+        """Replaces taking a state; the session must be free."""
+        assert not self.busy
+        return SimpleNamespace(state=self.accepted, turned=0.5) if self.taking else None
+
+    def write_taken(self, taken: Any) -> Any:
+        """Replaces writing a taken state, while the session may be busy."""
+        self._called("write beside" if self.busy else "write")
+        self.shown = taken.state
+        return None if self.flips else SimpleNamespace(passed=True, message="", result=None)
+
     def write(self) -> Any:
+        assert not self.busy
         self._called("write")
         time.sleep(self.writing)
         self.shown = self.accepted
@@ -124,7 +147,7 @@ class FakeEdit:
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
         path = (self.accepted,) if self.furthest > 0 else ()
-        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2)
+        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2, self.solving)
 
 
 class FakeTask(Task[Any]):

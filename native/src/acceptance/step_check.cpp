@@ -3,16 +3,12 @@
 
 namespace stiv {
 
-namespace {
-
 std::vector<unsigned char> moved_vertices(const PositionsView& start, const PositionsView& end) {
   std::vector<unsigned char> moved;
   moved.reserve(static_cast<std::size_t>(start.rows()));
   for (Index vertex = 0; vertex < start.rows(); ++vertex) moved.push_back(start.row(vertex) != end.row(vertex));
   return moved;
 }
-
-}  // namespace
 
 bool is_step_free(Detector& detector, IntersectionTest& intersections, const PositionsView& start,
                   const PositionsView& end, Proximity proximity, Execution& execution) {

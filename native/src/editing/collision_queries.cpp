@@ -5,6 +5,7 @@
 
 #include "editing/validation.hpp"
 #include "position_rows.hpp"
+#include "stiv/acceptance/step_check.hpp"
 #include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
 
@@ -16,13 +17,6 @@ double first_time(const Events& events) {
   double first = never;
   for (const Event& event : events) first = std::min(first, event.time);
   return first;
-}
-
-/// Marks vertices whose position differs in any bit.
-std::vector<unsigned char> moved_vertices(const PositionsView& from, const PositionsView& to) {
-  std::vector<unsigned char> moved(from.rows());
-  for (Index vertex = 0; vertex < from.rows(); ++vertex) moved[vertex] = from.row(vertex) != to.row(vertex);
-  return moved;
 }
 
 std::shared_ptr<const Surface> without_pairs(const Surface& surface, const BodyPairs& pairs,

@@ -101,9 +101,10 @@ double longest_displacement(const Positions& from, const Positions& to) {
   return (to - from).rowwise().norm().maxCoeff();
 }
 
-// A stride with contacts that took several calls is halved for the next one; any other is doubled. Without contacts, a
+// A stride with contacts that took several calls, or was handed over late, is halved for the next one; any other is doubled. Without contacts, a
 // shorter stride takes as long.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
+  const double shortest = shortest_stride * call.context.pull_distance();
   for (bool arrives = false; !arrives;) {
     const double way = longest_displacement(drag.followed.surface, aim.surface);
     arrives = way <= drag.stride || !call.execution.has_time_budget();
@@ -122,16 +123,18 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
       if (call.context.stored(increment) != call.accepted.controls)
         run_sub_edits_by_steps(call, {increment, aim.surface, false});
     } catch (const Interrupted&) {
-      if (call.report.path.size() > accepted_before)
-        drag.followed = std::move(next);  // else the next call begins with the rest of the stride
-      drag.stride_took_several_calls |= call.execution.counters.rounds > rounds_before;
+      const bool has_accepted = call.report.path.size() > accepted_before;
+      if (has_accepted) drag.followed = std::move(next);  // else the next call begins with the rest of the stride
+      const bool is_long = !has_accepted || call.is_late();
+      drag.stride_took_too_long |= is_long && call.execution.counters.rounds > rounds_before;
+      if (has_accepted && call.is_to_hand_over() && drag.stride_took_too_long) drag.shorten_stride(way, shortest);
       throw;
     }
     drag.followed = std::move(next);
-    drag.stride = drag.stride_took_several_calls
-                      ? std::max(std::min(drag.stride, way) / 2, shortest_stride * call.context.pull_distance())
-                      : 2 * drag.stride;
-    drag.stride_took_several_calls = false;
+    if (drag.stride_took_too_long)
+      drag.shorten_stride(way, shortest);
+    else
+      drag.stride *= 2;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -17,12 +18,18 @@ struct DragProgress {
   /// Largest displacement of a vertex in an increment of a call with a time budget. It adapts so that each call accepts
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
-  bool stride_took_several_calls = false;  ///< and had contacts
+  bool stride_took_too_long = false;  ///< several calls, or too long to be shown; and had contacts
   bool is_leaping = false;       ///< the time budget ended a leap, which the next call to the same goal resumes
   double missing_at_detour = 0;  ///< way to the goal when the last detour failed; 0: none did
   double missing_at_leap = 0;    ///< the same at the last leap, if it gained little; else 0
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
+
+  /// Halves the stride after one that went this way at most, but not below the shortest.
+  void shorten_stride(double way, double shortest) {
+    stride = std::max(std::min(stride, way) / 2, shortest);
+    stride_took_too_long = false;
+  }
 };
 
 /// Applies the increment from the goal that was followed last, in strides if the call has a time budget.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -44,6 +45,18 @@ struct EditReport {
   std::vector<Controls> path;  ///< accepted controls, in order
 };
 
+/// When a call ends at an acceptance, so that the state can be shown.
+struct HandOver {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begins, late;  ///< late: the state should have been accepted earlier
+
+  explicit HandOver(double seconds) {
+    const auto wait = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    begins = Clock::now() + wait;
+    late = begins + wait;
+  }
+};
+
 /// The inputs and outputs of one call of a session. `accepted` changes at each acceptance and only then, so it is valid
 /// even when Interrupted is thrown.
 struct EditCall {
@@ -53,6 +66,10 @@ struct EditCall {
   std::optional<RoundProgress>& progress;
   EditReport& report;
   Execution& execution;
+  std::optional<HandOver> hand_over = std::nullopt;
+
+  bool is_to_hand_over() const { return hand_over && HandOver::Clock::now() >= hand_over->begins; }
+  bool is_late() const { return !hand_over || HandOver::Clock::now() >= hand_over->late; }
 };
 
 /// The goal of a sub-edit.

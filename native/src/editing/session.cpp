@@ -82,9 +82,10 @@ class EditSession::Implementation {
     return result;
   }
 
-  EditResult drag(const Controls& goal, Execution& execution) {
+  EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
+      if (hand_over) call.hand_over.emplace(*hand_over);
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
       if (aim.controls != drag_.followed.controls) forget_leaps();
       if (drag_.is_leaping) leap(call, aim, drag_);
@@ -294,8 +295,8 @@ EditSession& EditSession::operator=(EditSession&&) noexcept = default;
 EditResult EditSession::edit(const Controls& goal, Execution& execution) {
   return implementation_->edit(goal, execution);
 }
-EditResult EditSession::drag(const Controls& goal, Execution& execution) {
-  return implementation_->drag(goal, execution);
+EditResult EditSession::drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) {
+  return implementation_->drag(goal, execution, hand_over);
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
 void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }

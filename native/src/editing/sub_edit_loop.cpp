@@ -9,6 +9,7 @@
 #include "editing/control_interpolation.hpp"
 #include "editing/feasible_state.hpp"
 #include "editing/round_loop.hpp"
+#include "stiv/error.hpp"
 
 namespace stiv {
 
@@ -130,6 +131,8 @@ void SubEditLoop::run() {
     call_.accepted = std::move(acceptance.state);
     call_.execution.checkpoint();
     edit.path.push_back(call_.accepted.controls);
+    const bool arrived = call_.accepted.controls == call_.context.stored(aim_.controls);
+    if (!arrived && call_.is_to_hand_over()) throw Interrupted("handing over an accepted state");
     const double energy_after = energy_of(call_.accepted);
     const bool is_part = fraction_ < 1 || acceptance.is_part;
     if (!is_part && !edit.blocked) return;

@@ -110,3 +110,41 @@ TEST_CASE("session: drags without contacts, each cut by its time, reach a far go
   }
   CHECK(calls <= 4);
 }
+
+TEST_CASE("session: a drag that hands over ends at the first state that it accepts, and the next call continues") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene), other = session_of(scene);
+  Execution execution(1);
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0.01, 0, -0.6));
+  const EditResult whole = other.drag(goal, execution);
+  EditResult handed = session.drag(goal, execution, 0.0);
+  REQUIRE(handed.status == EditStatus::budget);
+  REQUIRE(handed.path.size() == 1);
+  CHECK(handed.path.front() == whole.path.front());
+  const double first = handed.energy;
+  for (int call = 0; call < 100 && handed.status == EditStatus::budget; ++call) {
+    handed = session.drag(goal, execution, 0.0);
+    CHECK(handed.path.size() <= 1);
+    CHECK(is_free(scene, session.surface()));
+  }
+  CHECK(handed.status != EditStatus::budget);
+  CHECK(handed.energy <= first);
+}
+
+TEST_CASE("session: a drag that arrives at its goal has reached it, whenever it hands over") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene);
+  Execution execution(1);
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0, 0, 0.5));
+  CHECK(session.drag(goal, execution, 0.0).status == EditStatus::reached);
+}
+
+TEST_CASE("session: handing over late enough changes nothing") {
+  const Scene scene = two_sheets();
+  EditSession session = session_of(scene), other = session_of(scene);
+  Execution execution(1);
+  const Controls goal = moved(scene.controls, upper_sheet, Vector3(0.01, 0, -0.6));
+  const EditResult whole = other.drag(goal, execution), handed = session.drag(goal, execution, 1e6);
+  CHECK(handed.status == whole.status);
+  CHECK(handed.path == whole.path);
+}

@@ -146,6 +146,94 @@ def test_a_solve_longer_than_a_frame_leaves_the_events_free() -> None:
     assert drag.progress is Progress.CANCELLED and edit.shown == 0.0
 
 
+def follow(drag: DragLoop, edit: FakeEdit, *positions: float) -> None:
+    """Move the mouse before each tick."""
+    for x in positions:
+        drag.handle(move_to(x))
+        drag.tick()
+
+
+def long_solves(**given: object) -> FakeEdit:
+    """Solves that end in the next tick, and take longer than a frame."""
+    return FakeEdit(delays={"drag": 1}, solving=0.03, **given)
+
+
+def test_the_next_solve_runs_while_a_state_is_written() -> None:
+    edit = long_solves()
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    assert edit.calls == ["drag", "write beside", "drag", "write beside"]
+    assert edit.goals == [0.1, 0.2] and edit.shown == drag.written.path[-1] == 0.2
+    assert drag.turned == 0.5 and edit.busy  # with the solve for the third goal
+    drag.tick()
+    drag.tick()
+    assert edit.shown == 0.3 and drag.at_rest and drag.written is drag.result
+
+
+def test_a_solve_and_a_writing_that_fit_into_a_frame_follow_each_other() -> None:
+    """The state is newer then."""
+    edit = FakeEdit(delays={"drag": 1})
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20)
+    assert edit.calls == ["drag", "write"] and not edit.busy
+
+
+def test_an_edit_that_must_be_written_first_is() -> None:
+    edit = long_solves(taking=False)
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    assert edit.calls == ["drag", "write"]
+
+
+@pytest.mark.parametrize("end", ["ESC", "RIGHTMOUSE"])
+def test_cancelling_while_a_solve_runs_restores_the_start(end: str) -> None:
+    edit = long_solves()
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20)
+    assert edit.busy and edit.shown == 0.1
+    drag.handle(Event(end))
+    assert drag.progress is Progress.CANCELLED and edit.calls[-1] == "restore" and edit.shown == 0.0
+
+
+def test_a_confirmation_while_a_solve_runs_ends_at_the_last_goal() -> None:
+    edit = long_solves()
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    drag.handle(Event("LEFTMOUSE"))
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and edit.shown == edit.accepted == drag.transform == 0.3
+
+
+def test_a_taken_state_that_fails_the_test_is_written_again_once_the_solve_has_ended() -> None:
+    """Blender flips the diagonals of bent quads."""
+    edit = long_solves(flips=True)
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20)
+    assert edit.calls == ["drag", "write beside", "drag", "write"] and not edit.busy
+    assert edit.shown == edit.accepted == 0.2 and drag.at_rest
+
+
+@pytest.mark.parametrize("call", ["drag", "write beside"])
+def test_an_exception_beside_a_solve_restores_and_ends(call: str) -> None:
+    edit = long_solves(failing={call: RuntimeError("broken")})
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    assert drag.progress is Progress.CANCELLED and edit.calls[-1] == "restore" and str(drag.error) == "broken"
+
+
+def test_solves_hand_over_early_only_until_the_mouse_rests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Short solves gain too little each, and would seem to have settled."""
+    edit = FakeEdit(statuses=["budget"] * 3)
+    drag = new_drag(edit)
+    follow(drag, edit, 50)
+    monkeypatch.setattr(drag_loop, "REST_TIME", 0.0)
+    drag.tick()
+    drag.handle(Event("LEFTMOUSE"))
+    first, *later = edit.hand_overs
+    assert first == drag_loop.HAND_OVER and later and set(later) == {None}
+
+
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
 def test_cancel_restores(key: str) -> None:
     edit = FakeEdit()

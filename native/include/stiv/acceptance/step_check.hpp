@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/detection/detector.hpp"
 
 namespace stiv {
+
+/// Marks the vertices, (N), whose positions differ in any bit.
+std::vector<unsigned char> moved_vertices(const PositionsView& start, const PositionsView& end);
 
 /// True if the linear step start -> end, (N, 3) each, is proven free of interference and its end free of intersections.
 /// The start must be free. These are the two conditions of an accepted state: a conservative continuous test of the

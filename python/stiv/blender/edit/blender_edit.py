@@ -22,7 +22,7 @@ from stiv.blender.edit.results import intersecting_objects, merge_results, round
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
 from stiv.blender.edit.solver import EditSolver
-from stiv.blender.edit.state_writer import StateWriter, WriteReport
+from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
@@ -54,6 +54,7 @@ class BlenderEdit:
         self._limits: list[tuple[object, ...]] = [()] * len(self._made)
         self._start = stack_controls([each.controls for each in self._made])
         self._goal = self._start
+        self._taken: TakenState | None = None
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
         self._solver = EditSolver(snapshot.assembly, self._made, self._start, settings)
@@ -154,8 +155,18 @@ class BlenderEdit:
                 return self.surface
 
     def least_distance(self) -> stiv.LeastDistance | None:
-        """Least distance between objects in the accepted state, without culled obstacles; None without a session."""
-        return self._solver.session.least_distance() if self._solver.has_session else None
+        """Least distance between objects in the accepted state, without culled obstacles; None without a session.
+
+        While a job uses the session, that of the state that was taken last.
+        """
+        if not self._solver.has_session:
+            return None
+        try:
+            return self._solver.session.least_distance()
+        except stiv.InputError:
+            if self._taken is None:
+                raise
+            return stiv.least_distance(self._taken.surface, self.assembly.surface)
 
     @property
     def assembly(self) -> Assembly:
@@ -254,8 +265,10 @@ class BlenderEdit:
         """
         return run(self.drag_steps(motion, execution.pop("time_budget", None)), **execution)
 
-    def drag_steps(self, motion: Motion | ArrayLike, time_budget: float | None = None) -> Steps[stiv.EditResult]:
-        """Steps of `drag`."""
+    def drag_steps(
+        self, motion: Motion | ArrayLike, time_budget: float | None = None, hand_over: float | None = None
+    ) -> Steps[stiv.EditResult]:
+        """Steps of `drag`; `time_budget` and `hand_over` are those of stiv.EditSession.drag."""
         chosen_motion = self._motion_of(motion)
         yield from self._limit(chosen_motion)
         self._goal = self._goal_of(chosen_motion)
@@ -263,7 +276,7 @@ class BlenderEdit:
             self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
         with kept_twins():
-            return (yield from self._solver.solve(self._goal, time_budget=time_budget))
+            return (yield from self._solver.solve(self._goal, time_budget=time_budget, hand_over=hand_over))
 
     def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
         """Solve for a goal of all controls, (m, 3)."""
@@ -321,6 +334,25 @@ class BlenderEdit:
             return WriteReport(True)
         with kept_twins():
             return self._writer.write_accepted(self._goal)
+
+    def take_state(self) -> TakenState | None:
+        """Take the accepted state, so that the next solve can begin before it is written.
+
+        None if it must be written first: collisions are off, or solves evaluate stacks of modifiers in Blender.
+        """
+        evaluates = any(each.observed or each.placed or each.posed for each in self.control_sets)
+        if self._unguarded is not None or evaluates:
+            return None
+        session = self._solver.session
+        self._taken = TakenState(session.controls, session.surface, self._goal, self._solver.trail, self.turned)
+        return self._taken
+
+    def write_taken(self, taken: TakenState) -> WriteReport | None:
+        """Write a state that was taken while a job may use the session.
+
+        None if it fails the test: call `write` when the session is free. Raises SceneChangedError.
+        """
+        return WriteReport(True) if self._writer.write_taken(taken) else None
 
     def finish(self) -> None:
         """Leave the session to the next edit, which uses it if nothing else changes. End the use of this edit."""

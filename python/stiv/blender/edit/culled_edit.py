@@ -71,15 +71,17 @@ class CulledEdit:
         """See BlenderEdit."""
         return run(self.drag_steps(motion, execution.pop("time_budget", None)), **execution)
 
-    def drag_steps(self, motion: Motion | ArrayLike, time_budget: float | None = None) -> Steps[stiv.EditResult]:
+    def drag_steps(
+        self, motion: Motion | ArrayLike, time_budget: float | None = None, hand_over: float | None = None
+    ) -> Steps[stiv.EditResult]:
         """See BlenderEdit."""
         self._motion, goal = motion, self._edit.goal_of(motion)
         if self._edit.interference and not self._is_within_box([goal]):
             yield from self._widen([goal])
-        result = yield from self._edit.drag_steps(motion, time_budget)
+        result = yield from self._edit.drag_steps(motion, time_budget, hand_over)
         while not self._stays_within_box(result):
             yield from self._widen([goal, *result.path, result.controls])
-            result = yield from self._edit.drag_steps(motion, time_budget)
+            result = yield from self._edit.drag_steps(motion, time_budget, hand_over)
         return result
 
     def settle(self, **execution: Any) -> stiv.EditResult:
@@ -107,6 +109,9 @@ class CulledEdit:
         if report.result is not None:  # solved again, along a path that was not checked against the box
             run(self._restart_within(None))
         return report
+
+    def take_state(self) -> None:
+        """None: a larger box resumes from the last written state, which the next solve may need at once."""
 
     def restore(self) -> None:
         """See BlenderEdit."""

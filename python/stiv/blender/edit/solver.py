@@ -65,7 +65,7 @@ class EditSolver:
         return self._session
 
     def solve(self, goal: Floats | None, **limits: Any) -> Steps[stiv.EditResult]:
-        """Steps that drag to a goal, (m, 3), or settle (None); `time_budget` as in stiv.EditSession.drag."""
+        """Steps that drag to a goal, (m, 3), or settle (None); the limits are those of stiv.EditSession.drag."""
         session = self.session
         self._renew_jacobians()
         if goal is None:

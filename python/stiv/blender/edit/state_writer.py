@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes accepted states into Blender, reads the evaluation back, and tests it."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -39,6 +40,25 @@ class WriteReport:
     result: stiv.EditResult | None = None
 
 
+@dataclass(frozen=True)
+class TakenState:
+    """An accepted state, taken from the session before this solves on: it is written while a job uses the session.
+
+    Attributes:
+        controls: (m, 3), accepted.
+        surface: (N, 3), of these controls.
+        goal: of all controls, (m, 3), toward which they were solved.
+        trail: that of the solver; another one if the edit has begun again since.
+        turned: as `BlenderEdit.turned`.
+    """
+
+    controls: Floats
+    surface: Floats
+    goal: Floats
+    trail: Trail
+    turned: float
+
+
 class StateWriter:
     """Writes solved states. Only states that pass the test in Blender's evaluation remain."""
 
@@ -48,6 +68,21 @@ class StateWriter:
         self._solver = solver
         self._settings = settings
         self._verifier = self._new_verifier()
+        self._verifier_beside: Verifier | None = None
+
+    def write_taken(self, taken: TakenState) -> bool:
+        """Write a state that was taken from the session, and test Blender's evaluation with trees of its own.
+
+        Returns whether the state remains. Otherwise `write_accepted` must follow once the session is free. Raises
+        SceneChangedError if an object was removed or changed.
+        """
+        if self._solver.trail is not taken.trail:
+            return False
+        self.write(taken.controls)
+        if not self._beside().verify(bpy.context, taken.surface).passed:
+            return False
+        self._solver.trail = Trail(taken.controls, taken.goal)
+        return True
 
     def write_accepted(self, goal: Floats) -> WriteReport:
         """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
@@ -89,6 +124,18 @@ class StateWriter:
             return self._solver.session.is_step_free(start, end)
 
         return Verifier(self._solver.assembly, is_step_free, self._settings.threads, self._solver.excluded)
+
+    def _beside(self) -> Verifier:
+        """A verifier that does not use the session. It tests the state that is shown exactly, and not the path to it.
+
+        That path is as long as rounding, and leads nowhere: solves continue from the accepted state.
+        """
+        assembly, excluded = self._solver.assembly, self._solver.excluded
+        if self._verifier_beside is None or not self._verifier_beside.tests(assembly, excluded):
+            threads = max(1, (self._settings.threads or os.cpu_count() or 1) - 1)  # the solve needs one
+            check = stiv.StepCheck(assembly.surface, threads)
+            self._verifier_beside = Verifier(assembly, check.is_end_free, threads, excluded)
+        return self._verifier_beside
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         states = self._solver.trail.states()
