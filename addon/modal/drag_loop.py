@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FRAME = 1.0 / 60.0  # seconds that a tick waits for a solve
 BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
-FITTING = 0.75 * FRAME  # seconds of a solve and of writing that happen one after the other: the state is newer then
+FITTING = 0.75 * FRAME  # seconds of a solve and its writing that run in sequence: the state is newer then
 LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would lose what is not accepted yet
 HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
@@ -102,9 +102,9 @@ class DragLoop:
 
     Events only change the state; `tick` solves for the latest goal, so that motions never queue up behind a solve. The
     start and each solve are tasks, whose jobs run beside Blender: a tick waits for a job no longer than a frame, and
-    the next tick continues. While an accepted state is written, evaluated and tested, the next solve runs already. While
-    the mouse rests, budgets grow and the drag settles; the next motion cancels that. If
-    the budget of a solve ends before a state is accepted, the next solve continues with the
+    the next tick continues. While an accepted state is written, evaluated and tested, the next solve already runs.
+    While the mouse rests, budgets grow and the drag settles; the next motion cancels that. If the budget of a solve
+    ends before a state is accepted, the next solve continues with the
     same goal: with a new goal each time, none would be reached.
 
     No exception leaves this class after the start. A rejected value (ValueError) becomes `note`, and the last accepted

@@ -300,7 +300,9 @@ void bind_editing(py::module_& module) {
       .def(
           "start_drag",
           [](Session& session, const DoubleArray& to, const std::optional<double>& budget,
-             const std::optional<double>& after) { return session.start_call(drag_to(to, {budget, after})); },
+             const std::optional<double>& after) {
+            return session.start_call(drag_to(to, {budget, after}));
+          },
           goal, time_budget, hand_over)
       .def("start_settle", [](Session& session) { return session.start_call(settle_session); })
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))

@@ -101,8 +101,8 @@ double longest_displacement(const Positions& from, const Positions& to) {
   return (to - from).rowwise().norm().maxCoeff();
 }
 
-// A stride with contacts that took several calls, or was handed over late, is halved for the next one; any other is doubled. Without contacts, a
-// shorter stride takes as long.
+// A stride with contacts that took several calls, or was handed over late, is halved for the next one; any other is
+// doubled. Without contacts, a shorter stride takes as long.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   const double shortest = shortest_stride * call.context.pull_distance();
   for (bool arrives = false; !arrives;) {

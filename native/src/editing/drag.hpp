@@ -19,9 +19,9 @@ struct DragProgress {
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_too_long = false;  ///< several calls, or too long to be shown; and had contacts
-  bool is_leaping = false;       ///< the time budget ended a leap, which the next call to the same goal resumes
-  double missing_at_detour = 0;  ///< way to the goal when the last detour failed; 0: none did
-  double missing_at_leap = 0;    ///< the same at the last leap, if it gained little; else 0
+  bool is_leaping = false;            ///< the time budget ended a leap, which the next call to the same goal resumes
+  double missing_at_detour = 0;       ///< way to the goal when the last detour failed; 0: none did
+  double missing_at_leap = 0;         ///< the same at the last leap, if it gained little; else 0
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
 

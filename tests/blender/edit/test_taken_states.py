@@ -18,8 +18,6 @@ from stiv.blender.edit import state_writer
 from stiv.blender.verify.scene_check import find_pairs, read_surface
 from stiv.task import Task
 
-
-
 BLEND = Path(__file__).resolve().parents[3] / "blend_fixtures/sphere_along_wall.blend"
 
 
@@ -88,7 +86,7 @@ def test_no_state_is_taken_without_collisions() -> None:
 
 
 class Watch:
-    """Counts writings and their threads, and tests what is shown after each."""
+    """Counts writings and their threads, and tests the scene after each."""
 
     def __init__(self) -> None:
         self.threads: set[int] = set()

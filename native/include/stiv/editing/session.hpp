@@ -61,7 +61,8 @@ class EditSession {
 
   /// One mouse move of a drag: applies the increment since the last goal, then pulls toward the absolute goal.
   /// (mathematics.md, "Deep goals")
-  /// @param hand_over seconds; the call ends at the first state that it accepts later than that, with the status budget:
+  /// @param hand_over seconds; the call ends at the first state that it accepts later than that, with the status
+  /// budget:
   ///        the state can be shown while the next call continues from it
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over = std::nullopt);
 
