@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,7 @@ class View:
     def unproject(self, pixel: Pixel, depth: float) -> Vector:
         """The world position at a pixel and a normalised depth in (-1, 1)."""
         x, y = 2.0 * pixel[0] / self.size[0] - 1.0, 2.0 * pixel[1] / self.size[1] - 1.0
-        point = np.linalg.solve(self.projection, np.array([x, y, depth, 1.0]))
+        point = _inverse(np.asarray(self.projection, np.float64).tobytes()) @ np.array([x, y, depth, 1.0])
         return np.asarray(point[:3] / point[3])
 
     def at_depth_of(self, pixel: Pixel, reference: Vector) -> Vector:
@@ -86,3 +87,9 @@ class View:
 
     def _clip(self, point: Vector) -> Vector:
         return np.asarray(self.projection @ np.append(point, 1.0))
+
+
+@lru_cache(maxsize=8)
+def _inverse(projection: bytes) -> Vector:
+    """Inverse of a projection, (4, 4). To solve at each motion would wake the threads of NumPy's BLAS, which spin."""
+    return np.asarray(np.linalg.inv(np.frombuffer(projection).reshape(4, 4)))

@@ -17,7 +17,7 @@ from stiv.blender.animation.controls import MovingSet, stored_placement
 from stiv.blender.animation.fixed_triangulation import flipped_faces, split_faces
 from stiv.blender.animation.resolving import Key, Resolved
 from stiv.blender.animation.tracks import Track
-from stiv.blender.scene.arrays import Floats, Singles, transform_points
+from stiv.blender.scene.arrays import Floats, Singles, invert, transform_points
 from stiv.blender.scene.mesh_reading import evaluated_mesh
 from stiv.blender.scene.open_evaluations import open_evaluations
 from stiv.blender.verify.frame_check import set_frame
@@ -131,7 +131,7 @@ def _write_shape(moving_set: MovingSet, track: Track, mesh: bpy.types.Mesh, keys
 def _local(moving_set: MovingSet, controls: Floats) -> Singles:
     """Stored local coordinates of all vertices of a deforming object, (n, 3)."""
     assert moving_set.frame is not None
-    local = transform_points(np.linalg.inv(moving_set.frame).astype(np.float64), controls).astype(np.float32)
+    local = transform_points(invert(moving_set.frame), controls).astype(np.float32)
     return local if moving_set.control_seams is None else local[moving_set.control_seams.index]
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
-import numpy as np
 
 import stiv
 from stiv.blender.controls.affine_images import uniform_factor
@@ -17,7 +16,7 @@ from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.observed_stack import ObservedStack, ShownStack
 from stiv.blender.controls.shared_meshes import in_frames
 from stiv.blender.controls.subdivision import identity_deformation, stack_deformations, subdivide
-from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
+from stiv.blender.scene.arrays import Floats, as_matrix, invert, transform_points
 from stiv.blender.scene.evaluations import SHOWN, is_active, is_edited
 from stiv.blender.scene.lattice_reading import is_undeformed
 from stiv.blender.scene.modifier_stack import (
@@ -109,7 +108,7 @@ def _known_surfaces(
 
     None for the identity. Raises UnsupportedStackError for others.
     """
-    inverse = np.linalg.inv(writer.frame).astype(np.float64)
+    inverse = invert(writer.frame)
     maps = [as_matrix(user.matrix_world) @ inverse for user, _ in rows]
     turned = [user for (user, _), each in zip(rows, maps, strict=True) if user != ob and uniform_factor(each) is None]
     if turned:

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils.kdtree import KDTree
 
-from stiv.blender.scene.arrays import Flags, Floats, Indices, apply_linear, as_matrix, to_local
+from stiv.blender.scene.arrays import Flags, Floats, Indices, apply_linear, as_matrix, invert, to_local
 
 ON_PLANE = 1e-6  # distance of a vertex from its image, in sizes of the mesh, without merging
 
@@ -60,7 +60,7 @@ class HeldVertices:
         if not self.planes and self.leaders is None:
             return positions
         linear = frame[:3, :3]
-        motion = apply_linear(np.linalg.inv(linear).astype(np.float64), positions - start)
+        motion = apply_linear(invert(linear), positions - start)
         held = start + apply_linear(linear, self._limited(motion))
         return np.asarray(np.where(self._restricted[:, None], held, positions), np.float64)
 
@@ -103,11 +103,11 @@ def find_held_vertices(users: Sequence[bpy.types.Object], local: Floats) -> Held
 def _plane(ob: bpy.types.Object, modifier: bpy.types.MirrorModifier, axis: int, local: Floats) -> MirrorPlane:
     to_mirror = np.eye(4)
     if modifier.mirror_object is not None:
-        mirror = np.linalg.inv(as_matrix(modifier.mirror_object.matrix_world)).astype(np.float64)
+        mirror = invert(as_matrix(modifier.mirror_object.matrix_world))
         to_mirror = mirror @ as_matrix(ob.matrix_world)
     across = local @ to_mirror[axis, :3] + to_mirror[axis, 3]
     length = float(np.linalg.norm(to_mirror[axis, :3]))
-    scale = 2 * length * float(np.linalg.norm(np.linalg.inv(to_mirror[:3, :3])[:, axis]))  # from distances to merging
+    scale = 2 * length * float(np.linalg.norm(invert(to_mirror[:3, :3])[:, axis]))  # from distances to merging
     size = float(np.ptp(local, axis=0).max(initial=0.0))
     merges = modifier.use_mirror_merge
     threshold = (modifier.merge_threshold if merges else ON_PLANE * size) / scale

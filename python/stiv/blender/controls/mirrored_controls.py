@@ -17,7 +17,7 @@ from stiv.blender.controls.control_set import ControlSet, Writer
 from stiv.blender.controls.joined_seams import copy_to_seams, first_copies, selection_weights
 from stiv.blender.controls.points import PointGoal
 from stiv.blender.controls.subdivision import is_linear
-from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Indices, invert, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 DISTANCE = 2e-5  # local units within which Blender finds a mirror image
@@ -55,7 +55,7 @@ def mirror_controls(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> C
     if mesh.use_mirror_topology:
         raise InputError(f"{ob.name}: Topology Mirror is not supported; turn it off")
     assert isinstance(rule, PointGoal) and frame is not None
-    local = transform_points(np.linalg.inv(frame).astype(np.float64), control_set.controls)
+    local = transform_points(invert(frame), control_set.controls)
     leaders, signs = _find_leaders(local, rule.selected, axes)
     if (signs == 1).all():
         return control_set
@@ -123,7 +123,7 @@ def _groups(points: Floats) -> list[list[int]]:
 def _images(controls: Floats, leaders: Indices, kept: Indices, signs: Signs, frame: Floats) -> stiv.Deformation:
     """Deformation from the remaining controls to all of them, which start where they are, in world space."""
     linear = frame[:3, :3]
-    flips = np.einsum("ij,nj,jk->nik", linear, signs.astype(np.float64), np.linalg.inv(linear))
+    flips = np.einsum("ij,nj,jk->nik", linear, signs.astype(np.float64), invert(linear))
     flips[(signs == 1).all(axis=1)] = np.eye(3)
     offsets = controls - np.einsum("nij,nj->ni", flips, controls[leaders])
     return _anchored(len(kept), np.searchsorted(kept, leaders).astype(np.int32), flips, offsets)

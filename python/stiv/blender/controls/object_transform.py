@@ -9,7 +9,7 @@ import numpy as np
 
 from stiv.blender.controls.parent_space import ParentSpace, keep_locked, read_parent_space
 from stiv.blender.controls.rotations import euler_angles, is_rotation, nearest_rotation
-from stiv.blender.scene.arrays import Floats, as_matrix
+from stiv.blender.scene.arrays import Floats, as_matrix, invert
 
 ROUNDING = 2.0**-48  # relative error of a location in the parent's space
 ROTATION_PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
@@ -53,7 +53,7 @@ def read_transform(ob: bpy.types.Object) -> ObjectTransform:
     """Read the object's transform; its scale must not be zero."""
     world, basis = as_matrix(ob.matrix_world), as_matrix(ob.matrix_basis)
     name = ROTATION_PROPERTIES.get(ob.rotation_mode, "rotation_euler")
-    parent_matrix = np.eye(4) if np.array_equal(world, basis) else world @ np.linalg.inv(basis)
+    parent_matrix = np.eye(4) if np.array_equal(world, basis) else world @ invert(basis)
     return ObjectTransform(
         tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis,
         read_parent_space(ob),
@@ -65,7 +65,7 @@ def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats
 
     The world matrix becomes motion @ start.world. A rotation changes the object's own rotation, factors its own scale.
     """
-    inner = np.linalg.inv(start.parent_matrix) @ motion @ start.parent_matrix
+    inner = invert(start.parent_matrix) @ motion @ start.parent_matrix
     shift = (inner @ start.basis)[:3, 3] - start.basis[:3, 3]
     size = max(float(np.abs(each[:3, 3]).max()) for each in (motion, start.basis, start.parent_matrix))
     shift[np.abs(shift) <= ROUNDING * size] = 0.0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix
+from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, invert
 
 NEIGHBORS = np.array(list(itertools.product(range(-2, 3), repeat=3)))  # in units in the last place of each coordinate
 MAX_ERROR = 8  # along the free axes, in units in the last place
@@ -77,7 +77,7 @@ def keep_locked(space: ParentSpace, location: Floats, start: Floats, goal: Float
 
 
 def _candidates(space: ParentSpace, location: Floats, free: Flags, reach: int) -> Singles:
-    inverse = np.linalg.inv(space.above[:3, :3].astype(np.float64))
+    inverse = invert(space.above[:3, :3].astype(np.float64))
     unit = float(np.spacing(np.float32(np.abs(location).max())))
     steps = np.concatenate(
         [inverse[:, axis] * unit * np.arange(-reach, reach + 1)[:, None] for axis in np.flatnonzero(free)]

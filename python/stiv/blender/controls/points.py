@@ -11,7 +11,7 @@ from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.motion import Influence, Motion
 from stiv.blender.controls.response import Response
 from stiv.blender.controls.selection_distances import distances_along, island_centres, nearest_distances
-from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, apply_linear, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, apply_linear, invert, transform_points
 
 ROUNDING = 1e-11  # relative error of the conversions between local and world space during an edit
 
@@ -142,7 +142,7 @@ def to_stored(frame: Floats, world: Floats, original: Singles) -> Singles:
     Coordinates that differ from those at the start, given by `original`, (m, 3), only by rounding keep them exactly:
     conversion loses digits of small coordinates, and locked ones may not change at all.
     """
-    inverse = np.linalg.inv(frame).astype(np.float64)
+    inverse = invert(frame)
     exact = transform_points(inverse, world)
     sizes = apply_linear(np.abs(inverse[:3, :3]), np.abs(world) + np.abs(frame[:3, 3]))
     resting = np.abs(exact - original) <= ROUNDING * sizes
@@ -151,5 +151,5 @@ def to_stored(frame: Floats, world: Floats, original: Singles) -> Singles:
 
 def to_single(frame: Floats, world: Floats) -> Singles:
     """Local coordinates, (m, 3), in single precision, of world positions."""
-    local: Singles = transform_points(np.linalg.inv(frame).astype(np.float64), world).astype(np.float32)
+    local: Singles = transform_points(invert(frame), world).astype(np.float32)
     return local

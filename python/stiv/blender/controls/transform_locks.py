@@ -14,6 +14,7 @@ from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.object_transform import ObjectTransform
+from stiv.blender.scene.arrays import invert
 
 AXES = "XYZ"
 
@@ -74,8 +75,7 @@ def find_free_directions(
     Channels are along the axes of the parent. None: no channel is locked.
     """
     rows = [
-        np.linalg.inv(start.parent_matrix[:3, :3])[list(ob.lock_location)]
-        for ob, start in zip(objects, starts, strict=True)
+        invert(start.parent_matrix[:3, :3])[list(ob.lock_location)] for ob, start in zip(objects, starts, strict=True)
     ]
     normals = np.concatenate(rows)
     if len(normals) == 0:

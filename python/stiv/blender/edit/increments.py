@@ -42,7 +42,7 @@ def count_increments(path: Path, points: Floats, longest: float, most: int) -> i
     if len(points) == 0 or longest <= 0:
         return 1
     matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
-    turn = sum(_angle(after[:3, :3] @ np.linalg.pinv(before[:3, :3])) for before, after in pairwise(matrices))
+    turn = sum(_turn(before[:3, :3], after[:3, :3]) for before, after in pairwise(matrices))
     low, high = points.min(axis=0), points.max(axis=0)
     corners = np.array([np.where(choice, high, low) for choice in np.ndindex(2, 2, 2)])
     length = _length(matrices, corners)  # no point moves further than a corner of its box
@@ -56,8 +56,11 @@ def _length(matrices: Sequence[Floats], points: Floats) -> float:
     return sum(float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(states))
 
 
-def _angle(linear: Floats) -> float:
-    return float(np.linalg.norm(rotation_vector(nearest_rotation(linear))))
+def _turn(before: Floats, after: Floats) -> float:
+    """Angle between two linear maps; most typed values are translations, which need no decompositions."""
+    if np.array_equal(before, after):
+        return 0.0
+    return float(np.linalg.norm(rotation_vector(nearest_rotation(after @ np.linalg.pinv(before)))))
 
 
 LONGEST = 0.02  # increment, in diagonals of the moving points

@@ -59,7 +59,10 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
 
 
 def _warnings(assembly: Assembly) -> tuple[str, ...]:
-    a, b, c = (assembly.positions[assembly.surface.triangles[:, corner]] for corner in range(3))
-    flat = int((np.cross(b - a, c - a) == 0).all(axis=1).sum())
+    columns, corners = np.ascontiguousarray(assembly.positions.T), assembly.surface.triangles.T
+    a, b, c = (columns.take(corner, axis=1) for corner in corners)
+    b, c = b - a, c - a
+    no_area = [b[i - 2] * c[i - 1] == b[i - 1] * c[i - 2] for i in range(3)]  # the cross product is 0
+    flat = int(np.logical_and.reduce(no_area).sum())
     counted = "1 triangle has" if flat == 1 else f"{flat:,} triangles have"
     return (f"{counted} no area",) if flat else ()

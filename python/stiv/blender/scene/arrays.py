@@ -3,6 +3,7 @@
 
 import hashlib
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,24 @@ def apply_linear(matrix: Floats, vectors: Floats) -> Floats:
     return np.asarray(np.einsum("ij,kj->ik", vectors, matrix))
 
 
+def invert(matrix: Floats) -> Floats:
+    """Inverse of a matrix, (n, n), read-only. The last ones are cached: most are frames that stay during an edit.
+
+    LAPACK would wake the threads of NumPy's BLAS, whatever the size, which then spin beside the solver's.
+    """
+    return _inverse(len(matrix), np.asarray(matrix, np.float64).tobytes())
+
+
+@lru_cache(maxsize=256)
+def _inverse(size: int, values: bytes) -> Floats:
+    inverse: Floats = np.linalg.inv(np.frombuffer(values).reshape(size, size))
+    inverse.setflags(write=False)
+    return inverse
+
+
 def to_local(matrix: Floats, points: NDArray[Any]) -> Floats:
     """Local coordinates of world positions, (n, 3), in a frame, (4, 4)."""
-    return transform_points(np.linalg.inv(matrix).astype(np.float64), points)
+    return transform_points(invert(matrix), points)
 
 
 def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:

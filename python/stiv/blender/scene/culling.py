@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, invert, read_collection, transform_points
 from stiv.blender.scene.dependencies import dependencies, find_dependents
 from stiv.blender.scene.evaluations import RENDER, SURFACE_TYPES, VIEWPORT, is_visible, signature
 from stiv.blender.scene.mesh_reading import read_corners, read_edges, read_loose_numbers, read_positions
@@ -163,7 +163,7 @@ def _local_box(matrix: Floats, low: Floats, high: Floats) -> tuple[Floats, Float
     if not np.isfinite(matrix).all() or np.linalg.matrix_rank(matrix[:3, :3]) < 3:
         return np.full(3, -np.inf), np.full(3, np.inf)
     corners: Floats = np.stack(np.meshgrid(*np.stack([low, high], axis=1), indexing="ij"), axis=-1).reshape(-1, 3)
-    inverse = np.linalg.inv(matrix).astype(np.float64)
+    inverse = invert(matrix)
     seen = transform_points(inverse, corners)
     slack = 1e-6 * np.abs(seen).max(axis=0)  # the mesh is stored in single precision
     return seen.min(axis=0) - slack, seen.max(axis=0) + slack
