@@ -18,6 +18,7 @@ from benchmarks.sessions.blender_profile import blender_profile
 from benchmarks.sessions.cloth import cloth, cloth_text
 from benchmarks.sessions.dragged_profile import dragged_text
 from benchmarks.sessions.in_blender import drags_in_blender, frames_in_blender
+from benchmarks.sessions.large_scene import large_scene, large_scene_text
 from benchmarks.sessions.models import models, models_text
 from benchmarks.sessions.profile import profile, profile_text
 from benchmarks.sessions.race import race, race_text
@@ -47,6 +48,7 @@ examples:
   stiv bench --models FOLDER                 Figures 9 and 1 with bunny, teapot and ogre from a folder
   stiv bench quality --models FOLDER         edits beside converged solutions of an interior-point method (needs ipctk)
   stiv bench scaling --largest 300000        growth with the number of triangles
+  stiv bench large                           a drag over landscapes of 1 and 10 million triangles (Linux)
 
 exit codes: 0 done, 2 bad input, 4 an accepted state intersects, 1 wrong usage, 3 internal error, 5 cancelled"""
 
@@ -68,9 +70,8 @@ def parser() -> Parser:
     parser.add_argument(
         "--largest",
         type=int,
-        default=1_300_000,
         metavar="N",
-        help="scaling: triangles of the largest size (default: all)",
+        help="scaling, large: triangles of the largest size (default: all)",
     )
     parser.add_argument(
         "--models",
@@ -167,8 +168,13 @@ def _quality(arguments: argparse.Namespace, report: Report) -> _Result:
 
 
 def _scaling(arguments: argparse.Namespace, report: Report) -> _Result:
-    rows = scaling(arguments.threads, arguments.largest, report)
+    rows = scaling(arguments.threads, arguments.largest or sys.maxsize, report)
     return rows, scaling_text(rows)
+
+
+def _large(arguments: argparse.Namespace, report: Report) -> _Result:
+    rows = large_scene(arguments.threads, arguments.largest or sys.maxsize, report)
+    return rows, large_scene_text(rows)
 
 
 _BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
@@ -178,5 +184,6 @@ _BENCHES: dict[str, Callable[[argparse.Namespace, Report], _Result]] = {
     "cloth": _cloth,
     "models": _models,
     "scaling": _scaling,
+    "large": _large,
     "quality": _quality,
 }

@@ -104,27 +104,36 @@ SessionCall drag_to(const DoubleArray& goal, const DragTimes& times) {
 
 EditResult settle_session(EditSession& session, Execution& execution) { return session.settle(execution); }
 
+EditSession make_session(SurfacePointer surface, DeformationPointer deformation, const Controls& controls,
+                         const EditOptions& options, const Obstacles& obstacles, Execution& execution) {
+  if (obstacles.empty()) return {std::move(surface), std::move(deformation), controls, options, execution};
+  return {std::move(surface), std::move(deformation), controls, options, obstacles, execution};
+}
+
 /// The session as Python sees it.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(SurfacePointer surface, DeformationPointer deformation, const Controls& controls, const EditOptions& options,
-          Execution& execution)
-      : threads_(options.threads), session_(std::move(surface), std::move(deformation), controls, options, execution) {}
+          const Obstacles& obstacles, Execution& execution)
+      : threads_(options.threads),
+        session_(make_session(std::move(surface), std::move(deformation), controls, options, obstacles, execution)) {}
 
   static std::shared_ptr<Session> open(SurfacePointer surface, DeformationPointer deformation,
-                                       const DoubleArray& controls, const EditOptions& options) {
+                                       const DoubleArray& controls, const EditOptions& options,
+                                       const Obstacles& obstacles) {
     const Controls start = controls_from(controls, "controls");
     const py::gil_scoped_release unlocked;
     Execution execution(std::max(0, options.threads));
-    return std::make_shared<Session>(std::move(surface), std::move(deformation), start, options, execution);
+    return std::make_shared<Session>(std::move(surface), std::move(deformation), start, options, obstacles, execution);
   }
 
   static std::unique_ptr<NativeJob> start(SurfacePointer surface, DeformationPointer deformation,
-                                          const DoubleArray& controls, const EditOptions& options) {
+                                          const DoubleArray& controls, const EditOptions& options,
+                                          const Obstacles& obstacles) {
     return start_job(
         std::max(0, options.threads),
         [=, start = controls_from(controls, "controls")](Execution& execution) {
-          return std::make_shared<Session>(surface, deformation, start, options, execution);
+          return std::make_shared<Session>(surface, deformation, start, options, obstacles, execution);
         },
         [](const std::shared_ptr<Session>& session) { return py::cast(session); });
   }
@@ -198,6 +207,17 @@ class Session : public std::enable_shared_from_this<Session> {
   std::atomic<bool> in_use_{false};
 };
 
+Obstacles as_obstacles(const std::vector<std::shared_ptr<Obstacle>>& given) { return {given.begin(), given.end()}; }
+
+void bind_obstacle(py::module_& module) {
+  py::class_<Obstacle, std::shared_ptr<Obstacle>>(module, "Obstacle")
+      .def(py::init([](std::string name, Positions positions, Triangles triangles) {
+             const py::gil_scoped_release unlocked;
+             return std::make_shared<Obstacle>(std::move(name), std::move(positions), std::move(triangles));
+           }),
+           py::arg("name"), py::arg("positions"), py::arg("triangles"));
+}
+
 void bind_options(py::module_& module) {
   py::class_<StorageFrame>(module, "StorageFrame")
       .def(py::init([](Index first, Index count, const Eigen::Matrix4d& frame) {
@@ -257,25 +277,31 @@ void bind_options(py::module_& module) {
 
 void bind_editing(py::module_& module) {
   bind_options(module);
+  bind_obstacle(module);
   py::class_<CancelToken>(module, "CancelToken", "Cancels a call from any thread.")
       .def(py::init<>())
       .def("cancel", [](CancelToken& token) { token.cancelled = true; })
       .def_property_readonly("cancelled", [](const CancelToken& token) { return token.cancelled.load(); });
   const auto cancel = py::arg("cancel") = static_cast<CancelToken*>(nullptr);
   const auto progress = py::arg("progress") = py::none();
-  const py::arg surface("surface"), deformation("deformation"), controls("controls"), options("options"), goal("goal");
+  const py::arg surface("surface"), deformation("deformation"), controls("controls"), options("options"), goal("goal"),
+      obstacles("obstacles");
+  using GivenObstacles = std::vector<std::shared_ptr<Obstacle>>;
   const auto time_budget = py::arg("time_budget") = py::none();
   const auto hand_over = py::arg("hand_over") = py::none();
   using Token = const CancelToken*;
   py::class_<Session, std::shared_ptr<Session>>(module, "EditSession")
       .def(py::init([](std::shared_ptr<Surface> from, std::shared_ptr<Deformation> map, const DoubleArray& start,
-                       const EditOptions& chosen) { return Session::open(from, map, start, chosen); }),
-           surface, deformation, controls, options)
+                       const EditOptions& chosen, const GivenObstacles& beside) {
+             return Session::open(from, map, start, chosen, as_obstacles(beside));
+           }),
+           surface, deformation, controls, options, obstacles)
       .def_static(
           "start",
           [](std::shared_ptr<Surface> from, std::shared_ptr<Deformation> map, const DoubleArray& start,
-             const EditOptions& chosen) { return Session::start(from, map, start, chosen); },
-          surface, deformation, controls, options)
+             const EditOptions& chosen,
+             const GivenObstacles& beside) { return Session::start(from, map, start, chosen, as_obstacles(beside)); },
+          surface, deformation, controls, options, obstacles)
       .def(
           "edit",
           [](Session& session, const DoubleArray& to, Token token, const py::object& report) {

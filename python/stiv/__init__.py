@@ -32,6 +32,7 @@ from stiv.intersections import IntersectionTest, StepCheck, find_intersections, 
 from stiv.job import CancelledError, Job, JobProgress
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.observed import InfeasibleError, ObservedDeformation, observed
+from stiv.obstacles import Obstacle
 from stiv.paper_preset import PAPER_DIFFERENCES
 from stiv.repairing import RepairOptions, RepairResult, repair, start_repair
 from stiv.scalars import ScalarDeformation, difference_jacobian, scalars
@@ -62,6 +63,7 @@ __all__ = [
     "JobProgress",
     "LeastDistance",
     "ObservedDeformation",
+    "Obstacle",
     "RepairOptions",
     "RepairResult",
     "ScalarDeformation",

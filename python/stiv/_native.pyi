@@ -278,6 +278,14 @@ class EditOptions:
 
     def __init__(self) -> None: ...
 
+class Obstacle:
+    def __init__(
+        self,
+        name: str,
+        positions: Annotated[ArrayLike, float64, "[m, 3]"],
+        triangles: Annotated[ArrayLike, int32, "[m, 3]"],
+    ) -> None: ...
+
 class CancelToken:
     """
     Cancels a call from any thread.
@@ -291,10 +299,19 @@ class CancelToken:
 class EditSession:
     @staticmethod
     def start(
-        surface: Surface, deformation: Deformation, controls: Annotated[ArrayLike, float64], options: EditOptions
+        surface: Surface,
+        deformation: Deformation,
+        controls: Annotated[ArrayLike, float64],
+        options: EditOptions,
+        obstacles: Sequence[Obstacle],
     ) -> Job: ...
     def __init__(
-        self, surface: Surface, deformation: Deformation, controls: Annotated[ArrayLike, float64], options: EditOptions
+        self,
+        surface: Surface,
+        deformation: Deformation,
+        controls: Annotated[ArrayLike, float64],
+        options: EditOptions,
+        obstacles: Sequence[Obstacle],
     ) -> None: ...
     def drag(
         self,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from stiv import _native
 from stiv.arrays import Floats, as_floats
+from stiv.obstacles import Obstacle
 from stiv.surface import Surface, as_surface
 
 
@@ -37,10 +39,20 @@ def least_distance(vertices: ArrayLike, surface: Surface | ArrayLike, *, within:
     return least_distance_of(_native.least_distance(whole.native, q, within), whole)
 
 
-def least_distance_of(values: tuple[Any, ...] | None, surface: Surface) -> LeastDistance | None:
+def least_distance_of(
+    values: tuple[Any, ...] | None, surface: Surface, obstacles: Sequence[Obstacle] = ()
+) -> LeastDistance | None:
     """Return the result of the core, with names."""
     if values is None:
         return None
     distance, (first, second), points = values
-    names = [surface.bodies[surface.vertex_body[surface.triangles[k, 0]]].name for k in (first, second)]
+    names = [_body_of(triangle, surface, obstacles) for triangle in (first, second)]
     return LeastDistance(distance, (first, second), (names[0], names[1]), np.asarray(points))
+
+
+def _body_of(triangle: int, surface: Surface, obstacles: Sequence[Obstacle]) -> str:
+    if triangle < len(surface.triangles):
+        body: int = surface.vertex_body[surface.triangles[triangle, 0]]
+        return surface.bodies[body].name
+    ends = len(surface.triangles) + np.cumsum([each.triangle_count for each in obstacles])
+    return obstacles[int(np.searchsorted(ends, triangle, side="right"))].name

@@ -215,27 +215,34 @@ def _overlapping(
 ) -> list[tuple[str | int, str | int]]:
     """Return pairs of numbers of bodies; for "intersecting", those that intersect at the start."""
     if not isinstance(pairs, str):
-        return [(_body_number(a, surface), _body_number(b, surface)) for a, b in pairs]
+        names = [body.name for body in surface.bodies]
+        return [(_body_number(a, names), _body_number(b, names)) for a, b in pairs]
     if pairs != "intersecting":
         raise InputError(f"overlapping: {pairs!r} is neither 'intersecting' nor pairs of bodies")
     bodies = surface.vertex_body[surface.triangles[find_intersections(start(), surface), 0]]
     return [(a, b) for a, b in np.unique(np.sort(bodies, axis=1), axis=0).tolist() if a != b]
 
 
-def _body_number(body: str | int, surface: Surface) -> int:
+def _body_number(body: str | int, names: Sequence[str]) -> int:
     """Return the number of a body given by name or number."""
     if not isinstance(body, str):
         return body
-    numbers = [number for number, known in enumerate(surface.bodies) if known.name == body]
+    numbers = [number for number, name in enumerate(names) if name == body]
     if len(numbers) != 1:
         raise InputError(f"{len(numbers)} bodies have the name {body!r}; use the number of the body")
     return numbers[0]
 
 
-def with_numbers(options: EditOptions, surface: Surface, start: Callable[[], Floats]) -> EditOptions:
-    """Return the options with numbers for names. `start` returns the positions of the surface at the start."""
+def with_numbers(
+    options: EditOptions, surface: Surface, start: Callable[[], Floats], obstacles: Sequence[str] = ()
+) -> EditOptions:
+    """Return the options with numbers for names. `start` returns the positions of the surface at the start.
+
+    obstacles: names of the bodies after those of the surface.
+    """
+    names = [*(body.name for body in surface.bodies), *obstacles]
     separations: dict[tuple[str | int, str | int], float] = {
-        (_body_number(a, surface), _body_number(b, surface)): h for (a, b), h in options.pair_separations.items()
+        (_body_number(a, names), _body_number(b, names)): h for (a, b), h in options.pair_separations.items()
     }
     return replace(
         options,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +24,7 @@ from stiv.edit_options import (
     with_numbers,
 )
 from stiv.job import Job
+from stiv.obstacles import Obstacle
 from stiv.surface import Surface, as_surface
 
 __all__ = ["CancelToken", "EditOptions", "EditResult", "EditSession", "StorageFrame", "edit"]
@@ -57,10 +58,11 @@ class EditResult:
     path: list[NDArray[np.float64]] = field(default_factory=list)
 
 
-def result_of(values: dict[str, Any], surface: Surface) -> EditResult:
+def result_of(values: dict[str, Any], surface: Surface, obstacles: Sequence[Obstacle] = ()) -> EditResult:
     """Return the result of an edit from the values of the core."""
+    names = [*(body.name for body in surface.bodies), *(each.name for each in obstacles)]
     values["events"] = Events(*values["events"])
-    values["blocking"] = tuple(surface.bodies[body].name for body in values["blocking"])
+    values["blocking"] = tuple(names[body] for body in values["blocking"])
     return EditResult(rounds=values["counters"]["rounds"], **values)
 
 
@@ -84,6 +86,9 @@ class EditSession:
         deformation: the map from controls to surface positions.
         controls: (m, 3) controls at the start, world coordinates.
         options: how edits are solved.
+        obstacles: large bodies that never move. Only their triangles near the motion are read, so time and memory of a
+            call do not grow with the others. Numbers of vertices, triangles and bodies continue after those of the
+            surface. Their pairs cannot be excluded, and they cannot overlap bodies (`EditOptions.overlapping`).
 
     Raises:
         InputError: invalid shapes or values; the message names object and element.
@@ -96,8 +101,10 @@ class EditSession:
         deformation: Deformation,
         controls: ArrayLike,
         options: EditOptions | None = None,
+        obstacles: Sequence[Obstacle] = (),
     ) -> None:
-        self._topology, *given = _native_arguments(surface, deformation, controls, options)
+        self._topology, *given = _native_arguments(surface, deformation, controls, options, obstacles)
+        self._obstacles = tuple(obstacles)
         self._session = _native.EditSession(self._topology.native, *given)
 
     @classmethod
@@ -107,13 +114,14 @@ class EditSession:
         deformation: Deformation,
         controls: ArrayLike,
         options: EditOptions | None = None,
+        obstacles: Sequence[Obstacle] = (),
     ) -> Job[EditSession]:
         """Start making a session, as a job; the arguments are those of the class."""
-        topology, *given = _native_arguments(surface, deformation, controls, options)
+        topology, *given = _native_arguments(surface, deformation, controls, options, obstacles)
 
         def wrap(native: _native.EditSession) -> EditSession:
             session = cls.__new__(cls)
-            session._topology, session._session = topology, native
+            session._topology, session._obstacles, session._session = topology, tuple(obstacles), native
             return session
 
         return Job(_native.EditSession.start(topology.native, *given), wrap)
@@ -138,7 +146,7 @@ class EditSession:
 
         See :func:`stiv.least_distance`.
         """
-        return least_distance_of(self._session.least_distance(within), self._topology)
+        return least_distance_of(self._session.least_distance(within), self._topology, self._obstacles)
 
     def is_step_free(self, start: ArrayLike, end: ArrayLike) -> bool:
         """Return whether the linear step between two surfaces, (N, 3) each, is free, along its path and at its end.
@@ -157,7 +165,7 @@ class EditSession:
         before the edit. ``progress(phase, fraction)`` is called between rounds. An exception in it cancels the edit and
         is raised again.
         """
-        return result_of(self._session.edit(as_doubles(goal, "goal"), cancel, progress), self._topology)
+        return self._result(self._session.edit(as_doubles(goal, "goal"), cancel, progress))
 
     def drag(
         self,
@@ -180,11 +188,11 @@ class EditSession:
         "budget", so that the state can be shown while the next call continues from it.
         """
         values = self._session.drag(as_doubles(goal, "goal"), cancel, progress, time_budget, hand_over)
-        return result_of(values, self._topology)
+        return self._result(values)
 
     def settle(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
         """Solve again toward the last goal until the energy no longer falls. It never grows."""
-        return result_of(self._session.settle(cancel, progress), self._topology)
+        return self._result(self._session.settle(cancel, progress))
 
     def start_edit(self, goal: ArrayLike) -> Job[EditResult]:
         """Start :meth:`edit` as a job."""
@@ -201,7 +209,10 @@ class EditSession:
         return self._job(self._session.start_settle())
 
     def _job(self, native: _native.Job) -> Job[EditResult]:
-        return Job(native, lambda values: result_of(values, self._topology))
+        return Job(native, self._result)
+
+    def _result(self, values: dict[str, Any]) -> EditResult:
+        return result_of(values, self._topology, self._obstacles)
 
     def restore(self, controls: ArrayLike, goal: ArrayLike | None = None) -> None:
         """Restore ``controls``, (m, 3), that were accepted earlier (undo, cancel).
@@ -224,13 +235,18 @@ class EditSession:
 
 
 def _native_arguments(
-    surface: Surface | ArrayLike, deformation: Deformation, controls: ArrayLike, options: EditOptions | None
+    surface: Surface | ArrayLike,
+    deformation: Deformation,
+    controls: ArrayLike,
+    options: EditOptions | None,
+    obstacles: Sequence[Obstacle],
 ) -> tuple[Any, ...]:
     """Return the surface, then the other arguments of the core."""
     topology = as_surface(surface, deformation.vertex_count)
     start = as_doubles(controls, "controls")
-    chosen = with_numbers(options or EditOptions(), topology, lambda: deformation.surface(start))
-    return topology, deformation, start, native_options(chosen)
+    names = [each.name for each in obstacles]
+    chosen = with_numbers(options or EditOptions(), topology, lambda: deformation.surface(start), names)
+    return topology, deformation, start, native_options(chosen), [each.native for each in obstacles]
 
 
 def edit(

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import stiv
-from benchmarks.sessions import running, scaling, table1
+from benchmarks.sessions import large_scene, running, scaling, table1
 from benchmarks.sessions.running import EditFigures, record, repeat
 from benchmarks.sessions.table1 import PUBLISHED, row, shares, table_text
 from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
@@ -159,3 +159,15 @@ def test_outside_a_checkout_the_command_says_where_the_measurements_are(tmp_path
     command = [sys.executable, "-m", "stiv.command_line", "bench", "table1", "--json", "table1.json"]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert run.returncode == 2 and "run `stiv bench` in a source checkout" in run.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="resident memory is read from /proc")
+def test_a_drag_over_a_landscape_is_measured_beside_it_and_with_it(monkeypatch):
+    monkeypatch.setattr(large_scene, "SIZES", (800,))
+    monkeypatch.setattr(large_scene, "TICKS", 60)
+    monkeypatch.setattr(large_scene, "CUTS", 6)
+    rows = large_scene.large_scene([1], 1000, lambda note: None)
+    assert [r["scene"] for r in rows] == ["landscape as obstacle", "landscape as body"]
+    assert all(r["static_triangles"] == 800 and r["ticks_with_contacts"] > 0 for r in rows)
+    assert {r["intersections"] for r in rows} == {0}
+    assert "obstacle" in large_scene.large_scene_text(rows)

@@ -8,6 +8,8 @@
 #include "editing/drag_trail.hpp"
 #include "editing/edit_result.hpp"
 #include "editing/feasible_state.hpp"
+#include "editing/obstacle_session.hpp"
+#include "editing/session_implementation.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "editing/sub_goals.hpp"
 #include "stiv/error.hpp"
@@ -24,11 +26,9 @@ enum class FollowedGoal {
   as_the_work_recorded  ///< in DragProgress
 };
 
-}  // namespace
-
-class EditSession::Implementation {
+class SurfaceSession final : public SessionImplementation {
  public:
-  Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+  SurfaceSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                  const Controls& controls, EditOptions options, Execution& execution)
       : context_(std::move(surface), std::move(deformation), controls, std::move(options), execution),
         queries_(context_) {
@@ -36,7 +36,7 @@ class EditSession::Implementation {
     restore(controls, controls, execution);
   }
 
-  void restore(const Controls& controls, const Controls& goal) {
+  void restore(const Controls& controls, const Controls& goal) override {
     Execution execution(context_.options().threads);
     restore(controls, goal, execution);
   }
@@ -60,13 +60,13 @@ class EditSession::Implementation {
     is_dragging_ = goal != controls;
   }
 
-  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
     context_.set_weights(std::move(weights), std::move(weight_axes));
     checked_ = accepted_.controls;
     restore(Controls(accepted_.controls), Controls(goal_));
   }
 
-  EditResult edit(const Controls& goal, Execution& execution) {
+  EditResult edit(const Controls& goal, Execution& execution) override {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
       drag_.missing_at_detour = drag_.missing_at_leap = 0;
@@ -82,7 +82,7 @@ class EditSession::Implementation {
     return result;
   }
 
-  EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) {
+  EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
       if (hand_over) call.hand_over.emplace(*hand_over);
@@ -98,7 +98,7 @@ class EditSession::Implementation {
     return result;
   }
 
-  EditResult settle(Execution& execution) {
+  EditResult settle(Execution& execution) override {
     const Controls goal = goal_;
     const auto work = [&](EditCall& call, const Aim& aim) {
       PullLimits limits{.poor_pulls = poor_pulls_before_end(call.execution)};
@@ -118,7 +118,7 @@ class EditSession::Implementation {
     return result;
   }
 
-  bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
+  bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     const FloatingPointScope floating_point;
     context_.surface().check_positions(start);
     context_.surface().check_positions(end);
@@ -126,19 +126,21 @@ class EditSession::Implementation {
     return queries_.is_step_free(start, end, execution);
   }
 
-  std::optional<NearestTriangles> least_distance(DistancePairs pairs) {
+  std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     if (!least_distance_) least_distance_.emplace(context_.shared_surface());
     return least_distance_->find(accepted_.surface, pairs);
   }
 
-  const EditContext& context() const { return context_; }
-  const State& accepted() const { return accepted_; }
+  const Controls& controls() const override { return accepted_.controls; }
+  const Positions& surface() const override { return accepted_.surface; }
+  double separation() const override { return context_.options().separation; }
+  const Surface& topology() const override { return context_.surface(); }
 
  private:
   /// Restores the session when it ends, unless its call is to last.
   class Transaction {
    public:
-    explicit Transaction(Implementation& session)
+    explicit Transaction(SurfaceSession& session)
         : session_(session), accepted_(session.accepted_), followed_(session.drag_.followed) {}
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
@@ -154,7 +156,7 @@ class EditSession::Implementation {
     void commit() { lasts_ = true; }
 
    private:
-    Implementation& session_;
+    SurfaceSession& session_;
     State accepted_, followed_;
     bool lasts_ = false;
   };
@@ -278,16 +280,22 @@ class EditSession::Implementation {
   std::optional<LeastDistance> least_distance_;  ///< built at the first query
 };
 
+}  // namespace
+
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options) {
   Execution execution(std::max(0, options.threads));  // a negative number is reported with the other options
-  implementation_ = std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls,
+  implementation_ = std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), controls,
                                                      std::move(options), execution);
 }
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options, Execution& execution)
-    : implementation_(std::make_unique<Implementation>(std::move(surface), std::move(deformation), controls,
+    : implementation_(std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), controls,
                                                        std::move(options), execution)) {}
+EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                         const Controls& controls, EditOptions options, Obstacles obstacles, Execution& execution)
+    : implementation_(make_obstacle_session(std::move(surface), std::move(deformation), controls, std::move(options),
+                                            std::move(obstacles), execution)) {}
 EditSession::~EditSession() = default;
 EditSession::EditSession(EditSession&&) noexcept = default;
 EditSession& EditSession::operator=(EditSession&&) noexcept = default;
@@ -308,12 +316,12 @@ bool EditSession::is_step_free(const PositionsView& start, const PositionsView& 
   return implementation_->is_step_free(start, end, execution);
 }
 
-const Controls& EditSession::controls() const { return implementation_->accepted().controls; }
-const Positions& EditSession::surface() const { return implementation_->accepted().surface; }
+const Controls& EditSession::controls() const { return implementation_->controls(); }
+const Positions& EditSession::surface() const { return implementation_->surface(); }
 std::optional<NearestTriangles> EditSession::least_distance(DistancePairs pairs) {
   return implementation_->least_distance(pairs);
 }
-double EditSession::separation() const { return implementation_->context().options().separation; }
-const Surface& EditSession::topology() const { return implementation_->context().surface(); }
+double EditSession::separation() const { return implementation_->separation(); }
+const Surface& EditSession::topology() const { return implementation_->topology(); }
 
 }  // namespace stiv

@@ -78,20 +78,25 @@ std::string describe_control(const Surface& surface, const Deformation& deformat
   return "object \"" + surface.bodies()[surface.body_of(support.front())].name + "\", " + name;
 }
 
-std::string describe(const Surface& surface, const StaticPairs& found) {
+std::string describe(const Surface& surface, const StaticPairs& found,
+                     const std::function<std::string(Index)>& name_face) {
   std::ostringstream message;
   message << "the start already intersects: " << found.faces.size() << " pairs of faces, "
           << found.loose_edges.size() + found.loose_vertices.size() << " of a loose edge or vertex and a face";
   const auto name_first = [&](const IndexPairs& pairs, const auto& describe_first) {
     for (std::size_t k = 0; k < std::min(pairs.size(), pairs_named); ++k)
-      message << "; " << describe_first(pairs[k].first) << " with " << surface.describe_triangle(pairs[k].second);
+      message << "; " << describe_first(pairs[k].first) << " with " << name_face(pairs[k].second);
   };
-  name_first(found.faces, [&](Index face) { return surface.describe_triangle(face); });
+  name_first(found.faces, name_face);
   name_first(found.loose_edges,
              [&](Index edge) { return surface.describe_vertex(surface.loose_edges()(edge, 0)) + " (loose edge)"; });
   name_first(found.loose_vertices, [&](Index vertex) { return surface.describe_vertex(vertex) + " (loose)"; });
   message << ". Move them apart, repair them, or exclude these pairs of objects";
   return message.str();
+}
+
+std::string describe(const Surface& surface, const StaticPairs& found) {
+  return describe(surface, found, [&](Index face) { return surface.describe_triangle(face); });
 }
 
 }  // namespace stiv

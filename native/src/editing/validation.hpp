@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "stiv/acceptance/intersections.hpp"
@@ -19,6 +20,9 @@ void check_overlapping(const Surface& surface, const std::vector<std::pair<Index
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control);
 
 /// The message for a start that intersects: the number of pairs, the first ones by object and face, and the ways out.
+/// @param name_face names a triangle
+std::string describe(const Surface& surface, const StaticPairs& found,
+                     const std::function<std::string(Index)>& name_face);
 std::string describe(const Surface& surface, const StaticPairs& found);
 
 }  // namespace stiv

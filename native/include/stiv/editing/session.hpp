@@ -8,6 +8,7 @@
 
 #include "stiv/acceptance/least_distance.hpp"
 #include "stiv/deformation/deformation.hpp"
+#include "stiv/editing/obstacle.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/surface.hpp"
@@ -39,6 +40,8 @@ struct EditResult {
   Timings timings;
 };
 
+class SessionImplementation;
+
 /// An editing session: a surface, the deformation that moves it, and the last accepted controls. Every accepted state
 /// is free of intersections, and so are the linear steps that lead to it. (mathematics.md, "Guarantee")
 /// Not for use from two threads at once; different sessions are independent.
@@ -51,6 +54,12 @@ class EditSession {
   /// The same with the caller's threads and cancellation. @throws Interrupted as well
   EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
               const Controls& controls, EditOptions options, Execution& execution);
+  /// The same beside obstacles, which are fixed bodies after those of the surface. Only their triangles near the motion
+  /// are read, so time and memory of a call do not grow with the others. Positions of results are those of the surface
+  /// alone; indices of vertices and triangles continue with the obstacles, in order. Pairs with obstacles cannot be
+  /// excluded, and obstacles cannot overlap bodies.
+  EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+              const Controls& controls, EditOptions options, Obstacles obstacles, Execution& execution);
   ~EditSession();
   EditSession(EditSession&&) noexcept;
   EditSession& operator=(EditSession&&) noexcept;
@@ -91,8 +100,7 @@ class EditSession {
   const Surface& topology() const;
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<SessionImplementation> implementation_;
 };
 
 }  // namespace stiv

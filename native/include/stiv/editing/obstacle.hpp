@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stiv/execution.hpp"
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// A large body that never moves, apart from the surface of a session. Sessions read only its triangles near their
+/// motion, so it may have millions. Immutable; any number of sessions may share it.
+///
+/// Besides positions and triangles, it stores a box for each block of consecutive triangles. Neighbors should be near
+/// each other in the order of triangles, as in most meshes; otherwise, blocks are large, and queries read everything.
+class Obstacle {
+ public:
+  /// @throws InputError naming body, face or vertex: an index out of range, or a coordinate that is not finite or out
+  ///         of range (coordinate_range.hpp). A triangle may have repeated corners.
+  Obstacle(std::string name, Positions positions, Triangles triangles, const Execution& execution = Execution(0));
+
+  const std::string& name() const { return name_; }
+  const Positions& positions() const { return positions_; }  ///< (n, 3), world
+  const Triangles& triangles() const { return triangles_; }  ///< (f, 3)
+
+  /// Upper bound of the number of triangles near a box; reads only the boxes of blocks.
+  Index count_near(const Eigen::AlignedBox3d& box) const;
+  /// Triangles whose bounds touch a box, ascending.
+  std::vector<Index> triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution) const;
+
+ private:
+  std::string name_;
+  Positions positions_;
+  Triangles triangles_;
+  std::vector<Eigen::AlignedBox3d> blocks_;  ///< bounds of each block of triangles
+};
+
+/// The obstacles of a session.
+using Obstacles = std::vector<std::shared_ptr<const Obstacle>>;
+
+}  // namespace stiv

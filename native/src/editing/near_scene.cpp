@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/near_scene.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "deformation/beside_obstacles.hpp"
+
+namespace stiv {
+
+namespace {
+
+/// Vertices of some triangles, ascending, and the triangles with places in this list as corners.
+struct UsedVertices {
+  std::vector<Index> vertices;
+  Triangles triangles;
+};
+
+UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& triangles) {
+  UsedVertices used;
+  used.triangles.resize(static_cast<Index>(triangles.size()), 3);
+  if (triangles.empty()) return used;
+  const auto count = at(obstacle.positions().rows());
+  std::vector<unsigned char> marks(count, 0);
+  for (const Index triangle : triangles)
+    for (const Index corner : obstacle.triangles().row(triangle)) marks[at(corner)] = 1;
+  // Written only where a vertex is used, so that the memory of the others is never touched.
+  const std::unique_ptr<Index[]> places(new Index[count]);
+  for (std::size_t vertex = 0; vertex < count; ++vertex) {
+    if (marks[vertex] == 0) continue;
+    places[vertex] = static_cast<Index>(used.vertices.size());
+    used.vertices.push_back(static_cast<Index>(vertex));
+  }
+  for (std::size_t row = 0; row < triangles.size(); ++row)
+    for (Index k = 0; k < 3; ++k)
+      used.triangles(static_cast<Index>(row), k) = places[at(obstacle.triangles()(triangles[row], k))];
+  return used;
+}
+
+/// Collects the near elements of one obstacle after the other.
+class NearSceneBuilder {
+ public:
+  NearSceneBuilder(const Surface& surface, const Eigen::AlignedBox3d& box, const Execution& execution)
+      : definition_(surface.definition()),
+        box_(box),
+        execution_(execution),
+        vertices_(surface.vertex_count()),
+        triangles_(static_cast<Index>(surface.triangles().rows())) {}
+
+  void add(const Obstacle& obstacle) {
+    const std::vector<Index> near = box_.isEmpty() ? std::vector<Index>() : obstacle.triangles_near(box_, execution_);
+    const UsedVertices used = used_vertices(obstacle, near);
+    append_triangles(used.triangles);
+    append_positions(obstacle, used.vertices);
+    definition_.vertex_body.resize(at(definition_.vertex_count), static_cast<Index>(definition_.bodies.size()));
+    definition_.bodies.push_back({obstacle.name(), Mobility::fixed});
+    append_numbers(near, triangles_, scene_.obstacle_triangles);
+    append_numbers(used.vertices, vertices_, scene_.obstacle_vertices);
+    triangles_ += static_cast<Index>(obstacle.triangles().rows());
+    vertices_ += static_cast<Index>(obstacle.positions().rows());
+  }
+
+  NearScene finish(std::shared_ptr<const Deformation> deformation) {
+    scene_.surface = std::make_shared<Surface>(std::move(definition_));
+    scene_.deformation = make_beside_obstacles(std::move(deformation), std::move(positions_));
+    return std::move(scene_);
+  }
+
+ private:
+  void append_triangles(const Triangles& added) {
+    const Index before = static_cast<Index>(definition_.triangles.rows());
+    definition_.triangles.conservativeResize(before + added.rows(), 3);
+    definition_.triangles.bottomRows(added.rows()) = added.array() + definition_.vertex_count;
+  }
+
+  void append_positions(const Obstacle& obstacle, const std::vector<Index>& vertices) {
+    const Index before = static_cast<Index>(positions_.rows()), added = static_cast<Index>(vertices.size());
+    positions_.conservativeResize(before + added, 3);
+    for (Index row = 0; row < added; ++row) positions_.row(before + row) = obstacle.positions().row(vertices[at(row)]);
+    definition_.vertex_count += added;
+  }
+
+  /// @param first number of the obstacle's first element in the whole scene
+  static void append_numbers(const std::vector<Index>& added, Index first, std::vector<Index>& numbers) {
+    for (const Index number : added) numbers.push_back(first + number);
+  }
+
+  SurfaceDefinition definition_;
+  const Eigen::AlignedBox3d& box_;
+  const Execution& execution_;
+  Index vertices_, triangles_;  // of the surface and the obstacles so far
+  Positions positions_ = Positions(0, 3);
+  NearScene scene_;
+};
+
+}  // namespace
+
+NearScene near_scene(const Surface& surface, std::shared_ptr<const Deformation> deformation, const Obstacles& obstacles,
+                     const Eigen::AlignedBox3d& box, const Execution& execution) {
+  NearSceneBuilder builder(surface, box, execution);
+  for (const auto& obstacle : obstacles) builder.add(*obstacle);
+  return builder.finish(std::move(deformation));
+}
+
+}  // namespace stiv

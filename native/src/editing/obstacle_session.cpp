@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/obstacle_session.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "editing/motion_box.hpp"
+#include "editing/near_scene.hpp"
+#include "editing/validation.hpp"
+#include "stiv/error.hpp"
+
+namespace stiv {
+
+namespace {
+
+constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
+
+void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
+  if (surface == nullptr || deformation == nullptr) throw InputError("a surface and a deformation are needed");
+  check_fit(*surface, *deformation);
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    if (!obstacles[k]) throw InputError("obstacle " + std::to_string(k) + ": none given");
+}
+
+/// Only elements of the surface may be excluded or overlap: of an obstacle, a session knows no closed body.
+void check_without_obstacles(const EditOptions& options, const Surface& surface) {
+  const auto triangles = static_cast<Index>(surface.triangles().rows());
+  for (const auto& [a, b] : options.excluded)
+    if (std::max(a, b) >= triangles)
+      throw InputError("exclude: triangle " + std::to_string(std::max(a, b)) + " is not one of the surface's " +
+                       std::to_string(triangles) + "; pairs with obstacles cannot be excluded");
+  check_overlapping(surface, options.overlapping);
+}
+
+class ObstacleSession final : public SessionImplementation {
+ public:
+  ObstacleSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
+                  const Controls& controls, EditOptions options, Obstacles obstacles, Execution& execution)
+      : surface_((check_given(surface.get(), deformation.get(), obstacles), std::move(surface))),
+        deformation_(std::move(deformation)),
+        start_(controls),
+        options_(std::move(options)),
+        obstacles_(std::move(obstacles)),
+        goal_(controls) {
+    check_without_obstacles(options_, *surface_);
+    const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, deformation_->surface_in_range(controls, execution));
+    open(around(bounds), controls, controls, execution);
+    if (!is_inside(bounds)) open(whole_space(), controls, controls, execution);
+  }
+
+  EditResult edit(const Controls& goal, Execution& execution) override {
+    return carry_out(goal, execution, [&] { return near_->session.edit(goal, execution); });
+  }
+  EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
+    return carry_out(goal, execution, [&] { return near_->session.drag(goal, execution, hand_over); });
+  }
+  EditResult settle(Execution& execution) override {
+    const Controls goal = goal_;
+    return carry_out(goal, execution, [&] { return near_->session.settle(execution); });
+  }
+
+  void restore(const Controls& controls, const Controls& goal) override {
+    // The session refuses other controls.
+    const bool is_valid = controls.rows() == start_.rows() && controls.allFinite();
+    Execution execution(options_.threads);
+    const Eigen::AlignedBox3d bounds =
+        is_valid ? moving_bounds(*surface_, deformation_->surface_in_range(controls, execution))
+                 : Eigen::AlignedBox3d();
+    if (is_inside(bounds))
+      with_scene_numbers(near_->scene, controls, [&] { near_->session.restore(controls, goal); });
+    else
+      open(around(bounds), controls, goal, execution);
+    goal_ = goal;
+    motion_.setZero();
+    keep_surface();
+  }
+
+  void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
+    near_->session.set_weights(weights, weight_axes);
+    options_.weights = std::move(weights);
+    options_.weight_axes = std::move(weight_axes);
+  }
+
+  bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
+    for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
+    Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
+    bounds.extend(moving_bounds(*surface_, end));
+    const auto test = [&](Near& near) {
+      Positions from = near.session.surface(), to = from;
+      from.topRows(start.rows()) = start;
+      to.topRows(end.rows()) = end;
+      return near.session.is_step_free(from, to, execution);
+    };
+    if (is_inside(bounds)) return test(*near_);
+    return test(*make_near(grown(bounds, margin()), execution));
+  }
+
+  std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
+    const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, own_surface_);
+    const auto nearest = with_scene_numbers(near_->session.least_distance(pairs), near_->scene);
+    // A triangle outside of the box may be closer than the nearest one inside.
+    if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
+    const Execution execution(options_.threads);
+    const Eigen::AlignedBox3d box = nearest && !bounds.isEmpty() ? grown(bounds, nearest->distance) : whole_space();
+    const NearScene scene = near_scene(*surface_, deformation_, obstacles_, box, execution);
+    const Positions q = scene.deformation->surface_in_range(controls(), execution);
+    return with_scene_numbers(LeastDistance(scene.surface).find(q, pairs), scene);
+  }
+
+  const Controls& controls() const override { return near_->session.controls(); }
+  const Positions& surface() const override { return own_surface_; }
+  double separation() const override { return near_->session.separation(); }
+  const Surface& topology() const override { return *surface_; }
+
+ private:
+  /// The obstacles near a box, and a session with them.
+  struct Near {
+    NearScene scene;
+    EditSession session;
+  };
+
+  Eigen::AlignedBox3d around(const Eigen::AlignedBox3d& bounds) const {
+    const Eigen::AlignedBox3d box =
+        box_around(bounds, motion_, obstacles_, static_cast<Index>(surface_->triangles().rows()));
+    return bounds.isEmpty() ? box : grown(box, 2 * options_.separation);
+  }
+
+  double margin() const {
+    double separation = near_->session.separation();
+    for (const BodyPairSeparation& pair : options_.pair_separations) separation = std::max(separation, pair.separation);
+    return 2 * separation;
+  }
+
+  bool is_inside(const Eigen::AlignedBox3d& bounds) const { return contains(box_, bounds, margin()); }
+
+  std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, Execution& execution) const {
+    NearScene scene = near_scene(*surface_, deformation_, obstacles_, box, execution);
+    return with_scene_numbers(scene, start_, [&] {
+      EditSession session(scene.surface, scene.deformation, start_, options_, execution);
+      return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
+    });
+  }
+
+  /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
+  /// has changed.
+  void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
+    std::unique_ptr<Near> near = make_near(box, execution);
+    if (accepted != start_ || goal != start_)
+      with_scene_numbers(near->scene, accepted, [&] { near->session.restore(accepted, goal); });
+    near_ = std::move(near);
+    box_ = box;
+    keep_surface();
+  }
+
+  /// Makes a call, and again in other boxes while its path leaves the box.
+  template <class Call>
+  EditResult carry_out(const Controls& goal, Execution& execution, const Call& call) {
+    const Controls before = controls(), goal_before = goal_;
+    const Eigen::AlignedBox3d start = moving_bounds(*surface_, own_surface_);
+    Eigen::AlignedBox3d bounds = start;
+    if (!start.isEmpty()) bounds.extend(start.translated(motion_));  // where the same motion again would lead
+    if (!is_inside(bounds)) reopen(around(bounds), before, goal_before, execution);
+    EditResult result = call();
+    for (int boxes = 1; result.status != EditStatus::cancelled && !is_inside(bounds_of(result)); ++boxes) {
+      bounds.extend(bounds_of(result));
+      reopen(boxes < boxes_per_call ? around(bounds) : whole_space(), before, goal_before, execution);
+      result = call();  // returns at once if it was cancelled
+    }
+    if (result.status != EditStatus::cancelled) goal_ = goal;
+    keep_surface();
+    if (!start.isEmpty()) motion_ = moving_bounds(*surface_, own_surface_).center() - start.center();
+    return as_own(std::move(result));
+  }
+
+  /// Opens a session within a call, or restores the open one if that is cancelled. The time budget of the call must not
+  /// end this, because the next call would begin alike.
+  void reopen(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& of_call) {
+    Execution execution(options_.threads);
+    execution.cancel_when([&] { return of_call.cancel_requested(); });
+    try {
+      open(box, accepted, goal, execution);
+    } catch (...) {
+      near_->session.restore(accepted, goal);
+      if (!of_call.cancel_requested()) throw;
+    }
+  }
+
+  /// Bounds of all states of a result. Between them, the surface moves linearly.
+  Eigen::AlignedBox3d bounds_of(const EditResult& result) const {
+    const Execution execution(options_.threads);
+    Eigen::AlignedBox3d bounds = moving_bounds(*surface_, result.surface.topRows(surface_->vertex_count()));
+    for (std::size_t k = 0; k + 1 < result.path.size(); ++k)
+      bounds.extend(moving_bounds(*surface_, deformation_->surface_in_range(result.path[k], execution)));
+    return bounds;
+  }
+
+  void keep_surface() { own_surface_ = near_->session.surface().topRows(surface_->vertex_count()); }
+
+  /// The result with the surface of this session, and the numbers of all obstacles' vertices.
+  EditResult as_own(EditResult result) const {
+    result.surface = own_surface_;
+    const Index first = surface_->vertex_count();
+    for (Event& event : result.events)
+      for (Index& vertex : event.vertices)
+        if (vertex >= first) vertex = near_->scene.obstacle_vertices[at(vertex - first)];
+    return result;
+  }
+
+  Index in_scene(Index triangle, const NearScene& scene) const {
+    const auto first = static_cast<Index>(surface_->triangles().rows());
+    return triangle < first ? triangle : scene.obstacle_triangles[at(triangle - first)];
+  }
+
+  std::optional<NearestTriangles> with_scene_numbers(std::optional<NearestTriangles> nearest,
+                                                     const NearScene& scene) const {
+    if (nearest)
+      for (Index& triangle : nearest->triangles) triangle = in_scene(triangle, scene);
+    return nearest;
+  }
+
+  /// Calls work, which may find that controls intersect; then the error gets the numbers of all obstacles' triangles.
+  template <class Work>
+  auto with_scene_numbers(const NearScene& scene, const Controls& controls, const Work& work) const
+      -> decltype(work()) {
+    try {
+      return work();
+    } catch (StartIntersectsError& error) {
+      Execution execution(options_.threads);
+      StaticPairs found =
+          IntersectionTest(scene.surface).find_all(scene.deformation->surface_in_range(controls, execution), execution);
+      found.faces = std::move(error.pairs);
+      const auto name_face = [&](Index face) { return describe_face(face, scene); };
+      const std::string message = describe(*scene.surface, found, name_face);
+      for (auto& [a, b] : found.faces) a = in_scene(a, scene), b = in_scene(b, scene);
+      throw StartIntersectsError(message, std::move(found.faces));
+    }
+  }
+
+  std::string describe_face(Index face, const NearScene& scene) const {
+    const auto own = static_cast<Index>(surface_->triangles().rows());
+    if (face < own) return surface_->describe_triangle(face);
+    Index number = in_scene(face, scene) - own;
+    std::size_t k = 0;
+    for (; number >= obstacles_[k]->triangles().rows(); ++k)
+      number -= static_cast<Index>(obstacles_[k]->triangles().rows());
+    return "object \"" + obstacles_[k]->name() + "\", face " + std::to_string(number);
+  }
+
+  std::shared_ptr<const Surface> surface_;
+  std::shared_ptr<const Deformation> deformation_;
+  Controls start_;
+  EditOptions options_;
+  Obstacles obstacles_;
+  Controls goal_;                     ///< of the last call
+  Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
+  Eigen::AlignedBox3d box_;
+  std::unique_ptr<Near> near_;
+  Positions own_surface_;  ///< accepted, without the obstacles
+};
+
+}  // namespace
+
+std::unique_ptr<SessionImplementation> make_obstacle_session(std::shared_ptr<const Surface> surface,
+                                                             std::shared_ptr<const Deformation> deformation,
+                                                             const Controls& controls, EditOptions options,
+                                                             Obstacles obstacles, Execution& execution) {
+  return std::make_unique<ObstacleSession>(std::move(surface), std::move(deformation), controls, std::move(options),
+                                           std::move(obstacles), execution);
+}
+
+}  // namespace stiv

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stiv/editing/session.hpp"
+
+namespace stiv {
+
+/// A session behind EditSession, with the same members.
+class SessionImplementation {
+ public:
+  virtual ~SessionImplementation() = default;
+
+  virtual EditResult edit(const Controls& goal, Execution& execution) = 0;
+  virtual EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) = 0;
+  virtual EditResult settle(Execution& execution) = 0;
+  virtual void restore(const Controls& controls, const Controls& goal) = 0;
+  virtual void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) = 0;
+  virtual bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) = 0;
+  virtual std::optional<NearestTriangles> least_distance(DistancePairs pairs) = 0;
+
+  virtual const Controls& controls() const = 0;
+  virtual const Positions& surface() const = 0;
+  virtual double separation() const = 0;
+  virtual const Surface& topology() const = 0;
+};
+
+}  // namespace stiv
