@@ -98,7 +98,7 @@ class ObstacleSession final : public SessionImplementation {
 
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, own_surface_);
-    const auto nearest = with_scene_numbers(near_->session.least_distance(pairs), near_->scene);
+    auto nearest = with_scene_numbers(near_->session.least_distance(pairs), near_->scene);
     // A triangle outside of the box may be closer than the nearest one inside.
     if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
     const Execution execution(options_.threads);
