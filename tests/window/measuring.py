@@ -73,6 +73,7 @@ def watch_all(watch: Stopwatch) -> None:
 
     watch.watch(blender_edit.BlenderEdit, "drag", "solving")
     watch.watch(blender_edit.BlenderEdit, "write", "write, all")
+    watch.watch(blender_edit.BlenderEdit, "write_taken", "write, all")
     watch.watch(state_writer.StateWriter, "write", "writing and evaluation")
     watch.watch(lattice_points.LatticeWriter, "write", "writing controls")
     watch.watch(verification, "read_shown", "reading back")
