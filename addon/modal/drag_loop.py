@@ -141,6 +141,7 @@ class DragLoop:
         self._refusal = ""
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
+        self._aimed_at: State | None = None  # state of the last goal
         self._energy = 0.0  # of the last solve
         self._fruitless = self._empty = self._idle = 0
         self._is_poor = False
@@ -300,6 +301,7 @@ class DragLoop:
         except ValueError as error:
             self.note = str(error)
             return
+        self._aimed_at = goal.state
         is_new = self._unfinished is None
         self._unfinished = None
         doublings = min(self._empty, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
@@ -481,10 +483,11 @@ class DragLoop:
         self.turned = self.edit.turned  # a session in a job cannot be asked
 
     def _drags_on(self) -> bool:
-        """Whether the next work is another solve of the same edit, and takes too long for the same frame."""
-        same = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
+        """Whether the next work is a solve for a new goal, and takes too long for the same frame."""
+        goes_on = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
+        is_new = not _same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
         solved = self.result.timings["total"] if self.result is not None else 0.0
-        return same and solved + self._written_in > FITTING
+        return goes_on and is_new and solved + self._written_in > FITTING
 
     def _write_beside_solve(self) -> bool:
         """Write the accepted state while the next solve runs; returns whether the state passed the test."""

@@ -26,6 +26,7 @@ from benchmarks.sessions.running import Report
 from benchmarks.sessions.scaling import scaling, scaling_text
 from benchmarks.sessions.table1 import KINDS, PUBLISHED, shares_text, table1, table_text
 from stiv import InputError
+from stiv._native import VectorTarget, limit_vector_target, vector_target
 from stiv.command_line.program import Parser
 from stiv.exit_codes import ExitCode
 from stiv.json_files import write_json
@@ -88,6 +89,11 @@ def parser() -> Parser:
         help="quality: limit of each converged solution (default: 60)",
     )
     parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="quality: draw the worst three edits")
+    parser.add_argument(
+        "--vectors",
+        choices=[each.name for each in VectorTarget],
+        help="the most vector instructions that the core uses (default: those of the processor)",
+    )
     parser.add_argument("--in-blender", action="store_true", help="profile: in Blender, from the .blend files")
     parser.add_argument("--json", type=Path, metavar="F", help="write the rows to F")
     return parser
@@ -97,6 +103,8 @@ def run(given: Sequence[str]) -> ExitCode:
     """Measures what the arguments ask for. Raises InputError."""
     arguments = parser().parse_args(given)
     require_folder(arguments.json)
+    if arguments.vectors is not None:
+        limit_vector_target(VectorTarget[arguments.vectors])
     what = arguments.what or ("models" if arguments.models else None)
     if what is None or (what in ("models", "quality")) != (arguments.models is not None):
         raise InputError(
@@ -121,7 +129,12 @@ def _say(note: str) -> None:
 def result(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The rows with command and machine, as JSON data."""
     command = shlex.join(["stiv", *sys.argv[1:]])
-    machine = {"system": platform.system(), "architecture": platform.machine(), "processors": _processors()}
+    machine = {
+        "system": platform.system(),
+        "architecture": platform.machine(),
+        "processors": _processors(),
+        "vectors": vector_target().name,
+    }
     return {"schema": SCHEMA, "version": VERSION, "command": command, "machine": machine, "rows": rows}
 
 

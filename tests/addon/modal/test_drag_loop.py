@@ -170,8 +170,9 @@ def test_the_next_solve_runs_while_a_state_is_written() -> None:
     assert edit.shown == 0.3 and drag.at_rest and drag.written is drag.result
 
 
-def test_a_solve_and_a_writing_that_fit_into_a_frame_follow_each_other() -> None:
+def test_a_solve_and_a_writing_that_fit_into_a_frame_run_in_sequence(monkeypatch: pytest.MonkeyPatch) -> None:
     """The state is newer then."""
+    monkeypatch.setattr(drag_loop, "FITTING", 60.0)
     edit = FakeEdit(delays={"drag": 1})
     drag = new_drag(edit)
     follow(drag, edit, 10, 20)
@@ -183,6 +184,14 @@ def test_an_edit_that_must_be_written_first_is() -> None:
     drag = new_drag(edit)
     follow(drag, edit, 10, 20, 30)
     assert edit.calls == ["drag", "write"]
+
+
+def test_a_solve_toward_the_same_goal_waits_for_the_writing() -> None:
+    """It may find nothing to show, and the next motion would have to wait for it."""
+    edit = FakeEdit(solving=0.03, statuses=["budget", "corrected"])
+    drag = new_drag(edit)
+    follow(drag, edit, 10)
+    assert edit.calls == ["drag", "write"] and not drag.at_rest
 
 
 @pytest.mark.parametrize("end", ["ESC", "RIGHTMOUSE"])
