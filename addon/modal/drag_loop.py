@@ -484,10 +484,10 @@ class DragLoop:
 
     def _drags_on(self) -> bool:
         """Whether the next work is a solve for a new goal, and takes too long for the same frame."""
-        goes_on = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
+        continues = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
         is_new = not _same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
         solved = self.result.timings["total"] if self.result is not None else 0.0
-        return goes_on and is_new and solved + self._written_in > FITTING
+        return continues and is_new and solved + self._written_in > FITTING
 
     def _write_beside_solve(self) -> bool:
         """Write the accepted state while the next solve runs; returns whether the state passed the test."""
