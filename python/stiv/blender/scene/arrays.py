@@ -43,7 +43,7 @@ def invert(matrix: Floats) -> Floats:
 
 @lru_cache(maxsize=256)
 def _inverse(size: int, values: bytes) -> Floats:
-    inverse: Floats = np.linalg.inv(np.frombuffer(values).reshape(size, size))
+    inverse = np.linalg.inv(np.frombuffer(values).reshape(size, size)).astype(np.float64)
     inverse.setflags(write=False)
     return inverse
 
