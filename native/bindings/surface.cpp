@@ -2,6 +2,7 @@
 #include "stiv/surface.hpp"
 
 #include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "module.hpp"
@@ -21,12 +22,13 @@ Mobility mobility_named(const std::string& name) {
 }
 
 std::shared_ptr<Surface> make_surface(Index vertex_count, Triangles triangles, Edges loose_edges,
-                                      std::vector<Index> vertex_body,
+                                      const py::array_t<Index, py::array::c_style | py::array::forcecast>& vertex_body,
                                       const std::vector<std::pair<std::string, std::string>>& bodies,
                                       std::vector<std::pair<Index, Index>> ignored,
                                       std::vector<std::vector<Index>> flip_faces) {
-  SurfaceDefinition definition{vertex_count, std::move(triangles), std::move(loose_edges), std::move(vertex_body),
+  SurfaceDefinition definition{vertex_count, std::move(triangles), std::move(loose_edges), {},
                                {},           std::move(ignored),   std::move(flip_faces)};
+  definition.vertex_body.assign(vertex_body.data(), vertex_body.data() + vertex_body.size());
   for (const auto& [name, mobility] : bodies) definition.bodies.push_back({name, mobility_named(mobility)});
   return std::make_shared<Surface>(std::move(definition));
 }

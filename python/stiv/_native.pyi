@@ -35,7 +35,7 @@ class Surface:
         vertex_count: int,
         triangles: Annotated[ArrayLike, int32, "[m, 3]"],
         loose_edges: Annotated[ArrayLike, int32, "[m, 2]"],
-        vertex_body: ArrayLike,
+        vertex_body: Annotated[ArrayLike, int32],
         bodies: Sequence[tuple[str, str]],
         ignored: Sequence[tuple[int, int]],
         flip_faces: Sequence[Sequence[int]],

@@ -68,7 +68,7 @@ class Surface:
             self.vertex_count,
             self.triangles,
             self.loose_edges,
-            self.vertex_body.tolist(),
+            self.vertex_body,
             [(body.name, body.mobility) for body in self.bodies],
             [(int(a), int(b)) for a, b in self.ignored],
             [list(face) for face in self.flip_faces],
