@@ -181,6 +181,11 @@ class StivSceneSettings(bpy.types.PropertyGroup):
         soft_max=1.0,
         precision=3,
     )
+    tight: BoolProperty(
+        name="Tight",
+        description="End confirmed edits as close to the goal as possible: slower and less smooth",
+        default=False,
+    )
     constraints: EnumProperty(
         name="Contacts", description="How contact regions respond", items=CONSTRAINTS, default="per_patch"
     )

@@ -47,6 +47,13 @@ def test_an_object_does_not_pass_through_another(mode):
     assert len(stiv.find_intersections(mesh.vertices, mesh.triangles)) == 0
 
 
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_a_tight_edit_ends_no_further_from_its_goal(mode):
+    (_, (smooth,)), (mesh, (tight,)) = (edited(move(-1.5, mode=mode), tight=tight) for tight in (False, True))
+    assert tight["energy"] <= smooth["energy"]
+    assert len(stiv.find_intersections(mesh.vertices, mesh.triangles)) == 0
+
+
 def test_a_seam_stays_closed_where_one_side_of_it_is_moved():
     apart = np.concatenate([SHEET[FACES].reshape(-1, 3), 0.5 * SHEET[FACES].reshape(-1, 3) + (0, 0, 1)])
     owners = np.array([0, 0, 1, 1], np.int32)
@@ -120,6 +127,8 @@ def test_constrained_rotations_and_scales_keep_their_centre_and_axes():
         (move(1, mode="EDIT", points=[4]), "has 4 points, so point 4 is out of range"),
         (move(1, settings={"colour": 1}), 'setting "colour": mesh files support separation'),
         (move(1, settings={"separation": "x"}), "is not a number"),
+        (move(1, settings={"separation": True}), "is not a number"),
+        (move(1, settings={"tight": 1}), "is not true or false"),
         (
             {"operator": "rotate", "objects": ["Below"], "values": {"angle": 1, "axis": [0, 0, 0]}},
             "axis: the zero vector has no direction",

@@ -14,7 +14,7 @@ from .base import SidebarPanel, draw_lines, draw_problem
 
 ICONS = {"move": "CON_LOCLIKE", "rotate": "CON_ROTLIKE", "scale": "CON_SIZELIKE"}
 LABEL_WIDTH = 0.55  # fraction of the sidebar's default width that the longest label needs
-SETTINGS = ("responders", "object_response", "slide_out_of_axis", "guard", "smoothness", "constraints")
+SETTINGS = ("responders", "object_response", "slide_out_of_axis", "guard", "smoothness", "tight", "constraints")
 
 
 class STIV_PT_edit(SidebarPanel, bpy.types.Panel):

@@ -30,6 +30,7 @@ def edit_settings(
         joint_region=chosen.joint_region,
         guard=chosen.guard,
         smoothness=round(chosen.smoothness, 6),  # single precision: 0.1 becomes the core's 0.1
+        tight=chosen.tight,
         constraints=chosen.constraints,
         interference=chosen.interference if request is None else request.interference,
         excluded=stiv_blender.Exclusions.from_json(chosen.excluded),

@@ -253,6 +253,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("min_clearance_ratio", &EditOptions::min_clearance_ratio)
       .def_readwrite("min_clearance_ratio_between", &EditOptions::min_clearance_ratio_between)
       .def_readwrite("smoothness", &EditOptions::smoothness)
+      .def_readwrite("tight", &EditOptions::tight)
       .def_readwrite("weights", &EditOptions::weights)
       .def_readwrite("weight_axes", &EditOptions::weight_axes)
       .def_readwrite("exclude", &EditOptions::excluded)

@@ -272,6 +272,7 @@ class EditOptions:
     smoothness: float
     storage: Sequence[StorageFrame]
     threads: int
+    tight: bool
     time_budget: float
     weight_axes: Sequence[Annotated[ArrayLike, float64, "[3, 3]"]]
     weights: Annotated[ArrayLike, float64, "[m, 1]"]

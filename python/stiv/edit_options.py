@@ -87,7 +87,9 @@ class SharedOptions:
 
     #: minimum distance between surfaces, world units; 0: 1e-4 of the diagonal of the movable surface
     separation: float = 0.0
-    smoothness: float = 0.1  #: damping of the response, above 0: 0.1 spreads it smoothly, 0.01 follows the goal tightly
+    smoothness: float = 0.1  #: damping of the response, above 0: 0.1 spreads it smoothly, 0.01 follows the goal closer
+    #: edits and settling end at the lowest energy within reach, to 1e-4, instead of a smooth state; about twice as slow
+    tight: bool = False
     #: "per_patch" or "single": one constraint for each patch, or one for all
     constraints: str = _choice("per_patch", "constraints", _native.ConstraintKind)
     time_budget: float = 0.0  #: seconds for an edit, which takes one round at least; 0: no limit

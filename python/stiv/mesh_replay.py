@@ -22,7 +22,7 @@ from stiv.mesh_files import Mesh
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int32]
-SETTINGS = ("separation", "smoothness", "threads")  # options of stiv.EditOptions that a script may set
+SETTINGS = ("separation", "smoothness", "threads", "tight")  # options of stiv.EditOptions that a script may set
 
 
 def replay_on_mesh(
@@ -118,8 +118,9 @@ def _options(settings: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in settings.items():
         if name not in SETTINGS:
             raise InputError(f'setting "{name}": mesh files support {", ".join(SETTINGS)}')
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            raise InputError(f'setting "{name}": {value!r} is not a number')
+        expected = "true or false" if name == "tight" else "a number"
+        if not isinstance(value, int | float) or isinstance(value, bool) != (name == "tight"):
+            raise InputError(f'setting "{name}": {value!r} is not {expected}')
     return {name: type(getattr(stiv.EditOptions, name))(value) for name, value in settings.items()}
 
 

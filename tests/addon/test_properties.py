@@ -40,7 +40,7 @@ def test_the_package_chooses_the_same_by_default(name: str) -> None:
     assert CHOICES["StivSceneSettings", name][0] == getattr(EditSettings, name)
 
 
-@pytest.mark.parametrize("name", ["separation", "smoothness", "interference"])
+@pytest.mark.parametrize("name", ["separation", "smoothness", "tight", "interference"])
 def test_the_defaults_of_the_interface_are_those_of_the_package(name: str) -> None:
     default = group("StivSceneSettings").bl_rna.properties[name].default
     assert default == pytest.approx(getattr(EditSettings, name), rel=1e-6)

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
-#include "response/sparse_fields.hpp"
+#include "editing/limit_constraint.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -106,15 +107,9 @@ std::vector<ControlConstraint> ControlLimits::exceeded(const Controls& p, const 
   const auto add = [&](Index k, double sign, double limit) {
     const Index row = rows()[at(k)], name = 2 * k + (sign < 0);
     if (constraints.has_limit(name)) return;
-    ControlConstraint constraint{{{row}, {Vector3(sign, 0, 0)}}, {}, sign * limit, name};
-    constraint.step = metric.apply_inverse(metric_at, constraint.row);
-    const double squared_length = dot(constraint.row, constraint.step);
-    if (!(squared_length > 0)) return;  // it does not respond
-    const double normalise = 1 / std::sqrt(squared_length);
-    scale(constraint.row, normalise);
-    scale(constraint.step, normalise);
-    constraint.bound *= normalise;
-    rows_of_limits.push_back(std::move(constraint));
+    std::optional<ControlConstraint> constraint =
+        limit_constraint(row, Vector3(sign, 0, 0), sign * limit, name, metric, metric_at);
+    if (constraint) rows_of_limits.push_back(std::move(*constraint));
   };
   for (Index k = 0; k < lower_.size(); ++k) {
     const double value = p(rows()[at(k)], 0);

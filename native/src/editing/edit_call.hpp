@@ -11,6 +11,8 @@
 
 namespace stiv {
 
+class ControlBox;
+
 /// The controls from which a round projects. [P3.2; mathematics.md, "The loop"]
 enum class Projection {
   from_goal,       ///< the goal, with accumulated constraints; after `accumulated_rounds` as below
@@ -67,6 +69,8 @@ struct EditCall {
   EditReport& report;
   Execution& execution;
   std::optional<HandOver> hand_over = std::nullopt;
+  const Metric* metric = nullptr;   ///< of the responses, instead of the context's
+  const ControlBox* box = nullptr;  ///< that controls must not leave
 
   bool is_to_hand_over() const { return hand_over && HandOver::Clock::now() >= hand_over->begins; }
   bool is_late() const { return !hand_over || HandOver::Clock::now() >= hand_over->late; }

@@ -106,12 +106,24 @@ void EditContext::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix
   revision_ = revision;
   rotation_rows_ = free_rotation_rows(*deformation_, changed.weights);
   options_ = std::move(changed);
+  tight_metrics_ = {};
+}
+
+const Metric& EditContext::tight_metric(int level) const {
+  std::unique_ptr<Metric>& metric = tight_metrics_[static_cast<std::size_t>(level)];
+  if (!metric) {
+    constexpr std::array<double, tight_levels> divisors{10, 100, 1000};
+    metric = deformation_->metric(
+        {options_.smoothness / divisors[static_cast<std::size_t>(level)], options_.weights, options_.weight_axes});
+  }
+  return *metric;
 }
 
 bool EditContext::renew_metric() {
   const std::uint64_t revision = deformation_->revision();
   if (revision == revision_) return false;
   metric_ = metric_of(*deformation_, options_);
+  tight_metrics_ = {};
   revision_ = revision;
   return true;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ class EditContext {
   const std::shared_ptr<const Surface>& shared_surface() const { return surface_; }
   const Deformation& deformation() const { return *deformation_; }
   const Metric& metric() const { return *metric_; }
+  static constexpr int tight_levels = 3;
+  /// The metric with a tenth of the damping, or a hundredth and so on for further levels. Factored at its first use.
+  const Metric& tight_metric(int level) const;
   /// With the effective separation.
   const EditOptions& options() const { return options_; }
   /// Rows of the controls that are interpolated as rotations.
@@ -79,6 +83,7 @@ class EditContext {
   std::vector<Index> rotation_rows_;
   std::uint64_t revision_;  ///< of the deformation, for the metric
   std::unique_ptr<Metric> metric_;
+  mutable std::array<std::unique_ptr<Metric>, tight_levels> tight_metrics_;
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;  ///< of the moving vertices
   double least_separation_ = 0;

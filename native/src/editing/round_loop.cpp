@@ -2,13 +2,12 @@
 #include "editing/round_loop.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
+#include "editing/response_projection.hpp"
 #include "editing/round_volumes.hpp"
 #include "stiv/error.hpp"
 #include "stiv/response/resolver.hpp"
@@ -114,43 +113,21 @@ bool RoundLoop::constrain() {
   return true;
 }
 
-/// Large metrics are factored while the first motions are free.
-void RoundLoop::wait_for_metric() const {
-  while (!call_.context.metric().is_ready()) {
-    call_.execution.check();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-}
-
 std::vector<ControlConstraint> RoundLoop::linearised(const std::vector<Stiv>& stivs) const {
   const ScopedTimer timer(call_.execution.timings.response);
-  wait_for_metric();
-  return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, call_.context.metric(),
+  return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, ready_metric(call_),
                              call_.accepted.controls, &call_.execution);
 }
 
 /// Projects to the next candidate.
 void RoundLoop::project() {
   const ScopedTimer timer(call_.execution.timings.response);
-  progress_.p = projection_within_limits(progress_.accumulates ? progress_.goal : outcome_.candidate.controls);
+  const Controls& from = progress_.accumulates ? progress_.goal : outcome_.candidate.controls;
+  progress_.p = project_within_limits(call_, progress_.constraints, from);
   progress_.events_are_constrained = progress_.is_cut = false;
   outcome_.events = std::move(*progress_.events);
   progress_.events.reset();
   call_.execution.checkpoint();
-}
-
-/// The point closest to `from` that satisfies the constraints. Adds the limits that it exceeds until it exceeds none:
-/// most limits are far away.
-Controls RoundLoop::projection_within_limits(const Controls& from) {
-  ConstraintSet& constraints = progress_.constraints;
-  for (;;) {
-    Controls p = options_.solver == ConstraintSolver::lcp ? constraints.project(from, call_.execution)
-                                                          : constraints.project_as_equations(from, call_.execution);
-    std::vector<ControlConstraint> limits =
-        call_.context.limits().exceeded(p, constraints, call_.context.metric(), call_.accepted.controls);
-    if (limits.empty()) return p;
-    constraints.add(std::move(limits));
-  }
 }
 
 /// Shortens the step to the candidate, at which there is no surface.

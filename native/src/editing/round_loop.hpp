@@ -38,13 +38,11 @@ class RoundLoop {
   bool search();
   bool constrain();
   void project();
-  Controls projection_within_limits(const Controls& from);
   void shorten_step(int cuts);
   template <class Evaluate>
   auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
-  void wait_for_metric() const;
   std::vector<ControlConstraint> linearised(const std::vector<Stiv>& stivs) const;
   void place_surface();
 

@@ -12,6 +12,7 @@
 #include "editing/session_implementation.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "editing/sub_goals.hpp"
+#include "editing/tightening.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -52,6 +53,7 @@ class SurfaceSession final : public SessionImplementation {
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
     checked_ = controls;
     progress_.reset();
+    tightening_.reset();
     queries_.clear_cache();
     trail_.begin(controls);
     drag_ = {.followed = last_feasible(context_, state, context_.limits().nearest(goal), execution)};
@@ -69,6 +71,7 @@ class SurfaceSession final : public SessionImplementation {
   EditResult edit(const Controls& goal, Execution& execution) override {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
+      tightening_.reset();
       drag_.missing_at_detour = drag_.missing_at_leap = 0;
       forget_leaps();
       const bool is_near = longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
@@ -76,6 +79,9 @@ class SurfaceSession final : public SessionImplementation {
         run_sub_edits_by_steps(call, aim);
       else
         edit_toward(call, aim);
+      if (!context_.options().tight) return;
+      if (is_near) refine(call, aim);
+      tighten(call, aim, tightening_);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
     trail_.begin(accepted_.controls);
@@ -86,6 +92,7 @@ class SurfaceSession final : public SessionImplementation {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
       if (hand_over) call.hand_over.emplace(*hand_over);
+      tightening_.reset();
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
       if (aim.controls != drag_.followed.controls) forget_leaps();
       if (drag_.is_leaping) leap(call, aim, drag_);
@@ -101,14 +108,8 @@ class SurfaceSession final : public SessionImplementation {
   EditResult settle(Execution& execution) override {
     const Controls goal = goal_;
     const auto work = [&](EditCall& call, const Aim& aim) {
-      PullLimits limits{.poor_pulls = poor_pulls_before_end(call.execution)};
-      if (is_dragging_) limits.distance = context_.pull_distance();
-      if (drag_.is_leaping) leap(call, aim, drag_);
-      pull_until_settled(call, aim, limits);
-      if (!is_dragging_) return;
-      leap(call, aim, drag_);
-      if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
-      edit_from_start(call, aim);
+      if (!tightening_) settle_smoothly(call, aim);
+      if (context_.options().tight) tighten(call, aim, tightening_);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
     if (result.status == EditStatus::budget)
@@ -149,6 +150,7 @@ class SurfaceSession final : public SessionImplementation {
       session_.accepted_ = std::move(accepted_);
       session_.drag_.followed = std::move(followed_);
       session_.progress_.reset();
+      session_.tightening_.reset();
       session_.queries_.clear_cache();
     }
 
@@ -164,6 +166,17 @@ class SurfaceSession final : public SessionImplementation {
   void forget_leaps() {
     drag_.is_leaping = false;
     drag_.leapt_from.reset();
+  }
+
+  void settle_smoothly(EditCall& call, const Aim& aim) {
+    PullLimits limits{.poor_pulls = poor_pulls_before_end(call.execution)};
+    if (is_dragging_) limits.distance = context_.pull_distance();
+    if (drag_.is_leaping) leap(call, aim, drag_);
+    pull_until_settled(call, aim, limits);
+    if (!is_dragging_) return;
+    leap(call, aim, drag_);
+    if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
+    edit_from_start(call, aim);
   }
 
   void edit_toward(EditCall& call, const Aim& aim) {
@@ -224,7 +237,10 @@ class SurfaceSession final : public SessionImplementation {
   EditResult carry_out(const Controls& goal, Execution& execution, FollowedGoal followed, const Work& work) {
     const FloatingPointScope floating_point;
     context_.check_controls(goal, "goal");
-    if (context_.renew_metric()) progress_.reset();
+    if (context_.renew_metric()) {
+      progress_.reset();
+      tightening_.reset();
+    }
     EditReport report;
     State target{goal, accepted_.surface};
     EditStatus status = EditStatus::unchanged;
@@ -273,9 +289,10 @@ class SurfaceSession final : public SessionImplementation {
   State accepted_;
   Controls goal_;  ///< of the last call, as given
   DragProgress drag_;
-  DragTrail trail_;                        ///< of the drag since the last edit, settling or restoration
-  std::optional<RoundProgress> progress_;  ///< of a call that the time budget ended
-  Controls checked_;                       ///< last restored; a drag that is cancelled goes back to them
+  DragTrail trail_;                               ///< of the drag since the last edit, settling or restoration
+  std::optional<RoundProgress> progress_;         ///< of a call that the time budget ended
+  std::optional<TighteningProgress> tightening_;  ///< toward the goal of the last call
+  Controls checked_;                              ///< last restored; a drag that is cancelled goes back to them
   bool is_dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< built at the first query
 };

@@ -137,7 +137,8 @@ class Exclusions:
 
 @dataclass(frozen=True)
 class EditSettings(SharedOptions):
-    """Choices for one edit; separation, smoothness, constraints, time_budget and threads as in stiv.EditOptions.
+    """Choices for one edit; separation, smoothness, tight, constraints, time_budget and threads as in
+    stiv.EditOptions.
 
     Attributes:
         pair_separations: minimum distances of pairs of objects by name, used instead of `separation`; the same name

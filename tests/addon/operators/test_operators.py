@@ -192,6 +192,10 @@ def test_settings_and_roles_of_the_scene_are_passed_on(scene: Any) -> None:
     bpy.context.scene.stiv.smoothness = 0.013
     bpy.ops.stiv.move(value=(0.0, 0.0, 1.0))
     assert RecordingEdit.begun.settings.smoothness == 0.013
+    assert not RecordingEdit.begun.settings.tight
+    bpy.context.scene.stiv.tight = True
+    bpy.ops.stiv.move(value=(0.0, 0.0, 1.0))
+    assert RecordingEdit.begun.settings.tight
 
 
 def test_choices_of_a_drag_are_properties() -> None:

@@ -33,7 +33,10 @@ struct EditOptions {
   /// In (0, 1). A pair of primitives nearer than h at the start of the session keeps this fraction of its distance,
   /// within a body and between bodies. Within a body, this bounds the compression of a mesh finer than h.
   double min_clearance_ratio = 0.5, min_clearance_ratio_between = 0.9;
-  double smoothness = 0.1;  ///< damping of the metric: 0.1 smooth, 0.01 tight
+  double smoothness = 0.1;  ///< damping of the metric: 0.1 spreads the response, 0.01 follows the goal closer
+  /// Edits and settling end at the lowest energy within reach, to 1e-4, instead of a smooth state. Takes about
+  /// twice as long. (mathematics.md, "Tight edits")
+  bool tight = false;
   /// Response of each control, (m), or of each of its coordinates, (3 m): 0 pins. Empty: all 1. As in MetricOptions.
   Eigen::VectorXd weights;
   std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
