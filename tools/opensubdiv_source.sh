@@ -21,11 +21,12 @@ open_archive deb-src "$suite"
 archive=$(find "$work" -maxdepth 1 -name 'opensubdiv_*.orig.tar.*' ! -name '*.asc' | head -n 1)
 [ -n "$archive" ] || fail "the source package contains no original archive"
 mkdir -p "$work/unpacked" "$destination"
-tar -xf "$archive" -C "$work/unpacked" --strip-components=1
-[ -f "$work/unpacked/opensubdiv/far/stencilTable.h" ] || fail "$(basename "$archive") does not contain opensubdiv/far"
-cp "$work/unpacked/LICENSE.txt" "$work/unpacked/NOTICE.txt" "$destination/"
+(cd "$work/unpacked" && "${CMAKE:-cmake}" -E tar xf "$archive")  # tar needs xz, which a bare Debian does not have
+unpacked=$(echo "$work"/unpacked/*)
+[ -f "$unpacked/opensubdiv/far/stencilTable.h" ] || fail "$(basename "$archive") does not contain opensubdiv/far"
+cp "$unpacked/LICENSE.txt" "$unpacked/NOTICE.txt" "$destination/"
 # Renamed when complete, so that an interrupted run leaves nothing that looks finished.
 rm -rf "$destination/opensubdiv.partial"
-cp -R "$work/unpacked/opensubdiv" "$destination/opensubdiv.partial"
+cp -R "$unpacked/opensubdiv" "$destination/opensubdiv.partial"
 mv "$destination/opensubdiv.partial" "$destination/opensubdiv"
 echo "OpenSubdiv's source: $(basename "$archive") unpacked into $destination"
