@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Libraries that the core is compiled with: headers of Eigen and Highway, and the source of OpenSubdiv. One message lists
-# everything that is missing, and the ways to get it.
+# Libraries that the core is compiled with: headers of Eigen and Highway, and the source of OpenSubdiv. The module also
+# needs the headers of Python. One message lists everything that is missing, and the ways to get it.
 set(STIV_OPENSUBDIV_SOURCE "" CACHE PATH "Folder of OpenSubdiv's source (with opensubdiv/far inside)")
 set(missing "")
 
@@ -17,6 +17,15 @@ if(NOT STIV_HIGHWAY_INCLUDE)
   string(APPEND missing
     "* Highway 1.0 (headers). Debian, Ubuntu: apt-get install libhwy-dev. Elsewhere: "
     "-DSTIV_HIGHWAY_INCLUDE=FOLDER, which contains hwy/highway.h.\n")
+endif()
+
+if(STIV_BUILD_PYTHON)
+  find_package(Python QUIET COMPONENTS Interpreter Development.Module)
+  if(NOT Python_FOUND)
+    string(APPEND missing
+      "* The headers of Python. Debian, Ubuntu: apt-get install python3-dev. Elsewhere: "
+      "-DPython_ROOT_DIR=FOLDER, a Python with its headers.\n")
+  endif()
 endif()
 
 # pip has no folder to name, so its build downloads the source from Debian, without privileges.

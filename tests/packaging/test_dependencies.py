@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CMake finds the libraries of the core, or names all that are missing in one message, with the way out."""
+"""CMake finds the libraries of the core and Python's headers, or names all that are missing in one message, with the way out."""
 
 import re
 import shutil
@@ -16,6 +16,7 @@ include({}/cmake/dependencies.cmake)
 message("found ${{STIV_OPENSUBDIV_SOURCE}} ${{STIV_HIGHWAY_INCLUDE}} ${{Eigen3_FOUND}}")
 """
 NO_EIGEN = "-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON"
+NO_PYTHON = "-DSTIV_BUILD_PYTHON=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_Python=ON"
 NO_HIGHWAY = "-DSTIV_HIGHWAY_INCLUDE=STIV_HIGHWAY_INCLUDE-NOTFOUND"
 
 pytestmark = pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake")
@@ -49,8 +50,9 @@ def test_a_complete_machine_configures(tmp_path: Path, opensubdiv: str) -> None:
         ([NO_EIGEN], ["apt-get install libeigen3-dev", "-DEigen3_DIR="]),
         ([NO_HIGHWAY, "-DCMAKE_FIND_ROOT_PATH=/nowhere", "-DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY"],
          ["apt-get install libhwy-dev", "-DSTIV_HIGHWAY_INCLUDE="]),
+        ([*NO_PYTHON], ["apt-get install python3-dev", "-DPython_ROOT_DIR="]),
     ],
-    ids=["Eigen", "Highway"],
+    ids=["Eigen", "Highway", "Python"],
 )  # fmt: skip
 def test_a_missing_library_names_its_package_and_the_way_out(
     tmp_path: Path, opensubdiv: str, options: list[str], named: list[str]
@@ -63,9 +65,9 @@ def test_a_missing_library_names_its_package_and_the_way_out(
 
 
 def test_everything_missing_is_in_one_message(tmp_path: Path) -> None:
-    code, text = configure(tmp_path, NO_EIGEN, "-DSTIV_OPENSUBDIV_SOURCE=/nowhere")
+    code, text = configure(tmp_path, NO_EIGEN, *NO_PYTHON, "-DSTIV_OPENSUBDIV_SOURCE=/nowhere")
     assert code == 1
-    assert "libeigen3-dev" in text and "tools/opensubdiv_source.sh" in text
+    assert "libeigen3-dev" in text and "python3-dev" in text and "tools/opensubdiv_source.sh" in text
     assert text.count("CMake Error") == 1
 
 
