@@ -4,7 +4,7 @@
 Before that, without the libraries, pip ends with one message that names all of them. Without root and debootstrap, the
 archive is compiled in a new environment on this system, and the reason is printed.
 
-Usage: source_archive.py [--folder F] [--release R]   F: a new folder, default: temporary; R: of Debian, default: bookworm
+Usage: source_archive.py [--folder F] [--release R]   F: a new folder, default: temporary; R: of Debian
 """
 
 from __future__ import annotations

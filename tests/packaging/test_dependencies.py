@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CMake finds the libraries of the core and Python's headers, or names all that are missing in one message, with the way out."""
+"""CMake finds all libraries, and Python's headers, or names those that are missing in one message, with the way out."""
 
 import re
 import shutil

@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "tools/opensubdiv_source.sh"
 KEYRING = Path("/usr/share/keyrings/debian-archive-keyring.gpg")
-TOOLS = "basename cat chmod cp dirname find head id mkdir mktemp mv rm sh tar".split()
+TOOLS = ["basename", "cat", "chmod", "cp", "dirname", "find", "head", "id", "mkdir", "mktemp", "mv", "rm", "sh", "tar"]
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux" or not KEYRING.is_file() or shutil.which("cmake") is None, reason="needs Debian and cmake"
