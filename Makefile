@@ -27,7 +27,7 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 endif
 
-.PHONY: release docs test-docs test-long test-arm64 peers fuzz coverage help demo test wheels test-windows test-windows-native test-windows-blender test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
+.PHONY: release docs test-docs test-long test-arm64 test-arm64-native test-arm64-python peers fuzz coverage help demo test wheels test-windows test-windows-native test-windows-blender test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
 .NOTPARALLEL:
 
@@ -92,15 +92,19 @@ fuzz: $(OPENSUBDIV) build/venv/stiv ## Fuzz pair tests, detection, the static te
 	tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
 	build/venv/bin/python -W ignore tests/long/file_fuzzing.py --seconds $(FUZZ_SECONDS) --findings build/fuzz
 
-test-arm64: $(WHEEL) ## Compile the core, its own tests and the Python module for arm64, and run them and the Python tests in an emulator (minutes)
+test-arm64: test-arm64-native test-arm64-python ## Run the core's own tests and the Python tests for arm64 in an emulator
+
+test-arm64-native: $(OPENSUBDIV) ## Compile the core's own tests for arm64 with Debian's compiler, and run them in an emulator
 	tools/install_debian_packages.sh tools/debian_packages_arm64.txt
-	tools/python_headers.sh 3.11 bookworm build/portable/headers
-	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV)) \
-		-DSTIV_PYTHON_HEADERS=3.11=$(abspath build/portable/headers/3.11) -Dpybind11_DIR=$$(build/venv/bin/python -m pybind11 --cmakedir)
-	cmake --build --preset arm64 --target stiv_tests stiv_portable_modules
+	cmake --preset arm64 -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset arm64 --target stiv_tests
 	ctest --preset arm64 --output-on-failure --parallel 2
-	tools/arm64_python.sh build/venv/bin/python build/arm64-python -r tools/requirements/foreign.txt
-	tools/test_arm64.sh build/venv/bin/python build/arm64-python build/arm64/native/bindings/_native.cpython-311-aarch64-linux-gnu.so
+
+test-arm64-python: $(WHEEL) build/venv/portable ## Run the self-test and the Python tests of the core in an emulator, with the wheel of the zip for arm64
+	tools/install_debian_packages.sh tools/debian_packages_arm64.txt
+	tools/arm64_python.sh build/venv/bin/python build/arm64-python -r tools/requirements/arm64.txt
+	STIV_PYTHONS=3.11 tools/portable_wheels.sh build/venv/bin/python $(OPENSUBDIV) build/arm64-python/wheel linux-arm64
+	tools/test_arm64.sh build/venv/bin/python build/arm64-python
 
 test-windows: $(WHEEL) build/venv/portable ## Compile for Windows, and run the self-test and the Python tests of the core under Wine
 	tools/test_windows.sh build/venv/bin/python $(OPENSUBDIV)

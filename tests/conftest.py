@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-settings.register_profile("untimed", deadline=None)  # a busy machine must not fail a test
+from tests.examples import examples
+
+settings.register_profile("untimed", deadline=None, max_examples=examples(100))  # a busy machine must not fail a test
 settings.load_profile("untimed")
 
 ADDON = Path(__file__).resolve().parents[1] / "addon"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from oracles import rational
 
 import stiv
+from tests.examples import examples
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -92,7 +93,7 @@ def soup(seed: int, triangles: int = 80, size: float = 0.2) -> tuple[Floats, Int
     return vertices, np.array(faces)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(0, 2**32), st.integers(-23, 23))
 def test_soups_equal_brute_force_for_any_scale_order_and_thread_count(seed: int, exponent: int) -> None:
     vertices, faces = soup(seed)
@@ -191,7 +192,7 @@ def folded_sheet(seed: int, reach: int, size: int = 6) -> tuple[Floats, Integers
     return vertices.astype(np.float64), np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 4), st.sampled_from([2.0**-23, 1.0, 2.0**23]))
 def test_folded_sheets_equal_brute_force(seed: int, reach: int, scale: float) -> None:
     vertices, faces = folded_sheet(seed, reach)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from oracles import path, rational
 
 import stiv
+from tests.examples import examples
 
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
@@ -27,7 +28,7 @@ def moved(vertices: shapes.Floats, stir: float, seed: int) -> shapes.Floats:
     return vertices + stir * ways.reshape(-1, 3)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 2**32), st.sampled_from([0.02, 0.1, 0.5]), st.sampled_from([1e-7, 1.0, 1e7]))
 def test_random_steps_equal_an_independent_check(seed: int, stir: float, scale: float) -> None:
     vertices, faces = tetrahedra(seed)

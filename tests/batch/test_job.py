@@ -14,6 +14,7 @@ from json_schemas import schema_of
 
 import stiv
 from stiv.batch.job import Job, parse_job, read_job
+from tests.examples import examples
 
 OLD = Path(__file__).with_name("job_of_0.1.0.json")
 CHECK = {"name": "a", "command": "check", "scene": "a.blend"}
@@ -124,14 +125,14 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(120), deadline=None)
 @given(st.lists(JSON | st.builds(lambda extra: CHECK | extra, st.dictionaries(st.sampled_from([*REPLAY]), JSON))))
 def test_anything_is_a_job_or_an_input_error(entries):
     with contextlib.suppress(stiv.InputError):
         assert isinstance(parse_job(job(*entries), Path("/nowhere")), Job)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.binary(max_size=300))
 def test_any_bytes_are_a_job_or_an_input_error(data):
     with tempfile.TemporaryDirectory() as folder:

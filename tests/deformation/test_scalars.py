@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
 import stiv
+from tests.examples import examples
 from tests.oracles.path import find_contacts
 
 Floats = NDArray[np.float64]
@@ -133,7 +134,7 @@ def test_the_metric_against_a_dense_one_and_in_any_unit(weights: list[float] | N
         assert np.allclose(steps, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
 
 
-@settings(max_examples=25, deadline=None, phases=[Phase.generate])
+@settings(max_examples=examples(25), deadline=None, phases=[Phase.generate])
 @given(st.data())
 def test_drags_of_linkages_keep_limits_steps_and_surfaces(data: st.DataObject) -> None:
     """Random posts, limits and goals: no state leaves the limits or intersects, and the path between is free."""

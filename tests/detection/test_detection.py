@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import stiv
 from blend_fixtures.scenes.detection_steps import pressed_inside
+from tests.examples import examples
 from tests.oracles.first_contact import WIDTH, first_contact
 
 
@@ -31,7 +32,7 @@ def assert_same(a: stiv.Events, b: stiv.Events) -> None:
         assert np.array_equal(getattr(a, name), getattr(b, name)), name
 
 
-@settings(max_examples=20, deadline=None, derandomize=True)
+@settings(max_examples=examples(20), deadline=None, derandomize=True)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.003, 0.05]), st.sampled_from([0.1, 0.4, 1.0]))
 def test_broad_phases_and_threads_agree(seed: int, separation: float, size: float) -> None:
     corners, start, end = soup(seed, 60, size)

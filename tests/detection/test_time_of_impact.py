@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stiv
+from tests.examples import examples
 from tests.oracles.first_contact import WIDTH, first_contact, squared_distance
 
 GRID = st.integers(-3, 3)
@@ -40,25 +41,25 @@ def check(kind: str, eight: list[list[int]], found: float) -> None:
         assert float(expected) - found < EARLY
 
 
-@settings(max_examples=120, deadline=None, derandomize=True)
+@settings(max_examples=examples(120), deadline=None, derandomize=True)
 @given(KIND, points(GRID))
 def test_grids(kind: str, eight: list[list[int]]) -> None:
     check(kind, eight, impact(kind, eight))
 
 
-@settings(max_examples=120, deadline=None, derandomize=True)
+@settings(max_examples=examples(120), deadline=None, derandomize=True)
 @given(KIND, points(GRID, planar=True))
 def test_coplanar_grids(kind: str, eight: list[list[int]]) -> None:
     check(kind, eight, impact(kind, eight))
 
 
-@settings(max_examples=120, deadline=None, derandomize=True)
+@settings(max_examples=examples(120), deadline=None, derandomize=True)
 @given(KIND, points(GRID), st.sampled_from([2.0**-23, 2.0**23]))
 def test_scales(kind: str, eight: list[list[int]], scale: float) -> None:
     check(kind, eight, impact(kind, eight, scale))
 
 
-@settings(max_examples=120, deadline=None, derandomize=True)
+@settings(max_examples=examples(120), deadline=None, derandomize=True)
 @given(KIND, points(GRID), points(GRID))
 def test_common_motion_does_not_matter(kind: str, eight: list[list[int]], shift: list[list[int]]) -> None:
     moved = eight[:4] + [[c + s for c, s in zip(point, shift[0], strict=True)] for point in eight[4:]]
@@ -68,7 +69,7 @@ def test_common_motion_does_not_matter(kind: str, eight: list[list[int]], shift:
     assert impact(kind, still) == expected
 
 
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=examples(80), deadline=None, derandomize=True)
 @given(points(GRID), st.permutations([1, 2, 3]))
 def test_corners_may_be_permuted(eight: list[list[int]], order: list[int]) -> None:
     corners = [0, *order]
@@ -79,7 +80,7 @@ def test_corners_may_be_permuted(eight: list[list[int]], order: list[int]) -> No
         assert impact("ee", permuted) == pytest.approx(impact("ee", eight), abs=EARLY)
 
 
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=examples(80), deadline=None, derandomize=True)
 @given(KIND, points(GRID), st.sampled_from([0.0625, 0.5, 1.0]))
 def test_separation_holds_until_the_time_of_impact(kind: str, eight: list[list[int]], separation: float) -> None:
     x = np.array(eight, float)
