@@ -258,6 +258,7 @@ class EditOptions:
     narrow_phase: NarrowPhase
     single_precision: bool
     solver: ConstraintSolver
+    tight: bool
     volumes: VolumeKind
     accumulated_rounds: int
     exclude: Sequence[tuple[int, int]]
@@ -272,7 +273,6 @@ class EditOptions:
     smoothness: float
     storage: Sequence[StorageFrame]
     threads: int
-    tight: bool
     time_budget: float
     weight_axes: Sequence[Annotated[ArrayLike, float64, "[3, 3]"]]
     weights: Annotated[ArrayLike, float64, "[m, 1]"]
