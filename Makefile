@@ -37,13 +37,13 @@ help: ## List the targets
 demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/demo/ and check the result
 	build/venv-blender/bin/python -m stiv.command_line demo --output build/demo
 
-test: build/stiv_tests build/stiv_tests_asan build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
+test: build/stiv_tests build/stiv_sanitized_tests build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
 	build/venv/bin/python tools/run_tests.py native sanitizers threads windows window python blender lint
 
 test-native: build/stiv_tests ## Run the core's own tests
 	build/venv/bin/python tools/run_tests.py native
 
-test-sanitizers: build/stiv_tests_asan ## Run the core's own tests under address and undefined-behaviour sanitizers
+test-sanitizers: build/stiv_sanitized_tests ## Run the core's own tests under address and undefined-behaviour sanitizers
 	build/venv/bin/python tools/run_tests.py sanitizers
 
 test-threads: build/stiv_thread_tests ## Run the tests of multithreaded code under the thread sanitizer
@@ -126,9 +126,12 @@ coverage: build/debian $(OPENSUBDIV) ## Run the core's own tests for line covera
 format: build/venv/lint ## Format C++ and Python in place
 	tools/lint.sh --fix
 
-test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, killed batches, random edits with all paths, cancelled edits, stacks of modifiers, random events and snaps in a window, soak, memory, pip install from source
+test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the long tests: everything under the thread sanitizer, tests of the core instrumented too, killed batches, random edits with all paths, cancelled edits, stacks of modifiers, random events and snaps in a window, soak, memory, pip install from source
 	cmake --build --preset tsan --target stiv_tests
 	ctest --preset tsan --output-on-failure
+	cmake --preset asan -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
+	cmake --build --preset asan --target stiv_tests
+	ctest --preset asan --output-on-failure
 	build/venv/bin/python tests/long/batch_kills.py --scenes 200 --kills 50
 	build/venv/bin/python tests/long/random_sessions.py --steps 20000
 	build/venv/bin/python tests/long/cancelling.py --times 200
@@ -212,9 +215,8 @@ build/stiv_tests: $(WHEEL)
 	cmake --build build/native --target stiv_tests
 	touch $@
 
-build/stiv_tests_asan: $(NATIVE_SOURCES) $(OPENSUBDIV)
-	cmake --preset asan -DSTIV_OPENSUBDIV_SOURCE=$(abspath $(OPENSUBDIV))
-	cmake --build --preset asan --target stiv_tests
+build/stiv_sanitized_tests: build/stiv_tests
+	cmake --build build/native --target stiv_sanitized_tests
 	touch $@
 
 build/stiv_thread_tests: $(NATIVE_SOURCES) $(OPENSUBDIV)
