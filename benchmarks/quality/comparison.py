@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares edits, settled edits, drags and confirmed drags with converged solutions of an interior-point method."""
+"""Compares edits, settled and tight ones, drags and confirmed drags with converged interior-point solutions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from blend_fixtures.scenes.families import Edit
 from stiv import InputError
 
 Array = NDArray[np.float64]
-WAYS = ("stop", "edit", "settled", "drag", "confirmed", "ipc")
+WAYS = ("stop", "edit", "settled", "tight", "drag", "confirmed", "ipc")
 DRAG_STEPS = 20
 SETTLE_CALLS = 12  #: at most
 NEGLIGIBLE = 1e-9  #: of the energy at the start; below it, an edit reached its goal
@@ -67,8 +67,8 @@ _Found = tuple[Array, float, bool]  # surface, seconds, whether the solver conve
 
 
 def _by_stiv(edit: Edit) -> dict[str, _Found]:
-    def session() -> stiv.EditSession:
-        options = stiv.EditOptions(threads=1, **edit.options)
+    def session(tight: bool = False) -> stiv.EditSession:
+        options = stiv.EditOptions(threads=1, tight=tight, **edit.options)
         return stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
 
     def timed(session: stiv.EditSession, work: Callable[[], object]) -> _Found:
@@ -76,11 +76,12 @@ def _by_stiv(edit: Edit) -> dict[str, _Found]:
         work()
         return np.array(session.surface), time.process_time() - began, True
 
-    edited, dragged = session(), session()
+    edited, tightened, dragged = session(), session(tight=True), session()
     found = {"stop": (_stop(session(), edit), 0.0, True)}
     found["edit"] = timed(edited, lambda: edited.edit(edit.goal))
     surface, seconds, _ = timed(edited, lambda: _settle(edited))
     found["settled"] = surface, seconds + found["edit"][1], True
+    found["tight"] = timed(tightened, lambda: tightened.edit(edit.goal))
     goals = edit.controls + (edit.goal - edit.controls) * np.arange(1, DRAG_STEPS + 1)[:, None, None] / DRAG_STEPS
     found["drag"] = timed(dragged, lambda: [dragged.drag(goal) for goal in goals])
     surface, seconds, _ = timed(dragged, dragged.settle)  # as Blender does when a drag is confirmed
