@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """States that are written while a job already solves for the next goal."""
 
+import math
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -11,14 +14,14 @@ import pytest
 from building import cube_above_floor, select, shift
 
 import stiv
-from benchmarks.sessions import dragged_frames
-from benchmarks.sessions.in_blender import drags_in_blender
+from benchmarks.sessions import in_blender
 from stiv.blender import BlenderEdit, EditSettings
 from stiv.blender.edit import state_writer
 from stiv.blender.verify.scene_check import find_pairs, read_surface
 from stiv.task import Task
 
 BLEND = Path(__file__).resolve().parents[3] / "blend_fixtures/sphere_along_wall.blend"
+MOST_MOTIONS = 50_000  #: a drag that never writes beside a solve must end too
 
 
 def begin(kind: str = "move", settings: EditSettings | None = None) -> BlenderEdit:
@@ -118,12 +121,25 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Iterator[Watch]:
 def test_a_drag_writes_beside_its_solves_from_one_thread_what_passes_the_test(
     watch: Watch, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After each writing, the whole scene is checked again."""
+    """After each writing, the whole scene is checked again. The mouse moves until three states were written so."""
     from stiv_addon.modal import drag_loop
 
+    begun = in_blender.ScriptedDrag.begun
+
+    def moving_on(*arguments: Any) -> in_blender.ScriptedDrag:
+        drag, enough = begun(*arguments), watch.beside + 3
+        for motion in range(MOST_MOTIONS):
+            if watch.beside >= enough:
+                break
+            drag.point(1.0 + 0.5 * math.sin(motion / 100))
+            drag.tick()
+            time.sleep(0.001)
+        return drag
+
+    monkeypatch.setattr(in_blender.ScriptedDrag, "begun", moving_on)
+    monkeypatch.setattr(drag_loop, "FRAME", 0.0)  # no solve ends in the tick that began it, so another goal waits
     monkeypatch.setattr(drag_loop, "FITTING", 0.0)  # also of short solves
-    monkeypatch.setattr(dragged_frames, "SPEED", 4.0)  # slow enough for several of them
-    stages = drags_in_blender(BLEND, 2)
-    assert watch.beside > 0 and watch.threads == {threading.get_ident()}
+    stages = in_blender.drags_in_blender(BLEND, 2)
+    assert watch.beside >= 3 * len(stages) and watch.threads == {threading.get_ident()}
     assert all(tick.passed for stage in stages for tick in stage.ticks)
     assert find_pairs(read_surface(bpy.context)) == ()
