@@ -8,11 +8,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from tests.examples import examples
 
-settings.register_profile("untimed", deadline=None, max_examples=examples(100))  # a busy machine must not fail a test
+# A busy machine or an emulator must not fail a test: neither an example nor its generation has a deadline.
+settings.register_profile(
+    "untimed", deadline=None, max_examples=examples(100), suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("untimed")
 
 ADDON = Path(__file__).resolve().parents[1] / "addon"
