@@ -16,8 +16,8 @@ const Eigen::Affine3d unit = Eigen::Affine3d::Identity();
 
 /// Two bodies of a scene that may overlap; the first one moves.
 struct Watched {
-  Watched(const Assembly& scene, Index first_count)
-      : start(scene.q), first_count(first_count), watch(*scene.surface(), {{1, 0}}, rounding) {
+  Watched(const Assembly& scene, Index count_of_first)
+      : start(scene.q), first_count(count_of_first), watch(*scene.surface(), {{1, 0}}, rounding) {
     CHECK_FALSE(watch.begun());
     watch.begin(start, execution);
     CHECK(watch.begun());
