@@ -21,7 +21,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS.parent), str(TESTS / "faults"), str(TESTS / "blender")]
+sys.path[:0] = [str(TESTS.parent), str(TESTS), str(TESTS / "faults"), str(TESTS / "blender")]
 
 import bpy  # noqa: E402
 import building  # noqa: E402

@@ -27,10 +27,29 @@ def cage_in_edit_mode(window: Window) -> Steps:
     expect_free(window)
     yield from window.undo()
     expect_near(scenes.evaluated_extent("Cage"), before, 1e-6, "the surface after undo")
-    yield from start(window)
-    yield from window.glide(window.pixel(INTO_WALL))
+    yield from _drag_again(window)
     yield from click(window, "ESC")
     assert scenes.evaluated_extent("Cage") == before
+    yield from _tight_drag(window)
+
+
+def _drag_again(window: Window) -> Steps:
+    """Drag from the middle into the wall, without confirming."""
+    yield from window.glide(window.pixel((0.0, 0.0, 0.0)))
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    expect_near(scenes.evaluated_extent("Cage"), WALL_FACE, 0.1, "the surface at the wall while dragging again")
+
+
+def _tight_drag(window: Window) -> Steps:
+    """The same drag with Tight: it ends no further from the wall."""
+    bpy.context.scene.stiv.tight = True
+    yield from _drag_again(window)
+    yield from click(window)
+    window.picture("cage_in_edit_mode_tight")
+    expect_near(scenes.evaluated_extent("Cage"), WALL_FACE, 0.1, "the surface at the wall after a tight drag")
+    assert scenes.evaluated_extent("Cage") < WALL_FACE
+    expect_free(window)
 
 
 def lattice_in_edit_mode(window: Window) -> Steps:
