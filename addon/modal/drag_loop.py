@@ -36,6 +36,7 @@ MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a
 POOR_GAIN = (
     0.9999  # the same for a poor state, of which one settles a drag at rest: deep in a wall, a slide gains little
 )
+MAX_REJECTED = 2  # states in a row that fail in Blender's evaluation while a solve runs: the next one may pass
 MAX_IDLE = 10  # repeated solves that settle and accept nothing, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
@@ -137,6 +138,7 @@ class DragLoop:
         self._unfinished: Goal | None = None
         self._unwritten = False
         self._shown_beside = False  # the last state was written while a solve ran, and is to be tested completely
+        self._rejected = 0  # states since the last one that was written
         self._settled = False
         self._refusal = ""
         self._solves = 0
@@ -476,6 +478,7 @@ class DragLoop:
     def _write_at_once(self) -> None:
         assert self.edit is not None
         self._unwritten = self._shown_beside = False
+        self._rejected = 0
         self.report = self.edit.write()
         if self.report is not None and self.report.result is not None:  # solved again
             self.result = self.report.result
@@ -490,7 +493,11 @@ class DragLoop:
         return continues and is_new and solved + self._written_in > FITTING
 
     def _write_beside_solve(self) -> bool:
-        """Write the accepted state while the next solve runs; returns whether the state passed the test."""
+        """Write the accepted state while the next solve runs; returns whether what is shown passed the test.
+
+        A state that fails is not shown, and the solve continues: the path would have to be solved again before the view
+        could change. A later state is written instead, or this one with `write` once the drag rests.
+        """
         assert self.edit is not None
         taken, result = self.edit.take_state(), self.result
         if taken is None:
@@ -499,9 +506,14 @@ class DragLoop:
         if self._task is not None:
             self._task.start()
         report = self.edit.write_taken(taken)
+        if report is None and self._rejected < MAX_REJECTED and self.edit.write_shown():
+            self._rejected += 1
+            self._shown_beside = True
+            return True
         if report is None:
             self._end_solve()
             return False
+        self._rejected = 0
         self.report, self.written, self.turned = report, result, taken.turned
         self._shown_beside = True
         return True

@@ -2,6 +2,7 @@
 """A replacement of `stiv.blender.BlenderEdit`: a point that stops at a wall at x = 1, and a log of the calls."""
 
 import time
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -32,7 +33,8 @@ class FakeEdit:
     `furthest`: how far one solve goes. `settling`: whether settling solves, instead of changing nothing. `delays`:
     from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write.
     `solving`: seconds that each solve reports. `budgets`, `hand_overs`: of all solves. `taking`: whether states can be
-    taken from the session; `flips`: whether Blender then shows them with intersections.
+    taken from the session; `flips`: whether Blender then shows them with intersections; `cutting`: states that it shows
+    with intersections. `passed`: the last state that was written and passed the test.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -50,6 +52,8 @@ class FakeEdit:
     solving: float = 0.0
     taking: bool = True
     flips: bool = False
+    cutting: Collection[float] = ()
+    passed: float | None = None
     requests: list[Any] = field(default_factory=list)
     interference: bool = True
     moving = frozenset({"Box"})
@@ -124,13 +128,24 @@ class FakeEdit:
         """Replaces writing a taken state, while the session may be busy."""
         self._called("write beside" if self.busy else "write")
         self.shown = taken.state
-        return None if self.flips else SimpleNamespace(passed=True, message="", result=None)
+        if self.flips or taken.state in self.cutting:
+            return None
+        self.passed = taken.state
+        return SimpleNamespace(passed=True, message="", result=None)
+
+    def write_shown(self) -> bool:
+        """Replaces the return to the last state that passed the test, while the session may be busy."""
+        if self.passed is None:
+            return False
+        self._called("write shown")
+        self.shown = self.passed
+        return True
 
     def write(self) -> Any:
         assert not self.busy
         self._called("write")
         time.sleep(self.writing)
-        self.shown = self.accepted
+        self.shown = self.passed = self.accepted
         return None
 
     def restore(self) -> None:

@@ -223,6 +223,34 @@ def test_a_taken_state_that_fails_the_test_is_written_again_once_the_solve_has_e
     assert edit.shown == edit.accepted == 0.2 and drag.at_rest
 
 
+def test_a_state_that_fails_the_test_is_not_shown_and_the_solve_continues() -> None:
+    edit = long_solves(cutting=(0.2,))
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    assert edit.calls == ["drag", "write beside", "drag", "write beside", "write shown"] and edit.busy
+    assert edit.shown == drag.written.path[-1] == 0.1 and drag.report.passed and not drag.at_rest
+    follow(drag, edit, 40)
+    assert edit.calls[5:] == ["drag", "write beside"] and edit.shown == drag.written.path[-1] == 0.3
+
+
+def test_the_last_state_is_written_completely_if_it_failed_beside_a_solve() -> None:
+    edit = long_solves(cutting=(0.2,))
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30)
+    edit.furthest = 0.0  # nothing more is accepted
+    for _ in range(4):
+        drag.tick()
+    assert edit.calls[-1] == "write" and drag.at_rest and edit.shown == edit.accepted
+
+
+def test_after_several_failures_the_path_is_solved_again() -> None:
+    edit = long_solves(cutting=(0.2, 0.3, 0.4))
+    drag = new_drag(edit)
+    follow(drag, edit, 10, 20, 30, 40, 50)
+    assert edit.calls.count("write shown") == drag_loop.MAX_REJECTED
+    assert edit.calls[-1] == "write" and edit.shown == edit.accepted
+
+
 @pytest.mark.parametrize("call", ["drag", "write beside"])
 def test_an_exception_beside_a_solve_restores_and_ends(call: str) -> None:
     edit = long_solves(failing={call: RuntimeError("broken")})

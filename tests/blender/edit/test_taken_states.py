@@ -71,6 +71,30 @@ def test_a_taken_state_that_intersects_is_refused_and_the_last_one_comes_back() 
     assert not edit.write().passed and cube.location.x == pytest.approx(0.3)
 
 
+def test_the_last_state_comes_back_while_the_session_solves_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is tested again; a scene that someone changed is refused."""
+    verdicts = iter([True, True, False, True])
+    monkeypatch.setattr(stiv.StepCheck, "is_end_free", lambda *_: next(verdicts, True))
+    cube = cube_above_floor()
+    select(cube)
+    edit = begin()
+    shown = []
+    for x in (0.5, 1.0):
+        edit.drag(shift(x=x))
+        taken = edit.take_state()
+        task = busy(edit, shift(x=1.5))
+        passed = edit.write_taken(taken) is not None
+        shown.append((passed, edit.write_shown(), round(cube.location.x, 6)))
+        end(task)
+    assert shown[1:] == [(False, True, 0.8)] and not list(verdicts)
+    bpy.data.objects["Floor"].location.z = 1.5
+    assert not edit.write_shown()
+    bpy.data.objects["Floor"].location.z = 0.0
+    assert edit.write().passed and cube.location.x == pytest.approx(1.8)
+    edit.restore()
+    assert not edit.write_shown() and cube.location.x == pytest.approx(0.3)
+
+
 def test_a_state_taken_before_the_edit_was_restored_is_refused() -> None:
     cube = cube_above_floor()
     select(cube)

@@ -36,17 +36,47 @@ def test_blender_splits_certain_quads_along_the_first_diagonal() -> None:
     quads.data.update()
     bpy.context.view_layer.update()
     after = read_one()
-    kept = np.array([QuadDiagonals(first.corners[:, k : k + 1]).are_kept(after.local) for k in range(800)])
+    kept = np.ones(800, bool)
+    kept[first.find_uncertain(after.local)] = False
     splits_first = (after.triangles.reshape(-1, 6) == first.corners.T[:, [0, 1, 2, 0, 2, 3]]).all(axis=1)
     assert splits_first[kept].all() and kept[:400].mean() > 0.7 and (~splits_first).sum() > 50
     assert (kept == splits_first).mean() > 0.95
 
 
-@pytest.mark.parametrize("face", [(0, 1, 2, 3, 4), (0, 3, 2, 1)])
-def test_larger_faces_and_second_diagonals_are_left_to_blender(face: tuple[int, ...]) -> None:
-    corners = [(-1, 0, 0), (0, -1, 2), (1, 0, 0), (0, 1, 2), (-1, 0.5, 0)]
-    add("Face", mesh("Face", corners, [face]))
+@pytest.mark.parametrize("size", [1e-7, 1.0, 1e7])
+def test_the_size_of_flat_quads_does_not_make_them_uncertain(size: float) -> None:
+    add_quads(size * np.tile(SQUARE, (3, 1, 1)))
+    quads = QuadDiagonals.of(read_one())
+    assert quads is not None and len(quads.find_uncertain(read_one().local)) == 0
+
+
+CORNERS = [(-1, 0, 0), (0, -1, 2), (1, 0, 0), (0, 1, 2), (-1, 0.5, 0)]
+
+
+def test_larger_faces_are_left_to_blender() -> None:
+    add("Face", mesh("Face", CORNERS, [(0, 1, 2, 3, 4)]))
     assert QuadDiagonals.of(read_one()) is None
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_the_other_triangles_are_those_that_blender_flips_to(first: int) -> None:
+    """From either diagonal, and also back."""
+    face = tuple(np.roll(range(4), first).tolist())
+    quad = add("Face", mesh("Face", CORNERS[:4], [face]))
+    shown = [read_one()]
+    for corner in (1, 3):
+        quad.data.vertices[corner].co.z = 0.0
+    quad.data.update()
+    bpy.context.view_layer.update()
+    shown.append(read_one())
+    bent, flat = (QuadDiagonals.of(each) for each in shown)
+    assert bent is not None and flat is not None
+    assert bent.second.all() and not flat.second.any()
+    only = np.array([0], np.int32)
+    assert np.array_equal(bent.other_triangles(only), shown[1].triangles)
+    assert np.array_equal(flat.other_triangles(only), shown[0].triangles)
+    assert [quads.find_uncertain(shown[0].local).tolist() for quads in (bent, flat)] == [[0], [0]]
+    assert flat.find_uncertain(shown[1].local).tolist() == []
 
 
 def test_an_edit_reads_no_triangles_as_long_as_all_quads_are_certain(monkeypatch: pytest.MonkeyPatch) -> None:

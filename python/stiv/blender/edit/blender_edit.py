@@ -350,9 +350,17 @@ class BlenderEdit:
     def write_taken(self, taken: TakenState) -> WriteReport | None:
         """Write a state that was taken while a job may use the session.
 
-        None if it fails the test: call `write` when the session is free. Raises SceneChangedError.
+        None if it fails the test: call `write` when the session is free, or `write_shown`. Raises SceneChangedError.
         """
         return WriteReport(True) if self._writer.write_taken(taken) else None
+
+    def write_shown(self) -> bool:
+        """Return to the state that was shown before `write_taken` failed, while a job may use the session.
+
+        Returns whether it passes the test again; otherwise call `write` when the session is free. Raises
+        SceneChangedError.
+        """
+        return self._writer.write_shown()
 
     def finish(self) -> None:
         """Leave the session to the next edit, which uses it if nothing else changes. End the use of this edit."""

@@ -69,6 +69,7 @@ class StateWriter:
         self._settings = settings
         self._verifier = self._new_verifier()
         self._verifier_beside: Verifier | None = None
+        self._shown: tuple[Trail, Floats] | None = None  # since the last state that passed, and its surface
 
     def write_taken(self, taken: TakenState) -> bool:
         """Write a state that was taken from the session, and test Blender's evaluation with trees of its own.
@@ -82,7 +83,19 @@ class StateWriter:
         if not self._beside().verify(bpy.context, taken.surface).passed:
             return False
         self._solver.trail = Trail(taken.controls, taken.goal)
+        self._shown = self._solver.trail, taken.surface
         return True
+
+    def write_shown(self) -> bool:
+        """Write the last state that passed again, while a job may use the session, and test it again.
+
+        Returns whether it remains. Otherwise `write_accepted` must follow. Raises SceneChangedError.
+        """
+        if self._shown is None or self._shown[0] is not self._solver.trail:
+            return False
+        trail, surface = self._shown
+        self.write(trail.written)
+        return self._beside().verify(bpy.context, surface).passed
 
     def write_accepted(self, goal: Floats) -> WriteReport:
         """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
@@ -102,6 +115,7 @@ class StateWriter:
         if not verification.passed:
             return self._fall_back(goal, verification, result)
         self._solver.trail = Trail(self._solver.session.controls, goal)
+        self._shown = self._solver.trail, self._solver.session.surface
         return WriteReport(True, result=result)
 
     def write_and_verify(self, controls: Floats) -> Verification:

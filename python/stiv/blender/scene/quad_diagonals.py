@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -19,13 +20,19 @@ CLEAR = 1e-3  # cosine of the angle between the halves above which rounding cann
 
 @dataclass(frozen=True)
 class QuadDiagonals:
-    """Corners of quads, (4, k), in the order of the face. Quads whose two triangulations are known are left out."""
+    """The quads of a mesh of which one triangulation is known.
+
+    Attributes:
+        corners: (4, k), in the order of the face. The first diagonal connects the first corner and the third.
+        second: (k,), whether the known triangulation has the second diagonal.
+    """
 
     corners: Indices
+    second: NDArray[np.bool_]
 
     @staticmethod
     def of(mesh: VisibleMesh) -> QuadDiagonals | None:
-        """The quads of a mesh; None if it has larger faces, or quads that are split along the second diagonal."""
+        """The quads of a mesh; None if it has larger faces. Quads whose two triangulations are known are left out."""
         first_of_second = np.flatnonzero(np.diff(mesh.faces) < 0)  # where the second triangulations begin
         count = int(first_of_second[0]) + 1 if len(first_of_second) else len(mesh.faces)
         faces, triangles = mesh.faces[:count], mesh.triangles[:count]
@@ -35,17 +42,31 @@ class QuadDiagonals:
         rows = np.flatnonzero(faces[:-1] == faces[1:])
         rows = rows[~np.isin(faces[rows], mesh.faces[count:])]
         a, b = triangles[rows].T, triangles[rows + 1].T
-        if not (np.array_equal(a[0], b[0]) and np.array_equal(a[2], b[1])):
+        first, second = (a[0] == b[0]) & (a[2] == b[1]), (a[1] == b[0]) & (a[2] == b[2])
+        if not (first ^ second).all():
             return None
-        return QuadDiagonals(np.ascontiguousarray([a[0], a[1], a[2], b[2]]))
+        return QuadDiagonals(np.ascontiguousarray([a[0], a[1], np.where(second, b[1], a[2]), b[2]]), second)
 
-    def are_kept(self, local: Singles) -> bool:
-        """Is every quad split along its first diagonal at these positions, (n, 3)?"""
+    def find_uncertain(self, local: Singles) -> Indices:
+        """The quads, (u,), that Blender may split along the diagonal that is not known, at these positions, (n, 3)."""
+        return np.flatnonzero(self._folds(local, CLEAR) | self.second).astype(np.int32)
+
+    def find_bent(self, local: Singles, cosine: float) -> Indices:
+        """The quads whose halves along the first diagonal have a smaller cosine of the angle between their normals."""
+        return np.flatnonzero(self._folds(local, cosine)).astype(np.int32)
+
+    def other_triangles(self, quads: Indices) -> Indices:
+        """The triangles, (2 u, 3), of quads split along the diagonal that is not known."""
+        a, b, c, d = self.corners[:, quads]
+        along_first = np.stack([a, b, c, a, c, d], axis=1)
+        along_second = np.stack([a, b, d, b, c, d], axis=1)
+        return np.where(self.second[quads][:, None], along_first, along_second).reshape(-1, 3)
+
+    def _folds(self, local: Singles, cosine: float) -> NDArray[np.bool_]:
         columns = np.ascontiguousarray(local.T)
         one, two = self._normals(columns)
-        dots = _dot(one, two)
-        lengths = _dot(one, one) * _dot(two, two)
-        return bool(((dots > 0) & (dots * dots > CLEAR**2 * lengths)).all())
+        lengths = np.sqrt(_dot(one, one)) * np.sqrt(_dot(two, two))  # their product alone may exceed single precision
+        return np.array(~(_dot(one, two) > np.float32(cosine) * lengths), np.bool_)
 
     def _normals(self, columns: Singles) -> tuple[list[Singles], list[Singles]]:
         """Normals of both halves, as columns."""

@@ -17,15 +17,16 @@ from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
-from stiv.blender.scene.quad_diagonals import QuadDiagonals
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import (
     CurrentTriangulation,
     FaceTriangles,
     find_flips,
+    is_deformable,
     with_current_triangulation,
 )
 from stiv.blender.settings import Exclusions
+from stiv.blender.verify.both_diagonals import BothDiagonals
 
 SPLITTING = ("TRIANGULATE", "NODES")  # modifiers that may split quads along another diagonal as they bend
 StepTest = Callable[[Floats, Floats], bool]
@@ -59,7 +60,7 @@ class Verifier:
         self._threads = threads
         self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
-        self._diagonals: dict[int, QuadDiagonals | None] = {}
+        self._diagonals = BothDiagonals(assembly, threads)
 
     def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
         """Is this the verifier of an assembly and its exclusions? Both may change during an edit."""
@@ -102,16 +103,29 @@ class Verifier:
                 return self._failure(pairs)
         elif not self._is_step_free(accepted, shown):
             return self._failure(find_face_pairs(self.assembly, shown, self._threads))
-        flips = find_flips(context, assembly, opened, lambda number: self._keeps_diagonals(number, placed[number]))
+        flips = self._find_flips(context, assembly, placed, opened, shown)
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
-    def _keeps_diagonals(self, number: int, placed: EvaluatedPositions | None) -> bool:
-        if _may_split(self.assembly.meshes[number].owner.find()):
-            return False
-        if number not in self._diagonals:
-            self._diagonals[number] = QuadDiagonals.of(self.assembly.meshes[number])
-        quads = self._diagonals[number]
-        return quads is not None and placed is not None and quads.are_kept(placed.local)
+    def _find_flips(
+        self,
+        context: bpy.types.Context,
+        assembly: Assembly,
+        placed: Placed,
+        opened: OpenEvaluations,
+        shown: Floats,
+    ) -> tuple[CurrentTriangulation, ...]:
+        """Find the meshes with present triangles that are not tested yet. Most triangulations need not be read."""
+        local = {
+            number: each.local
+            for number, (each, mesh) in enumerate(zip(placed, self.assembly.meshes, strict=True))
+            if each is not None and is_deformable(self.assembly, number) and not _may_split(mesh.owner.find())
+        }
+        uncertain = self._diagonals.find_uncertain(local)
+        if self._diagonals.are_free(uncertain, local, shown):
+            flips = find_flips(context, assembly, opened, uncertain.__contains__)
+            if not flips:
+                return ()
+        return find_flips(context, assembly, opened, lambda number: not len(uncertain.get(number, [number])))
 
     def _not_excluded(self, accepted: Floats, shown: Floats) -> tuple[FacePair, ...]:
         """Intersecting pairs of a surface that are not excluded, or of excluded objects that the edit has parted.
