@@ -42,8 +42,8 @@ def select(ob: Any) -> None:
 
 @pytest.fixture
 def row() -> Any:
-    """The box to be moved at 0, a neighbour at 2 that ends at y = -1, and a wall at 12."""
-    box("Neighbour", 2, y=-1.5)
+    """The box to be moved at 0, a neighbour at 1.7 that ends at y = -1, and a wall at 12."""
+    box("Neighbour", 1.7, y=-1.5)
     box("Wall", 12, size=4)
     mover = box("Box", 0)
     select(mover)

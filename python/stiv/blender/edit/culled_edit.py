@@ -21,7 +21,7 @@ from stiv.blender.scene.culling import CullingBox, find_culling_box
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
-MAX_WIDENINGS = 4  # then all obstacles are loaded, which bounds the number of restarts
+MAX_WIDENINGS = 8  # then all obstacles are loaded, which bounds the number of restarts
 
 
 def begin_culled_edit(context: bpy.types.Context, settings: EditSettings, kind: str) -> CulledEdit | BlenderEdit:
@@ -55,6 +55,7 @@ class CulledEdit:
         self._culling: CullingBox | None = culling
         self._edit = edit
         self._written = self._edit.controls
+        self._start = _corners(self._edit.moving_points(self._written))
         self._motion: Motion | ArrayLike | None = None
         self._widened = 0
 
@@ -125,11 +126,13 @@ class CulledEdit:
         return self._culling is None or all(self._culling.contains(self._edit.moving_points(state)) for state in states)
 
     def _widen(self, states: Iterable[Floats]) -> Steps[None]:
-        """Restart with a box around the present one and these states; after several times, with all obstacles."""
+        """Restart with a box around the start, what is shown, and these states; after several times, without a box.
+
+        The present box is left out of it: boxes around boxes soon hold most of a scene.
+        """
         if self._culling is None:
             return
-        corners = np.stack([self._culling.low, self._culling.high])
-        beyond = np.concatenate([corners, *(self._edit.moving_points(state) for state in states)])
+        beyond = np.concatenate([self._start, *(_corners(self._edit.moving_points(state)) for state in states)])
         self._widened += 1
         participants = find_participants(bpy.context, self._settings)
         few = self._widened <= MAX_WIDENINGS
@@ -151,6 +154,11 @@ class CulledEdit:
         if self._edit.resume_from(shown, self._motion):
             self._edit.write()
         self._written = self._edit.controls
+
+
+def _corners(points: Floats) -> Floats:
+    """The lowest and the highest corner of the box around points, (2, 3)."""
+    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def names_of(participants: Sequence[Participant]) -> set[str]:

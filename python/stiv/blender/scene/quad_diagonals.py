@@ -8,12 +8,15 @@ triangulation takes several times longer than this test.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles
-from stiv.blender.scene.evaluated_scene import VisibleMesh
+
+if TYPE_CHECKING:  # it reads cropped meshes, which uses this module
+    from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 CLEAR = 1e-3  # cosine of the angle between the halves above which rounding cannot decide
 
