@@ -126,7 +126,7 @@ class CulledEdit:
         return self._culling is None or all(self._culling.contains(self._edit.moving_points(state)) for state in states)
 
     def _widen(self, states: Iterable[Floats]) -> Steps[None]:
-        """Restart with a box around the start, what is shown, and these states; after several times, without a box.
+        """Restart with a box around the start, the displayed state and these states; after several times, without one.
 
         The present box is left out of it: boxes around boxes soon hold most of a scene.
         """
