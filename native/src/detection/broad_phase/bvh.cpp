@@ -15,7 +15,7 @@ namespace {
 /// Tasks, starting with the pair of roots, level by level.
 class TaskList {
  public:
-  TaskList(const Bvh& a, const Bvh& b, const GroupTable& groups) : a_(a), b_(b), groups_(groups) {}
+  TaskList(const Bvh& a, const Bvh& b, const GroupRelations& groups) : a_(a), b_(b), groups_(groups) {}
 
   std::vector<Bvh::Task> make(std::size_t about) {
     std::vector<Bvh::Task> tasks;
@@ -35,8 +35,13 @@ class TaskList {
   void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
     const Bvh::Level &a = a_.levels()[task.level], &b = b_.levels()[task.other_level];
     const Index group = a.groups[task.node], other = b.groups[task.other_node];
-    if (group != Bvh::mixed && other != Bvh::mixed && !groups_.meet(group, other)) return;
-    if (may_meet(a.boxes[task.node], b.boxes[task.other_node])) tasks.push_back(task);
+    if (group != Bvh::mixed && other != Bvh::mixed && !groups_.table.meet(group, other)) return;
+    if (may_meet_in_frames(a.boxes[task.node], group, b.boxes[task.other_node], other)) tasks.push_back(task);
+  }
+
+  bool may_meet_in_frames(const PackedBox& box, Index group, const PackedBox& other_box, Index other) const {
+    if (groups_.frames.are_alike()) return may_meet(box, other_box);
+    return may_meet(grown(box, groups_.frames.growth(group, other)), other_box);
   }
 
   /// Replaces both subtrees, or the higher one, with their children. False if they are blocks.
@@ -51,8 +56,10 @@ class TaskList {
     const auto [begin, end] = children(a_, task.level, task.node, level);
     const auto [other_begin, other_end] = children(b_, task.other_level, task.other_node, other_level);
     const PackedBox& other_box = b_.levels()[task.other_level].boxes[task.other_node];
+    const Index group = a_.levels()[task.level].groups[task.node];
+    const Index other_group = b_.levels()[task.other_level].groups[task.other_node];
     for (Index node = begin; node < end; ++node) {
-      if (!may_meet(a_.levels()[level].boxes[node], other_box)) continue;
+      if (!may_meet_in_frames(a_.levels()[level].boxes[node], group, other_box, other_group)) continue;
       for (Index other = same ? node : other_begin; other < other_end; ++other)
         add(tasks, {level, node, other_level, other});
     }
@@ -66,7 +73,7 @@ class TaskList {
   }
 
   const Bvh &a_, &b_;
-  const GroupTable& groups_;
+  const GroupRelations& groups_;
 };
 
 }  // namespace
@@ -89,7 +96,8 @@ Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& 
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
   reserve_levels(groups);
-  set_corners(corners, execution);
+  const Index last_group = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
+  set_corners(corners, std::vector<unsigned char>(static_cast<std::size_t>(last_group) + 1, 1), execution);
 }
 
 Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
@@ -113,17 +121,20 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
     }
 }
 
-void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
-  constexpr Index large_chunk = 8192;
+void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed,
+                      const Execution& execution) {
   corner_size_ = corners.size;
   const std::size_t size = corners.size;
   corners_.resize(order_.size() * size);
-  execution.for_chunks(static_cast<Index>(order_.size()), large_chunk, [&](Index begin, Index end, Index) {
-    for (Index place = begin; place < end; ++place) {
-      const Index primitive = order_[place];
-      for (std::size_t k = 0; k < size; ++k)
-        corners_[(place / width * size + k) * width + place % width] =
-            primitive >= 0 ? corners.rows[primitive * size + k] : -1;
+  execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
+    for (Index block = begin; block < end; ++block) {
+      if (changed[levels_[0].groups[block]] == 0) continue;
+      for (Index place = block * width; place < (block + 1) * width; ++place) {
+        const Index primitive = order_[place];
+        for (std::size_t k = 0; k < size; ++k)
+          corners_[(block * size + k) * width + place % width] =
+              primitive >= 0 ? corners.rows[primitive * size + k] : -1;
+      }
     }
   });
 }
@@ -170,6 +181,21 @@ void Bvh::find_touched(std::span<const Index> primitives) {
       touched_.push_back(static_cast<Index>(word * bits) + std::countr_zero(left));
 }
 
+void Bvh::find_touched(const std::vector<unsigned char>& changed_groups) {
+  touched_.clear();
+  for (std::size_t block = 0; block < order_.size() / width; ++block)
+    if (changed_groups[levels_[0].groups[block]] != 0) touched_.push_back(static_cast<Index>(block));
+}
+
+/// On several threads, all nodes are summarized sooner than many are one after the other.
+void Bvh::summarise_touched(const Execution& execution) {
+  constexpr std::size_t many = 1 << 14;
+  if (touched_.size() < std::max(many, order_.size() / width / 2))
+    summarise_touched();
+  else
+    summarise_all(execution);
+}
+
 void Bvh::summarise_touched() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     parents_.clear();
@@ -187,13 +213,22 @@ void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution&
   summarise_all(execution);
 }
 
+void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+                               const Execution& execution) {
+  find_touched(changed);
+  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    refit_blocks(touched_.data(), begin, end, vertices.data());
+  });
+  summarise_touched(execution);
+}
+
 void Bvh::refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices) {
   find_touched(primitives);
   refit_blocks(touched_.data(), 0, static_cast<Index>(touched_.size()), vertices.data());
   summarise_touched();
 }
 
-std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupTable& groups, std::size_t about) const {
+std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupRelations& groups, std::size_t about) const {
   return TaskList(*this, other, groups).make(about);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "detection/broad_phase/bounds.hpp"
+#include "detection/broad_phase/group_frames.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/execution.hpp"
 
@@ -27,6 +28,12 @@ class GroupTable {
  private:
   Index groups_ = 0;
   std::vector<unsigned char> meets_;  // (groups, groups)
+};
+
+/// What a traversal knows about groups of primitives.
+struct GroupRelations {
+  GroupTable table{};
+  GroupFrames frames{};
 };
 
 /// Pairs that a traversal found, one array for each side. Its memory is reused.
@@ -74,16 +81,22 @@ class Bvh {
   template <class BoxOf>
   void refit(const BoxOf& box_of, const Execution& execution);
 
+  /// The same for the primitives of groups that are marked in `changed`.
+  template <class BoxOf>
+  void refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution);
+
   /// The same for some primitives, each listed at least once. The cost does not depend on the others.
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
+  void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+                            const Execution& execution);
   void refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices);
 
-  /// Other corners for the same primitives.
-  void set_corners(const CornerRows& corners, const Execution& execution);
+  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
+  void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
 
   /// Two subtrees to compare: a unit of work.
   struct Task {
@@ -93,12 +106,12 @@ class Bvh {
 
   /// About this many tasks, always the same ones for the same trees. Together they cover all pairs (i of this tree, j
   /// of `other`) with overlapping boxes of which one is active. Pairs of groups that are not tested are skipped; if
-  /// both trees know their corners, so are pairs that share one. Within one tree, each unordered pair is reported once,
-  /// with i != j.
-  std::vector<Task> tasks(const Bvh& other, const GroupTable& groups, std::size_t about = 256) const;
+  /// both trees know their corners, so are pairs that share one. Boxes are given in the frames of their groups. Within
+  /// one tree, each unordered pair is reported once, with i != j.
+  std::vector<Task> tasks(const Bvh& other, const GroupRelations& groups, std::size_t about = 256) const;
 
   /// Appends the pairs of one task, in an order that depends on the trees alone.
-  void overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const;
+  void overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const;
 
   /// All pairs at once; the same for any number of threads.
   static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution);
@@ -118,7 +131,7 @@ class Bvh {
   const std::vector<Index>& corners() const { return corners_; }  ///< (blocks, corner_size, width)
   Index corner_size() const { return corner_size_; }
 
-  static constexpr Index mixed = -1;
+  static constexpr Index mixed = GroupFrames::mixed;
 
  private:
   void set_child(Level& level, std::size_t child, const PackedBox& box);
@@ -131,7 +144,9 @@ class Bvh {
   /// Blocks number `begin` to `end` of a list, or of all (nullptr).
   void refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices);
   void find_touched(std::span<const Index> primitives);
+  void find_touched(const std::vector<unsigned char>& changed_groups);
   void summarise_touched();
+  void summarise_touched(const Execution& execution);
   void summarise_all(const Execution& execution);
 
   static constexpr Index chunk_size = 512;
@@ -169,6 +184,15 @@ void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
     for (Index block = begin; block < end; ++block) refit_block(static_cast<std::size_t>(block), box_of);
   });
   summarise_all(execution);
+}
+
+template <class BoxOf>
+void Bvh::refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution) {
+  find_touched(changed);
+  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) refit_block(static_cast<std::size_t>(touched_[k]), box_of);
+  });
+  summarise_touched(execution);
 }
 
 template <class BoxOf>
