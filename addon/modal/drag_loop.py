@@ -493,7 +493,7 @@ class DragLoop:
         return continues and is_new and solved + self._written_in > FITTING
 
     def _write_beside_solve(self) -> bool:
-        """Write the accepted state while the next solve runs; returns whether what is shown passed the test.
+        """Write the accepted state while the next solve runs; returns whether the state in the view passed the test.
 
         A state that fails is not shown, and the solve continues: the path would have to be solved again before the view
         could change. A later state is written instead, or this one with `write` once the drag rests.

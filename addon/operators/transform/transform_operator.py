@@ -242,7 +242,7 @@ def _note_unguarded(
 ) -> None:
     """Show in the panel which objects the edit does not guard, and which intersections it leaves as they are.
 
-    without_surface: found before the start, which may copy a lattice: Blender then evaluates the scene anew.
+    without_surface: found before the start, which may copy a lattice: Blender then evaluates the scene again.
     """
     check = context.window_manager.stiv_check
     unguarded = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried, without_surface)

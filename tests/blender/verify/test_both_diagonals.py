@@ -40,7 +40,7 @@ def read() -> Assembly:
 
 
 def verifier_of(assembly: Assembly) -> Verifier:
-    """It tests the triangles of the assembly anew each time."""
+    """It tests the triangles of the assembly each time."""
     return Verifier(assembly, lambda _, shown: len(stiv.find_intersections(shown, assembly.surface)) == 0)
 
 
@@ -81,8 +81,8 @@ def test_a_flip_into_a_post_is_found_each_time(post: int) -> None:
     assert {True, False} == set(found)
 
 
-def test_a_post_that_comes_near_after_the_flip_is_found() -> None:
-    """Nothing of the former test is kept but the triangles: positions are compared anew."""
+def test_a_post_that_approaches_after_the_flip_is_found() -> None:
+    """Only the triangles of the former test remain; it is repeated at the new positions."""
     sheet = add_sheet()
     post = add_cube("Post", (0, 4, 3.3), 1, scale=(0.02, 0.02, 3))
     verifier = verifier_of(read())

@@ -22,7 +22,7 @@ def make_surface(
     bodies: Sequence[stiv.Body] | None,
     ignored: Sequence[tuple[int, int]],
 ) -> stiv.Surface:
-    """Make a surface, or return the latest one that still exists if it would be equal. It finds its edges anew."""
+    """Make a surface, or return the latest one that still exists if it would be equal, which saves finding edges."""
     global _latest
     latest = None if _latest is None else _latest()
     if latest is not None:
