@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,7 +157,9 @@ def _mixed(words: Codes) -> Codes:
 def _rounded(positions: NDArray[np.floating], leaders: Indices, triangles: Indices, rounding: float) -> Indices:
     """Leaders, (n,), with one leader for open vertices that are within rounding of each other."""
     largest = np.abs(positions).max()
-    distance = rounding * float(np.ptp(positions, axis=0).max()) + float(np.spacing(largest))
+    columns = np.ascontiguousarray(positions.T)  # reductions of rows of three are slow
+    extent = float((columns.max(axis=1) - columns.min(axis=1)).max())
+    distance = rounding * extent + float(np.spacing(largest))
     vertices = _open_vertices(triangles, leaders)
     places = positions[vertices].astype(np.float64)
     found = np.arange(len(vertices))
@@ -178,7 +181,7 @@ def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
 
     In a closed fan, each neighbor follows one triangle and precedes another, so the sums of their codes cancel.
     """
-    codes = np.random.default_rng(0).integers(1, 1 << 40, len(leaders)).astype(np.float64)  # sums are exact
+    codes = _random_codes(len(leaders))
     sums = np.zeros(len(leaders))
     for corner in range(3):
         after, before = triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]
@@ -186,6 +189,13 @@ def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
     is_open = np.zeros(len(leaders), np.bool_)
     is_open[leaders[np.flatnonzero(sums)]] = True
     return np.flatnonzero(is_open).astype(np.int32)
+
+
+@lru_cache(maxsize=4)
+def _random_codes(count: int) -> Floats:
+    codes = np.random.default_rng(0).integers(1, 1 << 40, count).astype(np.float64)  # sums are exact
+    codes.setflags(write=False)
+    return codes
 
 
 def _near(places: Floats, distance: float) -> Iterator[tuple[Indices, Indices]]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import bpy
@@ -219,8 +219,9 @@ def report_start(operator: bpy.types.Operator, context: bpy.types.Context, edit:
 def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.Steps[stiv_blender.BlenderEdit]:
     """Steps that begin an edit of the current scene."""
     settings = edit_settings(context.scene, request)
+    without_surface = stiv_blender.find_without_surface(context)
     edit = yield from stiv_blender.BlenderEdit.begin_steps(context, settings, kind=request.kind)
-    _note_unguarded(context, edit)
+    _note_unguarded(context, edit, without_surface)
     return edit
 
 
@@ -230,15 +231,21 @@ def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Ste
     It leaves out far obstacles of a large scene, and limits the time of each solve.
     """
     settings = edit_settings(context.scene, request, DRAG_BUDGET)
+    without_surface = stiv_blender.find_without_surface(context)
     edit = yield from stiv_blender.begin_culled_steps(context, settings, kind=request.kind)
-    _note_unguarded(context, edit)
+    _note_unguarded(context, edit, without_surface)
     return edit
 
 
-def _note_unguarded(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
-    """Show in the panel which objects the edit does not guard, and which intersections it leaves as they are."""
+def _note_unguarded(
+    context: bpy.types.Context, edit: stiv_blender.Edit, without_surface: Collection[tuple[str, str]]
+) -> None:
+    """Show in the panel which objects the edit does not guard, and which intersections it leaves as they are.
+
+    without_surface: found before the start, which may copy a lattice: Blender then evaluates the scene again.
+    """
     check = context.window_manager.stiv_check
-    left_out = (stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried), passing_text(context.scene))
-    check.left_out = "\n".join(filter(None, left_out))
+    unguarded = stiv_blender.unguarded_text(context, edit.guard.evaluations, edit.carried, without_surface)
+    check.left_out = "\n".join(filter(None, (unguarded, passing_text(context.scene))))
     if edit.start_notes:  # `summary` has more warnings, but reads every triangle, which is too slow for a drag
         check.summary = "; ".join(map(translate_error, edit.start_notes))

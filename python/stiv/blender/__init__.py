@@ -52,7 +52,7 @@ from stiv.blender.scripts.enabling import enable
 from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
 from stiv.blender.verify.scene_check import SceneCheck, check_scene, find_exclusions, nearest_pair, read_surface
-from stiv.blender.verify.untested import unguarded_text
+from stiv.blender.verify.untested import find_without_surface, unguarded_text
 from stiv.task import Steps, Task
 from stiv.task import run as run_steps
 
@@ -130,6 +130,7 @@ __all__ = [
     "faces_of",
     "find_exclusions",
     "find_intersections",
+    "find_without_surface",
     "fit_into",
     "follow",
     "guard_result",

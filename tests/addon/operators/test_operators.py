@@ -102,7 +102,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     plain |= {"Motion": Motion, "FreeDirections": FreeDirections, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
-    plain |= {"unguarded_text": lambda context, evaluations, carried: ""}
+    plain |= {"unguarded_text": lambda *_: "", "find_without_surface": lambda context: ()}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
     stand_in.is_cut_by_topology = lambda result: False
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)

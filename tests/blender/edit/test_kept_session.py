@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from building import add_cube, add_modifier, cube_above_floor, edit_mode, shift
 
-from stiv.blender import BlenderEdit, EditSettings
+from stiv.blender import BlenderEdit, EditSettings, check_scene
 from stiv.blender.edit import kept_session
 from stiv.blender.edit.culled_edit import begin_culled_steps
 from stiv.task import run
@@ -59,6 +59,22 @@ def test_consecutive_drags_share_a_session() -> None:
         assert edit.write().passed
         edit.finish()
     assert sessions[0] is sessions[1] is sessions[2]
+
+
+def test_a_modifier_changed_by_hand_between_two_edits_is_seen() -> None:
+    """It changes neither vertices nor faces of the obstacle, only where it is shown."""
+    cube = cage()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    displace = add_modifier(bpy.data.objects["Floor"], "DISPLACE", strength=0.0)
+    edit_mode(cube)
+    first = pressed(3.0)
+    session, low = first._solver.session, first.moving_points(first.controls)[:, 2].min()
+    first.finish()
+    displace.strength = -0.5
+    bpy.context.view_layer.update()
+    second = pressed(3.0)
+    assert second._solver.session is not session
+    assert second.moving_points(second.controls)[:, 2].min() < low - 0.2 and check_scene(bpy.context).pairs == ()
 
 
 @pytest.mark.parametrize(

@@ -42,13 +42,12 @@ class BlenderEdit:
     Attributes:
         dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
         guard: the evaluations that stay free of intersections.
-        start_digest: equal for edits that start with the same controls, moving surfaces and placements.
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
     def __init__(self, snapshot: EditSnapshot) -> None:
         settings = snapshot.settings
-        self.dropped_exclusions, self.start_digest = snapshot.dropped_exclusions, snapshot.digest
+        self.dropped_exclusions, self._snapshot = snapshot.dropped_exclusions, snapshot
         self.guard, self.carried = snapshot.guard, snapshot.carried
         self._hidden, self._made, self._settings = snapshot.hidden, snapshot.control_sets, settings
         self._limits: list[tuple[object, ...]] = [()] * len(self._made)
@@ -108,6 +107,11 @@ class BlenderEdit:
     @cached_property
     def _writer(self) -> StateWriter:
         return StateWriter(self._made, self._solver, self._settings)
+
+    @property
+    def start_digest(self) -> str:
+        """Equal for edits that start with the same controls, moving surfaces and placements."""
+        return self._snapshot.digest
 
     @property
     def summary(self) -> Summary:

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.rotations import nearest_rotation, rotation_matrix, rotation_vector
-from stiv.blender.scene.arrays import Floats, transform_points
+from stiv.blender.scene.arrays import Floats, diagonal_of, extents, transform_points
 
 Path = Callable[[float], Floats]  # from a fraction in [0, 1] to a transform, (4, 4); 0 is the identity
 LARGEST_TURN = 0.1  # radians for each increment
@@ -43,9 +43,9 @@ def count_increments(path: Path, points: Floats, longest: float, most: int) -> i
         return 1
     matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
     turn = sum(_turn(before[:3, :3], after[:3, :3]) for before, after in pairwise(matrices))
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = extents(points)
     corners = np.array([np.where(choice, high, low) for choice in np.ndindex(2, 2, 2)])
-    length = _length(matrices, corners)  # no point moves further than a corner of its box
+    length = _length_of_few(np.array(matrices), corners)  # no point moves further than a corner of its box
     if length > longest:
         length = _length(matrices, points)
     return int(np.clip(np.ceil(max(length / longest, turn / LARGEST_TURN)), 1, most))
@@ -54,6 +54,12 @@ def count_increments(path: Path, points: Floats, longest: float, most: int) -> i
 def _length(matrices: Sequence[Floats], points: Floats) -> float:
     states = [transform_points(matrix, points) for matrix in matrices]
     return sum(float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(states))
+
+
+def _length_of_few(matrices: Floats, points: Floats) -> float:
+    """As `_length`, with all states in one array."""
+    states = np.einsum("ij,nkj->nik", points, matrices[:, :3, :3]) + matrices[:, None, :3, 3]
+    return sum(np.linalg.norm(np.diff(states, axis=0), axis=2).max(axis=1).tolist())
 
 
 def _turn(before: Floats, after: Floats) -> float:
@@ -73,8 +79,7 @@ def split_motion(target: Motion, path: Path | None, points: Floats) -> Iterator[
     path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
     """
     to_matrix: Path = path or (lambda fraction: interpolate_transform(target.matrix, fraction))
-    diagonal = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
-    count = count_increments(to_matrix, points, LONGEST * diagonal, MOST)
+    count = count_increments(to_matrix, points, LONGEST * diagonal_of(points), MOST)
     for step in range(1, count):
         fraction = step / count
         rotation = None if target.rotation is None else fraction * target.rotation

@@ -11,8 +11,9 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.scene.arrays import Floats, digest
+from stiv.blender.scene.arrays import Floats, diagonal_of, digest
 from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.shared_surface import are_equal
 
 LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separation is a part of its diagonal
 
@@ -21,11 +22,13 @@ LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separat
 class SessionInputs:
     """All that a session is made from, except its controls.
 
-    fingerprint: of the connectivity, the options and the positions of all vertices that no control moves.
+    surface: with its connectivity and its bodies.
+    fingerprint: of the options and the positions of all vertices that no control moves.
     deformations: of the control sets; equal ones are the same objects, because they are cached by their inputs.
     diagonal: of the moving vertices.
     """
 
+    surface: stiv.Surface
     fingerprint: bytes
     deformations: tuple[stiv.Deformation, ...]
     diagonal: float
@@ -34,22 +37,20 @@ class SessionInputs:
     @classmethod
     def of(cls, assembly: Assembly, control_sets: Sequence[ControlSet], options: stiv.EditOptions) -> SessionInputs:
         """The inputs of a session of these control sets."""
-        surface, positions = assembly.surface, assembly.positions
+        positions = assembly.positions
         moving = np.zeros(len(positions), bool)
         moving[assembly.vertices_of([index for each in control_sets for index in each.surfaces])] = True
-        diagonal = float(np.linalg.norm(np.ptp(positions[moving], axis=0))) if moving.any() else 0.0
-        bodies = [(body.name, body.mobility) for body in surface.bodies]
-        connectivity = (surface.triangles, surface.loose_edges, surface.vertex_body, surface.ignored, bodies)
+        diagonal = diagonal_of(positions[moving])
         chosen = astuple(replace(options, weights=None, weight_axes=None))
-        fingerprint = digest(*connectivity, surface.flip_faces, moving, positions[~moving], *_flat(chosen))
-        return cls(fingerprint, tuple(each.deformation for each in control_sets), diagonal, options)
+        fingerprint = digest(moving, positions[~moving], *_flat(chosen))
+        return cls(assembly.surface, fingerprint, tuple(each.deformation for each in control_sets), diagonal, options)
 
     def agree_with(self, other: SessionInputs) -> bool:
         """Would both make the same session, up to the weights of the response?"""
         growth = max(self.diagonal, other.diagonal) <= LARGEST_GROWTH * min(self.diagonal, other.diagonal)
         same = len(self.deformations) == len(other.deformations)
         same = same and all(a is b for a, b in zip(self.deformations, other.deformations, strict=True))
-        return growth and same and self.fingerprint == other.fingerprint
+        return growth and same and self.fingerprint == other.fingerprint and are_equal(self.surface, other.surface)
 
 
 _kept: tuple[SessionInputs, stiv.EditSession] | None = None

@@ -49,13 +49,16 @@ def session_options(
 ) -> stiv.EditOptions:
     """Options of a session of all control sets that starts at these stacked controls, (m, 3)."""
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
-    q = deformation.surface(np.asarray(controls, np.float64))
+    exclude = None
+    if settings.excluded.pairs:
+        q = deformation.surface(np.asarray(controls, np.float64))
+        exclude = find_excluded_triangles(settings.excluded, assembly, q, settings.threads)
     return stiv.EditOptions(
         **settings.shared(),
         pair_separations=_skin_separations(assembly, control_sets, settings) | body_separations(assembly, settings),
         weights=weights_of_all([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
-        exclude=find_excluded_triangles(settings.excluded, assembly, q, settings.threads),
+        exclude=exclude,
         overlapping=excluded_bodies(settings.excluded, assembly),
         single_precision=bool(frames),
         storage=frames,

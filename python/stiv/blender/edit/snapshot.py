@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import bpy
 
@@ -12,7 +13,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.mirrored_controls import mirror_controls
 from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
-from stiv.blender.scene.arrays import Indices, as_matrix, digest
+from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.culling import CullingBox
 from stiv.blender.scene.dependencies import find_dependents
@@ -34,7 +35,7 @@ class EditSnapshot:
         guard: the evaluations that stay free of intersections.
         hidden: number of hidden objects, which do not participate.
         dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
-        digest: equal for edits that start with the same controls, moving surfaces and placements.
+        placements: of all objects of the view layer, (4, 4) each.
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
@@ -44,8 +45,14 @@ class EditSnapshot:
     guard: Guard
     hidden: int
     dropped_exclusions: str
-    digest: str
+    placements: tuple[Floats, ...]
     carried: frozenset[str]
+
+    @cached_property
+    def digest(self) -> str:
+        """Equal for edits that start with the same controls, moving surfaces and placements."""
+        points = self.assembly.positions[find_moving_vertices(self.assembly, self.control_sets)]
+        return digest(*(each.controls for each in self.control_sets), points, *self.placements).hex()
 
 
 def take_snapshot(
@@ -84,11 +91,9 @@ def take_snapshot(
     meshes = [*divided, *still]
     assembly = assemble_with_controls(meshes, control_sets, [group.members for group in groups], settings)
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
-    placements = [as_matrix(ob.matrix_world) for ob in context.view_layer.objects]
-    points = assembly.positions[find_moving_vertices(assembly, control_sets)]
-    start_digest = digest(*(each.controls for each in control_sets), points, *placements).hex()
+    placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)
-    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, start_digest, carried)
+    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried)
 
 
 def _is_animated(participant: Participant) -> bool:

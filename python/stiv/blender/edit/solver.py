@@ -51,7 +51,7 @@ class EditSolver:
         """Steps that open the session, if collisions are on. Raise InputError, StartIntersectsError."""
         if self._settings.interference:
             self._at_start = guard_bent_quads(self.assembly, self._settings.threads)
-            yield from self._open_session(self._at_start, self.trail.written)
+            yield from self._open_session(self._at_start, self.trail.written, self.deformation)
 
     @property
     def has_session(self) -> bool:
@@ -153,9 +153,12 @@ class EditSolver:
             run(self.solve(call.goal))
         return True
 
-    def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
-        """Open a session. At its first start, objects may intersect themselves and those that move with them."""
-        deformation = deformation_of(assembly, self.control_sets)
+    def _open_session(self, assembly: Assembly, controls: Floats, known: stiv.Deformation | None = None) -> Steps[None]:
+        """Open a session. At its first start, objects may intersect themselves and those that move with them.
+
+        known: the deformation of the control sets and of the assembly's positions, if it exists.
+        """
+        deformation = known or deformation_of(assembly, self.control_sets)
         try:
             session = yield from self._make_session(assembly, deformation, controls)
         except stiv.StartIntersectsError as error:

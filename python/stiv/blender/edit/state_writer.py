@@ -104,19 +104,23 @@ class StateWriter:
         free from then on, and the path since the last write is solved again. If the test still fails, the last state on
         the path that passes is written. Raises SceneChangedError if an object was removed or changed.
         """
-        verification = self.write_and_verify(self._solver.session.controls)
+        verification = self._write_session()
         solved_again = False
         for _ in range(MAX_FLIP_RETRIES):
             if verification.passed or not self._solver.retry_with(verification.flips):
                 break
             solved_again = True
-            verification = self.write_and_verify(self._solver.session.controls)
+            verification = self._write_session()
         result = merge_results([call.result for call in self._solver.trail.calls]) if solved_again else None
         if not verification.passed:
             return self._fall_back(goal, verification, result)
         self._solver.trail = Trail(self._solver.session.controls, goal)
         self._shown = self._solver.trail, self._solver.session.surface
         return WriteReport(True, result=result)
+
+    def _write_session(self) -> Verification:
+        self.write(self._solver.session.controls)
+        return self.verify(self._solver.session.surface)
 
     def write_and_verify(self, controls: Floats) -> Verification:
         """Write controls, (m, 3), whose surface is free of intersections, and test Blender's evaluation."""

@@ -60,9 +60,9 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
 
 def _warnings(assembly: Assembly) -> tuple[str, ...]:
     columns, corners = np.ascontiguousarray(assembly.positions.T), assembly.surface.triangles.T
-    a, b, c = (columns.take(corner, axis=1) for corner in corners)
-    b, c = b - a, c - a
-    no_area = [b[i - 2] * c[i - 1] == b[i - 1] * c[i - 2] for i in range(3)]  # the cross product is 0
-    flat = int(np.logical_and.reduce(no_area).sum())
+    for i in range(3):  # the triangles left after it have a cross product of 0
+        (a, b, c), (d, e, f) = ([columns[axis].take(corner) for corner in corners] for axis in (i - 2, i - 1))
+        corners = corners[:, (b - a) * (f - d) == (e - d) * (c - a)]
+    flat = corners.shape[1]
     counted = "1 triangle has" if flat == 1 else f"{flat:,} triangles have"
     return (f"{counted} no area",) if flat else ()

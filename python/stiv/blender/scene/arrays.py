@@ -53,6 +53,20 @@ def to_local(matrix: Floats, points: NDArray[Any]) -> Floats:
     return transform_points(invert(matrix), points)
 
 
+def extents(points: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """The least and the greatest coordinates, (3,) each, of points, (n, 3); n > 0. Reductions of rows are slow."""
+    columns = np.ascontiguousarray(points.T)
+    return columns.min(axis=1), columns.max(axis=1)
+
+
+def diagonal_of(points: Floats) -> float:
+    """Length of the diagonal of the box around points, (n, 3); 0 without points."""
+    if len(points) == 0:
+        return 0.0
+    low, high = extents(points)
+    return float(np.linalg.norm(high - low))
+
+
 def read_collection(collection: Any, attribute: str, width: int, dtype: type) -> NDArray[Any]:
     """Read an attribute of every item of a Blender collection, (n, width), or (n,) for width 1."""
     values: NDArray[Any] = np.empty(len(collection) * width, dtype)

@@ -10,6 +10,7 @@ import stiv
 from stiv.blender.scene.arrays import Floats, Indices, Singles
 from stiv.blender.scene.elements import Element
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.shared_surface import make_surface
 from stiv.seams import Seams, find_seams
 
 ROUNDING = 2.0**-19  # of an object's extent; Blender computes the copies of a seam separately, in single precision
@@ -123,7 +124,7 @@ def assemble(
         bodies.setdefault((mesh.owner.name, m, mesh.shown_in, mesh.rooted_in, mesh.part), len(bodies))
         for mesh, m in zip(meshes, mobility, strict=True)
     ]
-    surface = stiv.Surface(
+    surface = make_surface(
         _renumber([mesh.triangles for mesh in meshes], starts, joins, 3),
         int(starts[-1]),
         _renumber([mesh.loose_edges for mesh in meshes], starts, joins, 2),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv import InputError
-from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, transform_points
+from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, extents, transform_points
 from stiv.blender.scene.culling import CroppedMesh, read_cropped_mesh
 from stiv.blender.scene.evaluations import (
     EVALUATIONS,
@@ -295,6 +295,5 @@ def evaluation_tolerance(points: Floats) -> float:
     """Maximum difference between two evaluations of the same points, (n, 3), in world units."""
     if len(points) == 0:
         return 0.0
-    columns = np.ascontiguousarray(points.T)  # reductions of rows of three are slow
-    low, high = columns.min(axis=1), columns.max(axis=1)
+    low, high = extents(points)
     return TOLERANCE * float((high - low).max()) + 1e-6 * float(max(-low.min(), high.max()))

@@ -41,6 +41,8 @@ def read_positions(mesh: bpy.types.Mesh) -> Singles:
 
 def read_triangles(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
     """Blender's triangulation: corners, (f, 3), and the face of each triangle, (f,)."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):  # no face has fewer than three corners, so all are triangles
+        return read_corner_vertices(mesh).reshape(-1, 3), np.arange(len(mesh.polygons), dtype=np.int32)
     mesh.calc_loop_triangles()
     sizes = read_collection(mesh.polygons, "loop_total", 1, np.int32)
     faces = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes - 2)  # in the order of faces

@@ -36,6 +36,8 @@ class QuadDiagonals:
     @staticmethod
     def of(mesh: VisibleMesh) -> QuadDiagonals | None:
         """The quads of a mesh; None if it has larger faces. Quads whose two triangulations are known are left out."""
+        if not (mesh.faces[:-1] == mesh.faces[1:]).any():  # all faces are triangles
+            return QuadDiagonals(np.empty((4, 0), np.int32), np.empty(0, np.bool_))
         first_of_second = np.flatnonzero(np.diff(mesh.faces) < 0)  # where the second triangulations begin
         count = int(first_of_second[0]) + 1 if len(first_of_second) else len(mesh.faces)
         faces, triangles = mesh.faces[:count], mesh.triangles[:count]
@@ -66,6 +68,8 @@ class QuadDiagonals:
         return np.where(self.second[quads][:, None], along_first, along_second).reshape(-1, 3)
 
     def _folds(self, local: Singles, cosine: float) -> NDArray[np.bool_]:
+        if self.corners.size == 0:
+            return np.empty(0, np.bool_)
         columns = np.ascontiguousarray(local.T)
         one, two = self._normals(columns)
         lengths = np.sqrt(_dot(one, one)) * np.sqrt(_dot(two, two))  # their product alone may exceed single precision

@@ -118,6 +118,8 @@ def _bent_quads(assembly: Assembly, number: int) -> FaceTriangles | None:
         return None
     mesh, q = assembly.meshes[number], assembly.positions[assembly.vertices(number)]
     first = np.flatnonzero(mesh.faces[:-1] == mesh.faces[1:])
+    if len(first) == 0:
+        return None
     counts = np.bincount(mesh.faces) if len(mesh.faces) else np.empty(0, int)
     first = first[counts[mesh.faces[first]] == 2]
     one, two = _normals(q, mesh.triangles[first]), _normals(q, mesh.triangles[first + 1])

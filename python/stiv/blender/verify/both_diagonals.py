@@ -76,7 +76,9 @@ class BothDiagonals:
             if number in local:
                 included[quads.find_bent(local[number], BENT)] = True
                 included[uncertain.get(number, np.empty(0, np.int32))] = True
-            added.append(self._assembly.vertices(number)[quads.other_triangles(np.flatnonzero(included))])
+            added.append(
+                self._assembly.vertices(number)[quads.other_triangles(np.flatnonzero(included).astype(np.int32))]
+            )
         self._check = stiv.StepCheck(self._surface(np.concatenate(added)), self._threads)
 
     def _surface(self, triangles: Indices) -> stiv.Surface:

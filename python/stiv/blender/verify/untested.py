@@ -36,13 +36,20 @@ def find_untested(
     return tuple(Untested(name, why) for name, why in dict.fromkeys(reasons))
 
 
-def unguarded_text(context: bpy.types.Context, evaluations: Collection[str], carried: Collection[str] = ()) -> str:
+def unguarded_text(
+    context: bpy.types.Context,
+    evaluations: Collection[str],
+    carried: Collection[str] = (),
+    without_surface: Collection[tuple[str, str]] | None = None,
+) -> str:
     """Message about objects that are shown but not guarded by edits; "" if there are none.
 
     These are objects that cannot be tested and, unless the render is guarded, objects that only the render shows.
-    carried: names of the objects whose strands move with the edit.
+    carried: names of the objects whose strands move with the edit. without_surface: of `find_without_surface`, if it is
+    known.
     """
-    reasons = [*_without_surface(context), *((name, "hair and curves that move along") for name in sorted(carried))]
+    shown = find_without_surface(context) if without_surface is None else without_surface
+    reasons = [*shown, *((name, "hair and curves that move along") for name in sorted(carried))]
     found = [Untested(name, why) for name, why in dict.fromkeys(reasons)]
     if RENDER not in evaluations:
         found += [Untested(name, "rendered only") for name in _rendered_only(context)]
@@ -56,6 +63,11 @@ def _reason(context: bpy.types.Context, ob: bpy.types.Object) -> str:
     if ob.name not in context.view_layer.objects:
         return "in an excluded collection"
     return "" if ob.visible_get(view_layer=context.view_layer) else "hidden"
+
+
+def find_without_surface(context: bpy.types.Context) -> tuple[tuple[str, str], ...]:
+    """Find visible geometry that cannot be tested as mesh or strands: the owner and the reason."""
+    return tuple(_without_surface(context))
 
 
 def _without_surface(context: bpy.types.Context) -> Iterator[tuple[str, str]]:
