@@ -48,7 +48,9 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
     for (std::size_t k = 0; k < all.pairs.count; ++k) {
       if (boxes_apart[k] != 0) continue;
       const std::array<Index, 4> pair = all.pairs.vertices_of(k);
-      const Vector3& motion = motions.of_pair(surface.body_of(pair[0]), surface.body_of(pair[3]));
+      const Vector3& motion = motions.has_own_frames()
+                                  ? motions.of_pair(surface.body_of(pair[0]), surface.body_of(pair[3]))
+                                  : motions.common;
       if (near.pairs.count == PairBlock::capacity || motion != same_step.motion) append_near();
       same_step.motion = motion;
       near.add(all.candidates[k], pair);

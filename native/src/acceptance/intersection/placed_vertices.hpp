@@ -23,7 +23,7 @@ class PlacedVertices {
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   /// 1 for each body with a vertex that the last update changed.
   const std::vector<unsigned char>& changed_bodies() const { return changed_bodies_; }
-  /// Does the vertex belong to such a body?
+  /// Does the vertex belong to one of them?
   bool is_in_changed_body(Index vertex) const { return changed_bodies_[at(surface_->body_of(vertex))] != 0; }
 
  private:

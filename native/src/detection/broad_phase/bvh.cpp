@@ -187,7 +187,7 @@ void Bvh::find_touched(const std::vector<unsigned char>& changed_groups) {
     if (changed_groups[levels_[0].groups[block]] != 0) touched_.push_back(static_cast<Index>(block));
 }
 
-/// On several threads, all nodes are summarized sooner than many are one after the other.
+/// On several threads, all nodes are summarized sooner than many are by a single one.
 void Bvh::summarise_touched(const Execution& execution) {
   constexpr std::size_t many = 1 << 14;
   if (touched_.size() < std::max(many, order_.size() / width / 2))

@@ -30,7 +30,7 @@ class GroupTable {
   std::vector<unsigned char> meets_;  // (groups, groups)
 };
 
-/// What a traversal knows about groups of primitives.
+/// Knowledge of a traversal about groups of primitives.
 struct GroupRelations {
   GroupTable table{};
   GroupFrames frames{};

@@ -172,15 +172,17 @@ class BvhSource final : public CandidateSource {
   /// Fills a block with pairs from `begin` on that share a frame. Returns where they end.
   std::size_t fill_block(EventKind kind, const PairBuffer& found, std::size_t begin, PairBlock& block,
                          Vector3& motion) const {
+    const FrameMotions& motions = swept_.motions();
     const std::size_t most = std::min(found.count, begin + PairBlock::capacity);
     std::size_t end = begin;
     block.count = 0;
+    motion = motions.common;
     for (; end < most; ++end) {
       const std::array<Index, 4> vertices = vertices_of(surface_, kind, found[end]);
-      if (swept_.motions().has_own_frames() || end == begin) {
-        const Vector3& of_pair = swept_.motions().of_pair(surface_.body_of(vertices[0]), surface_.body_of(vertices[3]));
-        if (end == begin) motion = of_pair;
-        if (of_pair != motion) break;
+      if (motions.has_own_frames()) {
+        const Vector3& of_pair = motions.of_pair(surface_.body_of(vertices[0]), surface_.body_of(vertices[3]));
+        if (end > begin && of_pair != motion) break;
+        motion = of_pair;
       }
       block.add(vertices);
     }

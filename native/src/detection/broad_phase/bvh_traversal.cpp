@@ -59,9 +59,7 @@ struct Traversal {
   }
 
   /// Of boxes of the first node, in the frame of the second.
-  BoxGrowth growth(const Bvh::Task& pair) const {
-    return frames == nullptr ? BoxGrowth() : frames->growth(group(pair), other_group(pair));
-  }
+  BoxGrowth growth(const Bvh::Task& pair) const { return frames->growth(group(pair), other_group(pair)); }
 
   /// Makes room for the pairs of two blocks.
   void reserve() const {
@@ -263,12 +261,12 @@ void descend(const Traversal& t, const Bvh::Task& root) {
   while (top > 0) {
     const Bvh::Task pair = stack[--top];
     if (!t.groups_meet(pair)) continue;
-    const BoxGrowth growth = t.growth(pair);
-    if (growth.is_none)
+    const BoxGrowth growth = t.frames == nullptr ? BoxGrowth() : t.growth(pair);
+    if (t.frames == nullptr || growth.is_none)
       meet_nodes<size_a, size_b>(t, pair, FramedBoxes<false>(), stack.data(), top);
     else
       meet_nodes<size_a, size_b>(t, pair, FramedBoxes<true>{growth, growth.opposite()}, stack.data(), top);
-    if (t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
+    if (pair.level + pair.other_level == 0 && t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
   }
 }
 

@@ -10,6 +10,7 @@ namespace {
 constexpr double much_smaller = 1.0 / 4;
 constexpr Index enough = 1024;  // vertices in the samples of all bodies
 constexpr Index enough_of_a_body = 32;
+constexpr double several_edges = 2;
 
 /// Displacements of some vertices.
 class Sums {
@@ -50,15 +51,24 @@ FrameChooser::FrameChooser(const Surface& surface) : body_count_(surface.bodies(
   for (Index body = 0; body < bodies; ++body) {
     if (counts[body] == 0 || !surface.bodies_meet(body, body)) continue;
     sample_of[body] = static_cast<Index>(samples_.size());
-    samples_.push_back({body, {}});
+    samples_.push_back({body, {}, {}});
   }
   if (samples_.empty()) return;
   const Index most = std::max(enough / static_cast<Index>(samples_.size()), enough_of_a_body);
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex) {
     const Index body = surface.body_of(vertex), number = seen[body]++;
-    if (sample_of[body] >= 0 && number % (counts[body] / most + 1) == 0)
-      samples_[sample_of[body]].vertices.push_back(vertex);
+    if (sample_of[body] < 0 || number % (counts[body] / most + 1) != 0) continue;
+    const Index* const neighbours = surface.neighbours_begin(vertex);
+    samples_[sample_of[body]].vertices.push_back(vertex);
+    samples_[sample_of[body]].neighbours.push_back(neighbours < surface.neighbours_end(vertex) ? *neighbours : vertex);
   }
+}
+
+bool FrameChooser::is_far(const Sample& sample, const Vector3& motion, const PositionsView& start) {
+  double square = 0;
+  for (std::size_t k = 0; k < sample.vertices.size(); ++k)
+    square += (start.row(sample.neighbours[k]) - start.row(sample.vertices[k])).squaredNorm();
+  return motion.squaredNorm() * static_cast<double>(sample.vertices.size()) > several_edges * several_edges * square;
 }
 
 FrameMotions FrameChooser::choose(const PositionsView& start, const PositionsView& end) const {
@@ -68,7 +78,7 @@ FrameMotions FrameChooser::choose(const PositionsView& start, const PositionsVie
     for (const Index vertex : sample.vertices)
       sums.add(Vector3(end.row(vertex)) - Vector3(start.row(vertex)) - motions.common);
     const Vector3 own = sums.mean_or_zero();
-    if (own.isZero(0)) continue;
+    if (own.isZero(0) || !is_far(sample, own, start)) continue;
     if (motions.of_bodies.empty()) motions.of_bodies.assign(body_count_, motions.common);
     motions.of_bodies[sample.body] += own;
   }

@@ -30,15 +30,18 @@ class FrameChooser {
   /// One of several bodies may get a frame of its own if it is tested against itself.
   explicit FrameChooser(const Surface& surface);
 
-  /// The frame of a body moves with its own mean displacement if that leaves much less than the common motion does.
+  /// The frame of a body moves with its own mean displacement if that leaves much less than the common motion does, and
+  /// differs from it by several edges. A frame of its own makes pairs within the body fewer, but others more.
   FrameMotions choose(const PositionsView& start, const PositionsView& end) const;
 
  private:
-  /// A body that may have its own frame, and evenly picked vertices of it.
+  /// A body that may have its own frame, evenly picked vertices of it, and a neighbor of each.
   struct Sample {
     Index body;
-    std::vector<Index> vertices;
+    std::vector<Index> vertices, neighbours;
   };
+
+  static bool is_far(const Sample& sample, const Vector3& motion, const PositionsView& start);
 
   std::size_t body_count_;
   std::vector<Sample> samples_;

@@ -11,7 +11,7 @@
 
 namespace stiv {
 
-/// What to add to the first six numbers of a PackedBox so that it contains its path in another frame. None is positive.
+/// Added to the first six numbers of a PackedBox, so that it contains its path in another frame. None is positive.
 struct BoxGrowth {
   std::array<float, 6> values{};
   bool is_none = true;

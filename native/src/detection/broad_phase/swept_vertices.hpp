@@ -55,7 +55,7 @@ class SweptVertices {
   }
 
  private:
-  /// What the frames have in common. It changes as rarely as possible, so that boxes stay valid.
+  /// The parameters that all frames share. They change as rarely as possible, so that boxes stay valid.
   struct Frame {
     Vector3 centre = Vector3::Zero();
     Vector3 motion = Vector3::Zero();  ///< the common one

@@ -77,7 +77,7 @@ TEST_CASE("intersections: cached trees follow the positions") {
   }
 }
 
-TEST_CASE("intersections: bodies at rest stay as they were while others move, test after test") {
+TEST_CASE("intersections: bodies at rest stay unchanged while others move, test after test") {
   std::mt19937 random(12);
   Assembly scene;
   scene.add_soup(120, 0.1, Mobility::deformable, random);
