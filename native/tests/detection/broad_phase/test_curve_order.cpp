@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "detection/broad_phase/curve_order.hpp"
+#include "vector_targets.hpp"
 
 using namespace stiv;
 
@@ -76,5 +77,27 @@ TEST_CASE("curve order: coincident points, a single one, and extreme numbers") {
     const std::vector<Index> numbers = sorted_numbers(points);
     sort_along_curve(points);
     CHECK(sorted_numbers(points) == numbers);
+  }
+}
+
+TEST_CASE("curve order: all vector targets give the same order") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> number(-1, 1);
+  constexpr float most = std::numeric_limits<float>::max(), least = std::numeric_limits<float>::denorm_min();
+  for (const float scale : {1.0F, most, 3 * least}) {
+    for (const std::size_t count : {2, 63, 64, 65, 5000}) {
+      Points given;
+      for (std::size_t k = 0; k < count; ++k)
+        given.push_back(
+            {{scale * number(random), scale * number(random), scale * number(random)}, static_cast<Index>(k)});
+      const auto orders = for_each_vector_target([&] {
+        Points points = given;
+        sort_along_curve(points);
+        std::vector<Index> order;
+        for (const NumberedPoint& point : points) order.push_back(point.number);
+        return order;
+      });
+      for (const auto& order : orders) CHECK(order == orders.front());
+    }
   }
 }
