@@ -71,7 +71,7 @@ class PrimitiveTree {
   std::vector<Index> order_of(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& bodies,
                               const Execution& execution) {
     if constexpr (size == 1) curve_places_ = places_along_curve(centres);
-    // A tree that is built anew does not know whether the vertices' was, too.
+    // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
     const bool knows_order = size == 1 || (vertices_ && !tree_);
     if (!knows_order) return block_order(centres, bodies, Bvh::width, execution);
     const std::vector<Index>& places = size == 1 ? curve_places_ : vertices_->curve_places();
