@@ -14,4 +14,8 @@ namespace stiv {
 std::vector<Index> block_order(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups,
                                Index block, const Execution& execution);
 
+/// The same for `items`, all indices in a spatial order: only what is close together there is sorted.
+std::vector<Index> block_order_along(std::vector<Index> items, const std::vector<Eigen::Vector3f>& centres,
+                                     const std::vector<Index>& groups, Index block, const Execution& execution);
+
 }  // namespace stiv

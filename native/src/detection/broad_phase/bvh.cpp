@@ -90,9 +90,12 @@ std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
 
 Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
          const Execution& execution)
-    : size_(static_cast<Index>(centres.size())),
-      order_(block_order(centres, groups, width, execution)),
-      places_(centres.size()) {
+    : Bvh(block_order(centres, groups, width, execution), static_cast<Index>(centres.size()), groups, corners,
+          execution) {}
+
+Bvh::Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
+         const Execution& execution)
+    : size_(count), order_(std::move(order)), places_(count) {
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
   reserve_levels(groups);

@@ -70,6 +70,9 @@ class Bvh {
   /// Builds over finite points; the boxes come with the first refit.
   Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
       const Execution& execution);
+  /// The same in a given order of all `count` primitives, as block_order returns it.
+  Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
+      const Execution& execution);
 
   Index size() const { return size_; }
 

@@ -37,8 +37,8 @@ class BvhSource final : public CandidateSource {
         swept_(surface),
         numbers_(surface.vertex_count()),
         vertices_(surface, numbers_.data(), surface.vertex_count()),
-        edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows())),
-        faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows())) {
+        edges_(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()), &vertices_),
+        faces_(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows()), &vertices_) {
     std::iota(numbers_.begin(), numbers_.end(), 0);
   }
 

@@ -56,10 +56,11 @@ inline BoxGrowth GroupFrames::growth(Index a, Index b) const {
   return growth;
 }
 
-inline PackedBox grown(PackedBox box, const BoxGrowth& growth) {
+inline PackedBox grown(const PackedBox& box, const BoxGrowth& growth) {
+  PackedBox result = box;
   for (std::size_t k = 0; k < 6; ++k)
-    box.values[k] = std::max(box.values[k] + growth.values[k], std::numeric_limits<float>::lowest());
-  return box;
+    result.values[k] = std::max(box.values[k] + growth.values[k], std::numeric_limits<float>::lowest());
+  return result;
 }
 
 }  // namespace stiv

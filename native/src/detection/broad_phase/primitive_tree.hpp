@@ -5,8 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "detection/broad_phase/block_order.hpp"
 #include "detection/broad_phase/bvh.hpp"
 #include "detection/broad_phase/candidate_source.hpp"
+#include "detection/broad_phase/corner_order.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
 #include "detection/primitive_pair.hpp"
 
@@ -18,11 +20,15 @@ template <Index size>
 class PrimitiveTree {
  public:
   /// @param rows (count, size), which must outlive this
-  PrimitiveTree(const Surface& surface, const Index* rows, Index count)
-      : surface_(surface), rows_(rows), count_(count) {}
+  /// @param vertices a tree over the vertices that is updated before this one; its order gives that of the primitives
+  PrimitiveTree(const Surface& surface, const Index* rows, Index count, const PrimitiveTree<1>* vertices = nullptr)
+      : surface_(surface), rows_(rows), count_(count), vertices_(vertices) {}
 
   /// Brings the boxes up to date after `change` of the vertices' boxes.
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
+    // Needed only when few vertices move, never by a first search. Built by the second one, so that memory does not
+    // grow late in a session.
+    if (tree_ && !incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
@@ -40,11 +46,14 @@ class PrimitiveTree {
   }
 
   const Bvh& tree() const { return *tree_; }
+  /// Of each vertex along a space-filling curve, when the tree was built. Only in a tree over vertices.
+  const std::vector<Index>& curve_places() const { return curve_places_; }
 
  private:
   /// Below one changed vertex in this many, finding their primitives is faster than refitting those of their bodies on
   /// several threads.
   static constexpr std::size_t few = 16;
+  static constexpr Index chunk_size = 8192;
 
   std::span<const Index, static_cast<std::size_t>(size)> row(Index primitive) const {
     return std::span<const Index, static_cast<std::size_t>(size)>(rows_ + static_cast<std::ptrdiff_t>(primitive) * size,
@@ -53,22 +62,53 @@ class PrimitiveTree {
 
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
-    constexpr Index chunk_size = 8192;
-    std::vector<Eigen::Vector3f> centres(count_);
-    std::vector<Index> bodies(count_);
-    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
-      for (Index primitive = begin; primitive < end; ++primitive) {
-        Vector3 sum = Vector3::Zero();
-        for (const Index vertex : row(primitive)) sum += (start.row(vertex) - start.row(0)) / size;
-        const Eigen::Vector3f centre = sum.cast<float>();
-        centres[primitive] = centre.allFinite() ? centre : Eigen::Vector3f(Eigen::Vector3f::Zero());
-        bodies[primitive] = surface_.body_of(row(primitive)[0]);
+    const std::vector<Eigen::Vector3f> centres = centres_at(start, execution);
+    const std::vector<Index> bodies = bodies_of_primitives(execution);
+    tree_.emplace(order_of(centres, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
+    spread_ = spread(start);
+  }
+
+  std::vector<Index> order_of(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& bodies,
+                              const Execution& execution) {
+    if constexpr (size == 1) curve_places_ = places_along_curve(centres);
+    // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
+    const bool knows_order = size == 1 || (vertices_ && !tree_);
+    if (!knows_order) return block_order(centres, bodies, Bvh::width, execution);
+    const std::vector<Index>& places = size == 1 ? curve_places_ : vertices_->curve_places();
+    return block_order_along(order_by_corners(rows_, count_, size, places), centres, bodies, Bvh::width, execution);
+  }
+
+  /// Of all primitives, scaled so that no sum overflows; zero for vertices beyond single precision.
+  std::vector<Eigen::Vector3f> centres_at(const PositionsView& start, const Execution& execution) const {
+    std::vector<Eigen::Vector3f> points(surface_.vertex_count());
+    execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index begin, Index end, Index) {
+      for (Index vertex = begin; vertex < end; ++vertex) {
+        const Eigen::Vector3f point = (start.row(vertex) - start.row(0)).template cast<float>();
+        points[vertex] = point.allFinite() ? Eigen::Vector3f(point / 4) : Eigen::Vector3f(Eigen::Vector3f::Zero());
       }
     });
-    tree_.emplace(centres, bodies, CornerRows{rows_, size}, execution);
-    // Needed only when few vertices move; built here so that memory does not grow late in a session.
-    if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
-    spread_ = spread(start);
+    if (size == 1) return points;
+    std::vector<Eigen::Vector3f> centres(count_);
+    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
+      for (Index primitive = begin; primitive < end; ++primitive) {
+        const auto corners = row(primitive);
+        Eigen::Vector3f sum = points[corners[0]];
+        for (std::size_t k = 1; k < static_cast<std::size_t>(size); ++k) sum += points[corners[k]];
+        centres[primitive] = sum;
+      }
+    });
+    return centres;
+  }
+
+  /// Empty if there is only one body.
+  std::vector<Index> bodies_of_primitives(const Execution& execution) const {
+    if (surface_.bodies().size() == 1) return {};
+    std::vector<Index> bodies(count_);
+    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
+      for (Index primitive = begin; primitive < end; ++primitive)
+        bodies[primitive] = surface_.body_of(row(primitive)[0]);
+    });
+    return bodies;
   }
 
   /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbors stay together.
@@ -94,6 +134,8 @@ class PrimitiveTree {
   const Surface& surface_;
   const Index* rows_;
   Index count_;
+  const PrimitiveTree<1>* vertices_;
+  std::vector<Index> curve_places_;
   std::optional<Bvh> tree_;
   double spread_ = 0;  // when the tree was built
   std::optional<VertexIncidence> incidence_;

@@ -19,6 +19,9 @@ if TYPE_CHECKING:  # it reads cropped meshes, which uses this module
     from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 CLEAR = 1e-3  # cosine of the angle between the halves above which rounding cannot decide
+# Height of a half above the diagonal, in the largest coordinate, above which it cannot either: where Blender knows the
+# normals of faces, it compares products with coordinates.
+NARROW = 2.0**-18
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,17 @@ class QuadDiagonals:
         if self.corners.size == 0:
             return np.empty(0, np.bool_)
         columns = np.ascontiguousarray(local.T)
-        one, two = self._normals(columns)
-        lengths = np.sqrt(_dot(one, one)) * np.sqrt(_dot(two, two))  # their product alone may exceed single precision
-        return np.array(~(_dot(one, two) > np.float32(cosine) * lengths), np.bool_)
+        one, two, diagonal = self._normals(columns)
+        sizes = np.sqrt(_dot(one, one)), np.sqrt(_dot(two, two))  # their product alone may exceed single precision
+        opens = _dot(one, two) > np.float32(cosine) * sizes[0] * sizes[1]
+        narrow = np.float32(NARROW * np.abs(local).max(initial=0)) * np.sqrt(_dot(diagonal, diagonal))
+        return np.array(~(opens & (sizes[0] > narrow) & (sizes[1] > narrow)), np.bool_)
 
-    def _normals(self, columns: Singles) -> tuple[list[Singles], list[Singles]]:
-        """Normals of both halves, as columns."""
+    def _normals(self, columns: Singles) -> tuple[list[Singles], list[Singles], list[Singles]]:
+        """Normals of both halves, and the first diagonal, as columns."""
         start, *others = ([axis[corner] for axis in columns] for corner in self.corners)
         side, diagonal, last = ([x - y for x, y in zip(each, start, strict=True)] for each in others)
-        return _cross(side, diagonal), _cross(diagonal, last)
+        return _cross(side, diagonal), _cross(diagonal, last), diagonal
 
 
 def _dot(a: list[Singles], b: list[Singles]) -> Singles:

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "detection/broad_phase/block_order.hpp"
+#include "detection/broad_phase/corner_order.hpp"
+#include "stiv/execution.hpp"
+
+using namespace stiv;
+
+namespace {
+
+constexpr Index vertex_count = 5000;
+
+std::vector<Eigen::Vector3f> random_points(Index count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  std::vector<Eigen::Vector3f> points;
+  for (Index k = 0; k < count; ++k) points.emplace_back(unit(random), unit(random), unit(random));
+  return points;
+}
+
+std::vector<Index> random_rows(Index count, Index size) {
+  std::mt19937 random(6);
+  std::uniform_int_distribution<Index> vertex(0, vertex_count - 1);
+  std::vector<Index> rows;
+  for (Index k = 0; k < count * size; ++k) rows.push_back(vertex(random));
+  return rows;
+}
+
+bool lists_each_once(std::vector<Index> items, Index count) {
+  std::sort(items.begin(), items.end());
+  items.erase(items.begin(), std::find_if(items.begin(), items.end(), [](Index item) { return item >= 0; }));
+  std::vector<Index> all(static_cast<std::size_t>(count));
+  std::iota(all.begin(), all.end(), 0);
+  return items == all;
+}
+
+}  // namespace
+
+TEST_CASE("corner order: as a stable sort by the first or middle corner") {
+  const std::vector<Index> places = places_along_curve(random_points(vertex_count));
+  CHECK(lists_each_once(places, vertex_count));
+  for (const Index size : {1, 2, 3}) {
+    constexpr Index count = 7001;
+    const std::vector<Index> rows = random_rows(count, size);
+    const auto key = [&](Index primitive) {
+      std::vector<Index> corners;
+      for (Index k = 0; k < size; ++k)
+        corners.push_back(places[static_cast<std::size_t>(rows[static_cast<std::size_t>(primitive * size + k)])]);
+      std::sort(corners.begin(), corners.end());
+      return corners[static_cast<std::size_t>(size == 3)];
+    };
+    std::vector<Index> expected(count);
+    std::iota(expected.begin(), expected.end(), 0);
+    std::stable_sort(expected.begin(), expected.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    CHECK(order_by_corners(rows.data(), count, size, places) == expected);
+  }
+  CHECK(places_along_curve({}).empty());
+  CHECK(order_by_corners(nullptr, 0, 2, {}).empty());
+}
+
+TEST_CASE("block order along a given order: every primitive once, one group in each block, the same on all threads") {
+  for (const Index count : {0, 1, 9, 600, 5000}) {
+    const std::vector<Eigen::Vector3f> centres = random_points(count);
+    std::vector<Index> groups;
+    for (Index k = 0; k < count; ++k) groups.push_back(k * 7 % 3);
+    for (const std::vector<Index>& of_group : {std::vector<Index>(), groups}) {
+      std::vector<Index> along(static_cast<std::size_t>(count));
+      const std::vector<Index> places = places_along_curve(centres);
+      for (Index k = 0; k < count; ++k) along[static_cast<std::size_t>(places[static_cast<std::size_t>(k)])] = k;
+      const std::vector<Index> order = block_order_along(along, centres, of_group, 8, Execution(1));
+      CHECK(order.size() % 8 == 0);
+      CHECK(lists_each_once(order, count));
+      CHECK(order == block_order_along(along, centres, of_group, 8, Execution(3)));
+      for (std::size_t place = 0; place < order.size() && !of_group.empty(); ++place)
+        if (order[place] >= 0)
+          CHECK(of_group[static_cast<std::size_t>(order[place])] ==
+                of_group[static_cast<std::size_t>(order[place / 8 * 8])]);
+    }
+  }
+}
