@@ -43,6 +43,23 @@ def test_blender_splits_certain_quads_along_the_first_diagonal() -> None:
     assert (kept == splits_first).mean() > 0.95
 
 
+@pytest.mark.parametrize("height", [1e-2, 1e-1, 1.0])
+def test_far_from_the_origin_thin_quads_are_uncertain(height: float) -> None:
+    """With known normals of faces, Blender compares products with coordinates, which rounding may exceed."""
+    chance = np.random.default_rng(2)
+    corners = SQUARE * (1, height, 1) + height * 0.2 * chance.normal(size=(400, 4, 3)) + (3e4, -2e4, 1e4)
+    quads = add_quads(corners)
+    assert len(quads.data.polygon_normals) == 400
+    quads.data.update()
+    bpy.context.view_layer.update()
+    seen = read_one()
+    known = QuadDiagonals(np.arange(1600).reshape(4, 400, order="F"), np.zeros(400, np.bool_))
+    certain = np.ones(400, np.bool_)
+    certain[known.find_uncertain(seen.local)] = False
+    splits_first = (seen.triangles.reshape(-1, 6) == known.corners.T[:, [0, 1, 2, 0, 2, 3]]).all(axis=1)
+    assert splits_first[certain].all() and certain.any() == (height > 0.05)
+
+
 @pytest.mark.parametrize("size", [1e-7, 1.0, 1e7])
 def test_the_size_of_flat_quads_does_not_make_them_uncertain(size: float) -> None:
     add_quads(size * np.tile(SQUARE, (3, 1, 1)))
