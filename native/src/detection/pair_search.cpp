@@ -79,7 +79,6 @@ std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surfa
 PairSearch::PairSearch(std::shared_ptr<const Surface> surface, DetectorOptions options)
     : surface_(std::move(surface)),
       narrow_phase_(options.narrow_phase),
-      frames_(*surface_),
       source_(make_source(options.broad_phase, *surface_)) {}
 
 std::optional<Events> PairSearch::find(const Step& step, PairLimit limit, Execution& execution) {
@@ -130,7 +129,7 @@ ClosePairs PairSearch::take_close_pairs(const Execution& execution) {
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
     const EventKind kind = chunks.kind(chunk);
     const auto append_some = [&](std::span<Candidate> some) {
-      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motions, last_->separation, found[chunk]);
+      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motion, last_->separation, found[chunk]);
     };
     source_->visit(kind, chunks.within_kind(chunk), std::ref(append_some));
   });
@@ -152,7 +151,7 @@ std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Ste
                                                                        Execution& execution, const Decide& decide) {
   check_step(given);
   const FloatingPointScope floating_point;
-  const Step step{given.start, given.end, given.proximity, frames_.choose(given.start, given.end)};
+  const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end)};
   last_.reset();
   source_->update(step, execution);
   ++execution.counters.detections;
@@ -168,7 +167,7 @@ std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Ste
     source_->visit(kind, chunks.within_kind(chunk), std::ref(decide_some));
   });
   count(results, execution.counters);
-  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motions, step.proximity.separation};
+  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motion, step.proximity.separation};
   return results;
 }
 

@@ -43,9 +43,6 @@ class PairSearch {
                     Execution& execution) const;
 
   void check_step(const Step& step) const;
-  FrameMotions frame_motions(const PositionsView& start, const PositionsView& end) const {
-    return frames_.choose(start, end);
-  }
   const Surface& surface() const { return *surface_; }
 
  private:
@@ -57,7 +54,7 @@ class PairSearch {
   };
   /// Parameters of a complete search, from which its close pairs are computed.
   struct WholeSearch {
-    FrameMotions motions;
+    Vector3 motion;
     double separation = 0;
   };
 
@@ -72,7 +69,6 @@ class PairSearch {
 
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
-  FrameChooser frames_;
   std::unique_ptr<CandidateSource> source_;
   std::optional<WholeSearch> last_;  ///< set while the close pairs of a complete search can be taken
 };

@@ -57,36 +57,6 @@ TEST_CASE("detector: both cuts of a flip face meet others, and never each other"
   }
 }
 
-TEST_CASE("detector: bodies that move in different directions meet as brute force says, at any scale") {
-  const std::vector<Vector3> displacements{{0, 0, 0}, {0.4, -0.3, -0.15}, {-0.5, 0.1, -0.3}, {0.02, 0.6, -0.4}};
-  std::size_t found = 0;
-  for (const unsigned seed : {1U, 2U, 3U})
-    for (const double scale : {1e-7, 1.0, 1e7}) {
-      MovingScene scene = carried_sheets(12, displacements, 0.01, seed);
-      scene.start *= scale;
-      scene.end *= scale;
-      const Events expected = find(scene, BroadPhase::brute_force, 1, 0.004 * scale);
-      found += expected.size();
-      for (const int threads : {1, 2, 3})
-        CHECK(same_bits(find(scene, BroadPhase::bvh, threads, 0.004 * scale), expected));
-      CHECK(same_bits(find(scene, BroadPhase::hash_grid, 1, 0.004 * scale), expected));
-    }
-  CHECK(found > 1000);
-}
-
-TEST_CASE("detector: a body that moves past others by many edges has no more candidates than one that rests") {
-  const auto candidates = [](const std::vector<Vector3>& displacements) {
-    const MovingScene scene = carried_sheets(20, displacements, 1e-4, 1);
-    Execution execution(1);
-    Detector(scene.surface).find(scene.start, scene.end, {1e-4, 0.5}, execution);
-    return execution.counters.candidate_pairs;
-  };
-  const Vector3 none = Vector3::Zero(), hardly(1e-5, 0, 0), along(0.5, -0.4, 0.3), down(-0.3, 0.4, -0.3);
-  CHECK(candidates({none, along}) <= candidates({none, hardly}));
-  CHECK(candidates({none, none, along}) <= candidates({none, none, hardly}));
-  CHECK(candidates({down, none, along}) <= candidates({hardly, none, hardly}));
-}
-
 TEST_CASE("detector: prepared trees find the same events, and refuse positions of another surface") {
   const MovingScene scene = falling_vertex();
   Execution execution(1);

@@ -5,7 +5,6 @@
 
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/candidate_source.hpp"
-#include "detection/broad_phase/group_frames.hpp"
 
 namespace stiv {
 
@@ -13,8 +12,7 @@ namespace stiv {
 /// does while all stay within their boxes. A box is active if its vertex moves.
 ///
 /// The padding covers the separation and the error of the narrow phase. It also covers `slack` times the vertex's
-/// displacement, in the common frame or in its own if that is more, so that steps from the same start stay inside if
-/// they end near the segment of the vertex. (mathematics.md, "Boxes" and "Rounds of one edit")
+/// displacement, so that steps from the same start stay inside if they end near the segment of the vertex.
 class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
@@ -34,10 +32,8 @@ class SweptVertices {
   /// Fraction of a vertex's displacement in the frame (its largest component) by which its box is padded. Small,
   /// because responses change a step by far more than padding can cover.
   static constexpr double slack = 1.0 / 1024;
-  /// The displacements of the frames of the boxes.
-  const FrameMotions& motions() const { return motions_; }
-  /// The same as the boxes' groups, one for each body.
-  GroupFrames body_frames() const;
+  /// The displacement of the frame of the boxes.
+  const Vector3& motion() const { return frame_.motion; }
 
   /// The step of the last update.
   const VertexSteps& steps() const { return steps_; }
@@ -55,10 +51,10 @@ class SweptVertices {
   }
 
  private:
-  /// The parameters that all frames share. They change as rarely as possible, so that boxes stay valid.
+  /// The frame of the boxes. It changes as rarely as possible, so that boxes stay valid.
   struct Frame {
     Vector3 centre = Vector3::Zero();
-    Vector3 motion = Vector3::Zero();  ///< the common one
+    Vector3 motion = Vector3::Zero();  ///< displacement in a step, see common_motion
     double radius = -1;                ///< bound of the coordinates relative to the center, at the start and at the end
     double separation = 0;
 
@@ -72,15 +68,12 @@ class SweptVertices {
   void take_steps(const Step& step, const Execution& execution);
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
-  bool has_other_frame(const Step& step, Index vertex) const;
   bool near_segment(const Step& step, Index vertex) const;
-  bool near_segment(const Step& step, Index vertex, const Vector3& frame_motion, const Vector3& step_motion) const;
   bool holds(const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;
   Frame frame_;
-  FrameMotions motions_;
   Positions start_, end_;  // of the step for which each box was computed
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
