@@ -51,8 +51,7 @@ RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection
     : call_(call),
       options_(call.context.options()),
       is_diverging_(is_diverging),
-      progress_(progress_toward(call, goal, projection)),
-      areas_(region_areas(call.context.surface(), call.accepted.surface)) {
+      progress_(progress_toward(call, goal, projection)) {
   outcome_.pair_limit = pair_limit;
   outcome_.candidate.surface = call.accepted.surface;
 }
@@ -95,6 +94,7 @@ bool RoundLoop::constrain() {
   ConstraintSet& constraints = progress_.constraints;
   ++call_.execution.counters.rounds;
   if (constraints.size() > max_constraints(call_.context) / 4) constraints.drop_inactive();
+  if (areas_.size() == 0) areas_ = region_areas(call_.context.surface(), call_.accepted.surface);
   const RoundVolumes volumes =
       volumes_of_round(call_.context, {*progress_.events, call_.accepted.surface, outcome_.candidate.surface, areas_},
                        progress_.round, constraints.size(), call_.execution);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "acceptance/clearance/triangle_distance.hpp"
+#include "acceptance/intersection/placed_vertices.hpp"
 #include "acceptance/intersection/primitives.hpp"
 #include "stiv/acceptance/intersections.hpp"
 
@@ -144,7 +145,10 @@ class LeastDistance::Implementation {
     surface_->check_positions(q);
     if (triangles_.empty()) return std::nullopt;
     const Execution execution(1);
-    triangles_.update(vertex_boxes(q, {}, execution), execution);
+    PlacedVertices placed(*surface_);
+    placed.update(q, {}, execution);
+    triangles_.note_changes(placed.changed_bodies());
+    triangles_.update(placed.boxes(), execution);
     return Search(*surface_, triangles_, q, pairs).run();
   }
 

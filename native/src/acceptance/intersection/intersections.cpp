@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
+#include <utility>
 
 #include "acceptance/intersection/candidate_test.hpp"
-#include "acceptance/intersection/packed_points.hpp"
+#include "acceptance/intersection/placed_vertices.hpp"
 #include "acceptance/intersection/stars.hpp"
 
 namespace stiv {
@@ -112,14 +114,14 @@ class IntersectionTest::Implementation {
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
     update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
     for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
-      if (Search(*surface_, *first, triangles_, bodies_, q, points_).any(execution)) return false;
+      if (Search(*surface_, *first, triangles_, bodies_, q, placed_->points()).any(execution)) return false;
     return true;
   }
 
  private:
   IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
     update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
-    return Search(*surface_, first, triangles_, bodies_, q, points_).all(execution);
+    return Search(*surface_, first, triangles_, bodies_, q, placed_->points()).all(execution);
   }
 
   using Kinds = std::vector<Primitives*>;
@@ -127,17 +129,23 @@ class IntersectionTest::Implementation {
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
     surface_->check_positions(q);
-    points_ = pack_points(q, execution);
-    const std::vector<PackedBox> boxes = vertex_boxes(q, moved, execution);
-    for (Primitives* kind : kinds) kind->update(boxes, execution);
-    triangles_.leave_out_neighbours(stars_.find_free(points_, moved, execution), execution);
+    std::optional<PlacedVertices> placed = std::exchange(placed_, std::nullopt);  // this may be cancelled
+    if (!placed) placed.emplace(*surface_);
+    placed->update(q, moved, execution);
+    for (Primitives* kind : {&triangles_, &loose_edges_, &loose_vertices_})
+      kind->note_changes(placed->changed_bodies());
+    for (Primitives* kind : kinds) kind->update(placed->boxes(), execution);
+    stars_.find_free(*placed, moved, free_stars_, execution);
+    triangles_.leave_out_neighbours(free_stars_, placed->changed_bodies(), execution);
+    placed_ = std::move(placed);
   }
 
   std::shared_ptr<const Surface> surface_;
   Primitives triangles_, loose_edges_, loose_vertices_;
   Stars stars_;
   GroupTable bodies_;
-  PackedPoints points_;  ///< of the update
+  std::optional<PlacedVertices> placed_;   ///< of the last update, unless it was cancelled
+  std::vector<unsigned char> free_stars_;  ///< of the last update
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)

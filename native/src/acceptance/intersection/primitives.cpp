@@ -40,22 +40,13 @@ CornerList loose_vertex_corners(const Surface& surface) {
   return corners;
 }
 
-std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
-                                    const Execution& execution) {
-  const auto count = static_cast<Index>(q.rows());
-  std::vector<PackedBox> boxes(at(count));
-  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
-    for (Index vertex = begin; vertex < end; ++vertex) {
-      Bounds point = Bounds::empty();
-      point.include(q.row(vertex).transpose(), 0);
-      boxes[at(vertex)] = PackedBox::of(point, moved.empty() || moved[at(vertex)] != 0);
-    }
-  });
-  return boxes;
+Primitives::Primitives(const Surface& surface, CornerList corners)
+    : corners_(std::move(corners)), changed_(surface.bodies().size(), 1) {
+  for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
 }
 
-Primitives::Primitives(const Surface& surface, CornerList corners) : corners_(std::move(corners)) {
-  for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
+void Primitives::note_changes(const std::vector<unsigned char>& bodies) {
+  for (std::size_t body = 0; body < bodies.size(); ++body) changed_[body] |= bodies[body];
 }
 
 void Primitives::update(const std::vector<PackedBox>& vertices, const Execution& execution) {
@@ -64,20 +55,26 @@ void Primitives::update(const std::vector<PackedBox>& vertices, const Execution&
     for (const auto& corners : corners_) boxes.push_back(box_of(corners, vertices).bounds());
     tree_.emplace(centres_of(boxes), bodies_, CornerRows(), execution);
   }
-  tree_->refit([&](Index primitive) { return box_of(corners(primitive), vertices); }, execution);
+  const auto box_of_primitive = [&](Index primitive) { return box_of(corners(primitive), vertices); };
+  tree_->refit_groups(changed_, box_of_primitive, execution);
+  std::fill(changed_.begin(), changed_.end(), 0);
 }
 
 // The tree skips pairs of primitives with equal corner names. Corners whose star is not proven free get unique negative
 // names.
-void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution) {
+void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars,
+                                      const std::vector<unsigned char>& changed, const Execution& execution) {
   names_.resize(3 * corners_.size());
   execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    for (Index k = 3 * begin; k < 3 * end; ++k) {
-      const Index vertex = corners_[at(k / 3)][at(k % 3)];
-      names_[at(k)] = free_stars[at(vertex)] ? vertex : -2 - k;
+    for (Index primitive = begin; primitive < end; ++primitive) {
+      if (changed[at(bodies_[at(primitive)])] == 0) continue;
+      for (Index k = 3 * primitive; k < 3 * (primitive + 1); ++k) {
+        const Index vertex = corners_[at(primitive)][at(k % 3)];
+        names_[at(k)] = free_stars[at(vertex)] ? vertex : -2 - k;
+      }
     }
   });
-  tree_->set_corners({names_.data(), 3}, execution);
+  tree_->set_corners({names_.data(), 3}, changed, execution);
 }
 
 }  // namespace stiv

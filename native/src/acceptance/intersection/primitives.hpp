@@ -18,20 +18,22 @@ CornerList loose_edge_corners(const Surface& surface);
 /// Vertices of no triangle and no loose edge.
 CornerList loose_vertex_corners(const Surface& surface);
 
-/// Boxes of all vertices, (N); active if marked in `moved`, as in IntersectionTest::is_free.
-std::vector<PackedBox> vertex_boxes(const PositionsView& q, const std::vector<unsigned char>& moved,
-                                    const Execution& execution);
-
-/// Primitives of one kind and their tree, which the first update builds and later updates refit.
+/// Primitives of one kind and their tree, which the first update builds and later updates refit. Bodies without any
+/// change since the last update are left as they are.
 class Primitives {
  public:
   Primitives(const Surface& surface, CornerList corners);
+
+  /// Notes that vertices of the marked bodies changed.
+  void note_changes(const std::vector<unsigned char>& bodies);
 
   /// A primitive is active if one of its vertices is.
   void update(const std::vector<PackedBox>& vertices, const Execution& execution);
 
   /// Excludes pairs that share a vertex marked in `free_stars`, (N), from later searches of the tree with itself.
-  void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const Execution& execution);
+  /// @param changed bodies in which vertices may be marked otherwise than in the last call
+  void leave_out_neighbours(const std::vector<unsigned char>& free_stars, const std::vector<unsigned char>& changed,
+                            const Execution& execution);
 
   bool empty() const { return corners_.empty(); }
   const std::array<Index, 3>& corners(Index k) const { return corners_[at(k)]; }
@@ -41,7 +43,8 @@ class Primitives {
  private:
   CornerList corners_;
   std::vector<Index> bodies_;
-  std::vector<Index> names_;  // of corners in the tree, three for each primitive
+  std::vector<unsigned char> changed_;  // bodies, since the last update
+  std::vector<Index> names_;            // of corners in the tree, three for each primitive
   std::optional<Bvh> tree_;
 };
 

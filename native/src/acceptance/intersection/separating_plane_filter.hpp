@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "acceptance/intersection/packed_points.hpp"
+#include "stiv/types.hpp"
 
 namespace stiv {
 

@@ -81,10 +81,11 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   std::stable_sort(stars_.begin(), stars_.end(), [this](Index a, Index b) { return shape(a) < shape(b); });
 }
 
-std::vector<unsigned char> Stars::find_free(const PackedPoints& points, const std::vector<unsigned char>& moved,
-                                            const Execution& execution) const {
+void Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
+                      std::vector<unsigned char>& free, const Execution& execution) const {
   constexpr Index chunk_size = 4096;
-  std::vector<unsigned char> free(points.size(), 0);
+  const PackedPoints& points = placed.points();
+  free.resize(points.size(), 0);
   const auto has_moved = [&](Index vertex) { return moved[at(vertex)] != 0; };
   execution.for_chunks(static_cast<Index>(stars_.size()), chunk_size, [&](Index begin, Index end, Index) {
     StarBlock block;
@@ -96,6 +97,8 @@ std::vector<unsigned char> Stars::find_free(const PackedPoints& points, const st
     };
     for (std::size_t k = at(begin); k < at(end); ++k) {
       const Index vertex = stars_[k];
+      if (!placed.is_in_changed_body(vertex)) continue;
+      free[at(vertex)] = 0;
       const std::span<const Index> around = link(vertex);
       if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) continue;
       const auto [triangles, closed] = shape(vertex);
@@ -108,7 +111,6 @@ std::vector<unsigned char> Stars::find_free(const PackedPoints& points, const st
     }
     prove();
   });
-  return free;
 }
 
 std::pair<std::size_t, bool> Stars::shape(Index vertex) const {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "acceptance/intersection/packed_points.hpp"
+#include "acceptance/intersection/placed_vertices.hpp"
 
 namespace stiv {
 
@@ -20,10 +20,11 @@ class Stars {
   /// @param triangles (F, 3) corners, which may repeat
   Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
 
-  /// 1 for each vertex whose star is proven free; 0 is inconclusive.
+  /// Sets 1 for each vertex whose star is proven free; 0 is inconclusive. Vertices of bodies without changes keep what
+  /// they have.
   /// @param moved as in IntersectionTest::is_free; stars without a moved vertex are skipped and get 0
-  std::vector<unsigned char> find_free(const PackedPoints& points, const std::vector<unsigned char>& moved,
-                                       const Execution& execution) const;
+  void find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
+                 std::vector<unsigned char>& free, const Execution& execution) const;
 
  private:
   /// The link of a vertex, in order: triangle k is (vertex, link[k], link[k + 1]). The last vertex of a closed link is

@@ -89,7 +89,8 @@ Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& 
   for (std::size_t place = 0; place < order_.size(); ++place)
     if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
   reserve_levels(groups);
-  set_corners(corners, execution);
+  const Index last_group = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
+  set_corners(corners, std::vector<unsigned char>(static_cast<std::size_t>(last_group) + 1, 1), execution);
 }
 
 Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
@@ -113,17 +114,20 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
     }
 }
 
-void Bvh::set_corners(const CornerRows& corners, const Execution& execution) {
-  constexpr Index large_chunk = 8192;
+void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed,
+                      const Execution& execution) {
   corner_size_ = corners.size;
   const std::size_t size = corners.size;
   corners_.resize(order_.size() * size);
-  execution.for_chunks(static_cast<Index>(order_.size()), large_chunk, [&](Index begin, Index end, Index) {
-    for (Index place = begin; place < end; ++place) {
-      const Index primitive = order_[place];
-      for (std::size_t k = 0; k < size; ++k)
-        corners_[(place / width * size + k) * width + place % width] =
-            primitive >= 0 ? corners.rows[primitive * size + k] : -1;
+  execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
+    for (Index block = begin; block < end; ++block) {
+      if (changed[levels_[0].groups[block]] == 0) continue;
+      for (Index place = block * width; place < (block + 1) * width; ++place) {
+        const Index primitive = order_[place];
+        for (std::size_t k = 0; k < size; ++k)
+          corners_[(block * size + k) * width + place % width] =
+              primitive >= 0 ? corners.rows[primitive * size + k] : -1;
+      }
     }
   });
 }
@@ -170,6 +174,21 @@ void Bvh::find_touched(std::span<const Index> primitives) {
       touched_.push_back(static_cast<Index>(word * bits) + std::countr_zero(left));
 }
 
+void Bvh::find_touched(const std::vector<unsigned char>& changed_groups) {
+  touched_.clear();
+  for (std::size_t block = 0; block < order_.size() / width; ++block)
+    if (changed_groups[levels_[0].groups[block]] != 0) touched_.push_back(static_cast<Index>(block));
+}
+
+/// On several threads, all nodes are summarized sooner than many are by a single one.
+void Bvh::summarise_touched(const Execution& execution) {
+  constexpr std::size_t many = 1 << 14;
+  if (touched_.size() < std::max(many, order_.size() / width / 2))
+    summarise_touched();
+  else
+    summarise_all(execution);
+}
+
 void Bvh::summarise_touched() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     parents_.clear();
@@ -185,6 +204,15 @@ void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution&
   execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size,
                        [&](Index begin, Index end, Index) { refit_blocks(nullptr, begin, end, vertices.data()); });
   summarise_all(execution);
+}
+
+void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+                               const Execution& execution) {
+  find_touched(changed);
+  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    refit_blocks(touched_.data(), begin, end, vertices.data());
+  });
+  summarise_touched(execution);
 }
 
 void Bvh::refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices) {

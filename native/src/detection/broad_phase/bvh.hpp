@@ -74,16 +74,22 @@ class Bvh {
   template <class BoxOf>
   void refit(const BoxOf& box_of, const Execution& execution);
 
+  /// The same for the primitives of groups that are marked in `changed`.
+  template <class BoxOf>
+  void refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution);
+
   /// The same for some primitives, each listed at least once. The cost does not depend on the others.
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
+  void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+                            const Execution& execution);
   void refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices);
 
-  /// Other corners for the same primitives.
-  void set_corners(const CornerRows& corners, const Execution& execution);
+  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
+  void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
 
   /// Two subtrees to compare: a unit of work.
   struct Task {
@@ -131,7 +137,9 @@ class Bvh {
   /// Blocks number `begin` to `end` of a list, or of all (nullptr).
   void refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices);
   void find_touched(std::span<const Index> primitives);
+  void find_touched(const std::vector<unsigned char>& changed_groups);
   void summarise_touched();
+  void summarise_touched(const Execution& execution);
   void summarise_all(const Execution& execution);
 
   static constexpr Index chunk_size = 512;
@@ -169,6 +177,15 @@ void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
     for (Index block = begin; block < end; ++block) refit_block(static_cast<std::size_t>(block), box_of);
   });
   summarise_all(execution);
+}
+
+template <class BoxOf>
+void Bvh::refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution) {
+  find_touched(changed);
+  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) refit_block(static_cast<std::size_t>(touched_[k]), box_of);
+  });
+  summarise_touched(execution);
 }
 
 template <class BoxOf>

@@ -25,8 +25,10 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
-    if (change == SweptVertices::Change::all || (change == SweptVertices::Change::some && many)) {
+    if (change == SweptVertices::Change::all) {
       tree_->refit_corners(swept.boxes(), execution);
+    } else if (change == SweptVertices::Change::some && many) {
+      tree_->refit_groups_corners(swept.changed_bodies(), swept.boxes(), execution);
     } else if (change == SweptVertices::Change::some) {
       tree_->refit_some_corners(incidence_->primitives_with(swept.changed()), swept.boxes());
     }

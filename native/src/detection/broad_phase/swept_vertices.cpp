@@ -213,7 +213,10 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
   sweep(step, changed_, execution);
   outdated_.clear();
   complete_ = true;
-  return all || static_cast<Index>(changed_.size()) > count / 2 ? Change::all : Change::some;
+  if (all || static_cast<Index>(changed_.size()) > count / 2) return Change::all;
+  changed_bodies_.assign(surface_.bodies().size(), 0);
+  for (const Index vertex : changed_) changed_bodies_[surface_.body_of(vertex)] = 1;
+  return Change::some;
 }
 
 }  // namespace stiv

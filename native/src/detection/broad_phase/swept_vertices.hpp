@@ -39,6 +39,8 @@ class SweptVertices {
   const VertexSteps& steps() const { return steps_; }
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   const std::vector<Index>& changed() const { return changed_; }
+  /// 1 for each body with a changed vertex. Known after a change of `some`.
+  const std::vector<unsigned char>& changed_bodies() const { return changed_bodies_; }
 
   /// Union of the boxes of some vertices.
   template <class Vertices>
@@ -75,6 +77,7 @@ class SweptVertices {
   Positions start_, end_;  // of the step for which each box was computed
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;
+  std::vector<unsigned char> changed_bodies_;
   VertexSteps steps_;
   std::vector<Index> outdated_;  // vertices whose step in `steps_` may differ from that of their box
   bool complete_ = false;        // each vertex has a box in this frame

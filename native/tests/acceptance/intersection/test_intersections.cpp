@@ -77,6 +77,33 @@ TEST_CASE("intersections: cached trees follow the positions") {
   }
 }
 
+TEST_CASE("intersections: bodies at rest stay unchanged while others move, test after test") {
+  std::mt19937 random(12);
+  Assembly scene;
+  scene.add_soup(120, 0.1, Mobility::deformable, random);
+  scene.add_soup(200, 0.1, Mobility::fixed, random);
+  scene.add_soup(80, 0.1, Mobility::deformable, random);
+  const auto surface = scene.surface();
+  IntersectionTest test(surface);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Positions q = scene.q;
+  for (int turn = 0; turn < 12; ++turn) {
+    const Positions before = q;
+    const Index body = turn % 3;
+    for (Index vertex = 0; vertex < q.rows(); ++vertex)
+      if (surface->body_of(vertex) == body)
+        for (Index axis = 0; axis < 3; ++axis) q(vertex, axis) += 0.05 * unit(random);
+    std::vector<unsigned char> moved;
+    for (Index vertex = 0; vertex < q.rows(); ++vertex) moved.push_back(q.row(vertex) != before.row(vertex));
+    IntersectionTest fresh(surface);
+    CHECK(is_free(test, q, moved) == is_free(fresh, q, moved));
+    Execution cancelled(1), execution(2);
+    cancelled.cancel_when([] { return true; });
+    if (turn % 4 == 1) CHECK_THROWS_AS(test.find(before, cancelled), Interrupted);
+    CHECK(test.find(q, execution) == brute_force(*surface, q));
+  }
+}
+
 TEST_CASE("intersections: linked rings are free until one is pulled") {
   for (const double scale : {1e-7, 1.0, 1e7}) {
     const Assembly linked = linked_tori(40, 20, 0), pulled = linked_tori(40, 20, 1.5);

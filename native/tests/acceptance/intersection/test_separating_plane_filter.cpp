@@ -35,7 +35,9 @@ Positions random_corners(std::mt19937& random, int reach, bool integer) {
 
 std::vector<unsigned char> separated(const Batch& batch) {
   TriangleFlags flags{};
-  find_separated(batch.pairs, pack_points(batch.q, Execution(1)), flags);
+  PackedPoints points;
+  for (const auto& row : batch.q.rowwise()) points.push_back({{row[0], row[1], row[2], 0}});
+  find_separated(batch.pairs, points, flags);
   return {flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(batch.pairs.count)};
 }
 

@@ -50,7 +50,14 @@ bool any_pair_intersects(const CornerRows& triangles, const Positions& q) {
 
 std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, const std::vector<unsigned char>& moved) {
   const Execution execution(2);
-  return stars.find_free(pack_points(q, execution), moved, execution);
+  SurfaceDefinition points;
+  points.vertex_count = static_cast<Index>(q.rows());
+  const Surface surface(std::move(points));
+  PlacedVertices placed(surface);
+  placed.update(q, moved, execution);
+  std::vector<unsigned char> free;
+  stars.find_free(placed, moved, free, execution);
+  return free;
 }
 
 /// The star of vertex 0, with any vector target.

@@ -88,6 +88,18 @@ TEST_CASE("bvh: groups that do not meet are left out") {
         expected_pairs(boxes, boxes, [&](Index i, Index j) { return table.meet(i % 3, j % 3); }));
 }
 
+TEST_CASE("bvh: groups that did not change keep their boxes") {
+  std::vector<Bounds> boxes = random_boxes(500, 0.2, 10);
+  const std::vector<Bounds> moved = random_boxes(500, 0.2, 11);
+  std::vector<Index> groups;
+  for (Index k = 0; k < 500; ++k) groups.push_back(k % 3);
+  Bvh tree(boxes, groups);
+  const auto box_of = [&](Index k) { return PackedBox::of(moved[static_cast<std::size_t>(k)], true); };
+  tree.refit_groups({0, 1, 0}, box_of, Execution(2));
+  for (std::size_t k = 1; k < 500; k += 3) boxes[k] = moved[k];
+  CHECK(sorted(Bvh::overlapping_pairs(tree, Execution(1)), true) == expected_pairs(boxes, boxes, all));
+}
+
 TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
   const Bvh tree(random_boxes(3000, 0.05, 6));
   const Pairs expected = Bvh::overlapping_pairs(tree, Execution(1));
