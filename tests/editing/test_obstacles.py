@@ -59,6 +59,26 @@ def test_a_drag_far_over_the_obstacle_ends_as_with_a_fixed_body() -> None:
     assert touched > 10 and mine.controls[0, 0] > 10
 
 
+def test_a_drag_that_hands_over_its_first_states_stays_free_and_ends_alike() -> None:
+    """As the add-on drags while the mouse moves; the last calls follow the same goal to the end."""
+    mine, theirs = beside(), together()
+    check = stiv.StepCheck(whole_surface())
+    before, statuses = mine.surface, set()
+    for tick in range(1, 41):
+        goal = moved((0.2 * tick, 0.05 * tick, -0.04 * tick))
+        result = mine.drag(goal, hand_over=0.0)
+        statuses.add(result.status)
+        for controls in result.path:
+            after = stiv.rigid(BALL.vertices).surface(controls)
+            assert check.is_free(whole(before), whole(after))
+            before = after
+    assert "budget" in statuses
+    for session in (mine, theirs):
+        while session.drag(goal).status == "budget":
+            pass
+    assert mine.settle().energy == pytest.approx(theirs.settle().energy, rel=0.02)
+
+
 def test_events_and_bodies_are_numbered_as_if_obstacles_followed_the_surface() -> None:
     session = beside()
     session.drag(moved((4.0, 3.0, 0.0)))
