@@ -70,8 +70,14 @@ def read_corners(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
     if mesh.attributes.get(".corner_vert") is None:
         return read_faces(mesh)
     corners = read_corner_vertices(mesh)
-    starts = read_collection(mesh.polygons, "loop_start", 1, np.int32)
-    return corners, np.append(starts, len(corners)).astype(np.int32)
+    return corners, _read_starts(mesh, len(corners))
+
+
+def _read_starts(mesh: bpy.types.Mesh, corners: int) -> Indices:
+    starts = np.empty(len(mesh.polygons) + 1, np.int32)
+    mesh.polygons.foreach_get("loop_start", starts[:-1])
+    starts[-1] = corners
+    return starts
 
 
 def read_corner_vertices(mesh: bpy.types.Mesh) -> Indices:
@@ -85,8 +91,7 @@ def read_corner_vertices(mesh: bpy.types.Mesh) -> Indices:
 def read_faces(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
     """Corners of all faces, stacked, and the first corner of each face followed by the total, (F + 1,)."""
     corners = read_collection(mesh.loops, "vertex_index", 1, np.int32)
-    starts = read_collection(mesh.polygons, "loop_start", 1, np.int32)
-    return corners, np.append(starts, len(corners)).astype(np.int32)
+    return corners, _read_starts(mesh, len(corners))
 
 
 def read_creases(mesh: bpy.types.Mesh) -> tuple[Singles | None, Singles | None]:
