@@ -86,7 +86,7 @@ def lattice_in_object_mode(window: Window) -> Steps:
 def mirrored_cage_in_edit_mode(window: Window) -> Steps:
     """With the mirror option, the wall deflects both sides, and the cage stays symmetric."""
     yield from prepared(window, scenes.add_cage, "Cage", "EDIT")
-    mesh = bpy.data.meshes["Cage"]
+    mesh = bpy.context.object.data
     mesh.use_mirror_x = True
     yield from start(window)
     yield from window.glide(window.pixel(INTO_WALL))

@@ -23,7 +23,7 @@ def clear() -> None:
         bpy.data.objects.remove(obj)
     scene = bpy.context.scene
     scene.stiv.live_transforms = scene.stiv.live_guard = False
-    response = "responders", "object_response", "slide_out_of_axis", "smoothness", "constraints"
+    response = "responders", "object_response", "slide_out_of_axis", "smoothness", "tight", "constraints"
     for name in ("separation", "interference", *response):
         scene.stiv.property_unset(name)
     tools = scene.tool_settings
