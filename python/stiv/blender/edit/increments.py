@@ -59,7 +59,8 @@ def _length(matrices: Sequence[Floats], points: Floats) -> float:
 def _length_of_few(matrices: Floats, points: Floats) -> float:
     """As `_length`, with all states in one array."""
     states = np.einsum("ij,nkj->nik", points, matrices[:, :3, :3]) + matrices[:, None, :3, 3]
-    return sum(np.linalg.norm(np.diff(states, axis=0), axis=2).max(axis=1).tolist())
+    longest: list[float] = np.linalg.norm(np.diff(states, axis=0), axis=2).max(axis=1).tolist()
+    return sum(longest)
 
 
 def _turn(before: Floats, after: Floats) -> float:
