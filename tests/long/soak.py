@@ -195,13 +195,18 @@ def drift_of_time(account: Account) -> float:
     return min(account.repeated_seconds[-count:]) / min(account.repeated_seconds[:count]) - 1
 
 
-def main() -> int:
-    """Drag, test and compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def arguments(description: str) -> argparse.Namespace:
+    """The command line of a soak test: `drags`, `seed` and `moves`."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--drags", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--moves", type=int, default=2, help="mouse moves a drag (default 2)")
-    chosen = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Drag, test and compare."""
+    chosen = arguments(__doc__.splitlines()[0])
     account = run(chosen.drags, chosen.seed, chosen.moves)
     growth, drift = growth_of_memory(account), drift_of_time(account)
     counts = ", ".join(f"{count} {status}" for status, count in sorted(account.statuses.items()))

@@ -11,10 +11,8 @@ The exit code is 1 if a test rejected a written state, if surfaces intersect aft
 differs, or if memory grows by 0.5 % or more from the second tenth to the last. Needs Blender as a Python module.
 """
 
-import argparse
 import gc
 import hashlib
-import os
 import sys
 from pathlib import Path
 
@@ -24,12 +22,11 @@ sys.path[:0] = [str(TESTS), str(TESTS / "blender")]
 import bpy  # noqa: E402
 import building  # noqa: E402
 import numpy as np  # noqa: E402
+from soak import BLOCK, MOST_GROWTH, arguments, resident  # noqa: E402
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene  # noqa: E402
 
-BLOCK = 60  # drags, with both objects in turn
 MOVERS = ("Cage", "Lattice")
-MOST_GROWTH = 0.005
 SETTINGS = EditSettings(threads=1)
 
 
@@ -75,12 +72,6 @@ def block(seed: int, drags: int, moves: int) -> tuple[int, str]:
     return drags - sum(passed), hashlib.sha256(repr(building.snapshot()).encode()).hexdigest()
 
 
-def resident() -> int:
-    """Resident bytes after a garbage collection."""
-    gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
-
-
 def growth_of_memory(memory: list[int]) -> float:
     """Growth of the least value from the second tenth to the last one: a leak raises it, a passing buffer does not."""
     tenth = -(-len(memory) // 10)
@@ -89,11 +80,7 @@ def growth_of_memory(memory: list[int]) -> float:
 
 def main() -> int:
     """Drag, test and compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--drags", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--moves", type=int, default=2, help="mouse moves a drag (default 2)")
-    chosen = parser.parse_args()
+    chosen = arguments(__doc__.splitlines()[0])
     make_scene()
     rejected, intersections, ends, memory, seed = 0, 0, set(), [], chosen.seed
     while len(memory) * 2 * BLOCK < chosen.drags:
@@ -102,6 +89,7 @@ def main() -> int:
             rejected += failures
             intersections += len(check_scene(bpy.context).pairs)
         ends.add(end)
+        gc.collect()
         memory.append(resident())
         seed += 1
         print(f"{len(memory) * 2 * BLOCK} drags: {memory[-1] / 1e6:.2f} MB resident", flush=True)

@@ -16,7 +16,7 @@ from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.state_writer import WriteReport
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, extents
 from stiv.blender.scene.culling import CullingBox, find_culling_box
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
@@ -55,7 +55,7 @@ class CulledEdit:
         self._culling: CullingBox | None = culling
         self._edit = edit
         self._written = self._edit.controls
-        self._start = _corners(self._edit.moving_points(self._written))
+        self._start = np.stack(extents(self._edit.moving_points(self._written)))  # corners of its box, (2, 3)
         self._motion: Motion | ArrayLike | None = None
         self._widened = 0
 
@@ -132,7 +132,8 @@ class CulledEdit:
         """
         if self._culling is None:
             return
-        beyond = np.concatenate([self._start, *(_corners(self._edit.moving_points(state)) for state in states)])
+        boxes = (extents(self._edit.moving_points(state)) for state in states)
+        beyond = np.concatenate([self._start, *boxes])
         self._widened += 1
         participants = find_participants(bpy.context, self._settings)
         few = self._widened <= MAX_WIDENINGS
@@ -154,11 +155,6 @@ class CulledEdit:
         if self._edit.resume_from(shown, self._motion):
             self._edit.write()
         self._written = self._edit.controls
-
-
-def _corners(points: Floats) -> Floats:
-    """The lowest and the highest corner of the box around points, (2, 3)."""
-    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def names_of(participants: Sequence[Participant]) -> set[str]:
