@@ -60,12 +60,12 @@ void CandidateCache::prune(const PositionsView& start, const PositionsView& end,
   const FloatingPointScope floating_point;
   steps_.update(start, end, execution);
   const ClosePairs searched = search_.take_close_pairs(execution);
-  const Vector3 motion = common_motion(start, end);
+  const FrameMotions motions = search_.frame_motions(start, end);
   ClosePairs kept, added;
   execution.for_chunks(4, 1, [&](Index, Index, Index number) {
     const auto kind = static_cast<std::size_t>(number % 2);
     const bool cached = number < 2;
-    append_close(search_.surface(), kinds[kind], (cached ? pairs_ : searched)[kind], steps_, motion,
+    append_close(search_.surface(), kinds[kind], (cached ? pairs_ : searched)[kind], steps_, motions,
                  proximity.separation, (cached ? kept : added)[kind]);
   });
   replace(united(kept, std::move(added), execution));

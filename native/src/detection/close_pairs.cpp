@@ -24,12 +24,12 @@ struct CandidateBlock {
 }  // namespace
 
 void append_close(const Surface& surface, EventKind kind, std::span<const Candidate> candidates,
-                  const VertexSteps& vertices, const Vector3& motion, double separation,
+                  const VertexSteps& vertices, const FrameMotions& motions, double separation,
                   std::vector<Candidate>& close) {
   // A broad phase may skip pairs whose boxes are apart, depending on its frame. The result must not depend on it.
   const double box_separation = 1.1 * separation;
   // This bound on rounding is tighter than that of any source, so no source can have skipped a close pair.
-  const NearbySteps same_step{motion, separation, 0, 0x1p-44};
+  NearbySteps same_step{Vector3::Zero(), separation, 0, 0x1p-44};
   CandidateBlock all, near;
   PairFlags apart;
   const auto append_near = [&] {
@@ -47,8 +47,13 @@ void append_close(const Surface& surface, EventKind kind, std::span<const Candid
     find_apart_by_boxes(kind, all.pairs, vertices, box_separation, boxes_apart);
     for (std::size_t k = 0; k < all.pairs.count; ++k) {
       if (boxes_apart[k] != 0) continue;
-      near.add(all.candidates[k], all.pairs.vertices_of(k));
-      if (near.pairs.count == PairBlock::capacity) append_near();
+      const std::array<Index, 4> pair = all.pairs.vertices_of(k);
+      const Vector3& motion = motions.has_own_frames()
+                                  ? motions.of_pair(surface.body_of(pair[0]), surface.body_of(pair[3]))
+                                  : motions.common;
+      if (near.pairs.count == PairBlock::capacity || motion != same_step.motion) append_near();
+      same_step.motion = motion;
+      near.add(all.candidates[k], pair);
     }
   }
   append_near();

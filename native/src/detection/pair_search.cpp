@@ -79,15 +79,20 @@ std::unique_ptr<CandidateSource> make_source(BroadPhase broad_phase, const Surfa
 PairSearch::PairSearch(std::shared_ptr<const Surface> surface, DetectorOptions options)
     : surface_(std::move(surface)),
       narrow_phase_(options.narrow_phase),
+      frames_(*surface_, options.large_body),
       source_(make_source(options.broad_phase, *surface_)) {}
 
-std::optional<Events> PairSearch::find(const Step& step, PairLimit limit, Execution& execution) {
+std::optional<Events> PairSearch::find(const Step& given, PairLimit limit, Execution& execution) {
+  const Step step = in_frames(given);
   std::optional<std::vector<ChunkResult>> results = search(step, limit, execution, append_event);
   if (!results) return std::nullopt;
-  return collect(*results, execution);
+  Events events = collect(*results, execution);
+  if (limit == PairLimit::respected && step.motions.go_far && !events.empty()) return std::nullopt;
+  return events;
 }
 
-std::optional<double> PairSearch::earliest_time(const Step& step, PairLimit limit, Execution& execution) {
+std::optional<double> PairSearch::earliest_time(const Step& given, PairLimit limit, Execution& execution) {
+  const Step step = in_frames(given);
   std::atomic<double> earliest{never};
   const auto results = search(step, limit, execution, [&](const PairTest& test, EventKind kind) {
     return [&test, &earliest, kind](const Candidate& candidate, ChunkResult&) {
@@ -97,6 +102,7 @@ std::optional<double> PairSearch::earliest_time(const Step& step, PairLimit limi
     };
   });
   if (!results) return std::nullopt;
+  if (limit == PairLimit::respected && step.motions.go_far && earliest.load() < never) return std::nullopt;
   return earliest.load();
 }
 
@@ -129,7 +135,7 @@ ClosePairs PairSearch::take_close_pairs(const Execution& execution) {
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
     const EventKind kind = chunks.kind(chunk);
     const auto append_some = [&](std::span<Candidate> some) {
-      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motion, last_->separation, found[chunk]);
+      append_close(*surface_, kind, some, source_->vertex_steps(), last_->motions, last_->separation, found[chunk]);
     };
     source_->visit(kind, chunks.within_kind(chunk), std::ref(append_some));
   });
@@ -145,13 +151,17 @@ void PairSearch::check_step(const Step& step) const {
     if (positions->rows() != surface_->vertex_count()) surface_->check_positions(*positions);
 }
 
+Step PairSearch::in_frames(const Step& step) const {
+  check_step(step);
+  const FloatingPointScope floating_point;
+  return {step.start, step.end, step.proximity, frames_.choose(step.start, step.end)};
+}
+
 /// Calls `decide(test, kind)(candidate, result)` for every candidate that needs the narrow phase.
 template <class Decide>
-std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Step& given, PairLimit limit,
+std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Step& step, PairLimit limit,
                                                                        Execution& execution, const Decide& decide) {
-  check_step(given);
   const FloatingPointScope floating_point;
-  const Step step{given.start, given.end, given.proximity, common_motion(given.start, given.end)};
   last_.reset();
   source_->update(step, execution);
   ++execution.counters.detections;
@@ -167,7 +177,7 @@ std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Ste
     source_->visit(kind, chunks.within_kind(chunk), std::ref(decide_some));
   });
   count(results, execution.counters);
-  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motion, step.proximity.separation};
+  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motions, step.proximity.separation};
   return results;
 }
 

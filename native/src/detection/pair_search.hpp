@@ -17,7 +17,8 @@ namespace stiv {
 /// Candidates of each kind, by EventKind.
 using ClosePairs = std::array<std::vector<Candidate>, 2>;
 
-/// Whether a search may refuse a step that has too many candidates for bounded time and memory.
+/// Whether a search may refuse a step: one that has too many candidates for bounded time and memory, or one with events
+/// in which a large body moves by many edges. Too long a step between contacts leads to poor constraints.
 enum class PairLimit { respected, ignored };
 
 /// Broad phase, filters and narrow phase over all pairs of a surface. The implementation of Detector.
@@ -27,7 +28,7 @@ class PairSearch {
 
   void prepare(const PositionsView& start, const Execution& execution) { source_->prepare(start, execution); }
 
-  /// Nothing if the step exceeds a pair limit that is respected.
+  /// Nothing if a step is refused.
   /// @throws InputError for a step or a proximity that does not fit, as the others
   std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);
   std::optional<double> earliest_time(const Step& step, PairLimit limit, Execution& execution);
@@ -43,6 +44,9 @@ class PairSearch {
                     Execution& execution) const;
 
   void check_step(const Step& step) const;
+  FrameMotions frame_motions(const PositionsView& start, const PositionsView& end) const {
+    return frames_.choose(start, end);
+  }
   const Surface& surface() const { return *surface_; }
 
  private:
@@ -54,12 +58,14 @@ class PairSearch {
   };
   /// Parameters of a complete search, from which its close pairs are computed.
   struct WholeSearch {
-    Vector3 motion;
+    FrameMotions motions;
     double separation = 0;
   };
 
+  /// A step after its check, with the frames of its bodies.
+  Step in_frames(const Step& step) const;
   template <class Decide>
-  std::optional<std::vector<ChunkResult>> search(const Step& given, PairLimit limit, Execution& execution,
+  std::optional<std::vector<ChunkResult>> search(const Step& step, PairLimit limit, Execution& execution,
                                                  const Decide& decide);
   template <class Decide>
   static void decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates, const Decide& decide,
@@ -69,6 +75,7 @@ class PairSearch {
 
   std::shared_ptr<const Surface> surface_;
   NarrowPhase narrow_phase_;
+  FrameChooser frames_;
   std::unique_ptr<CandidateSource> source_;
   std::optional<WholeSearch> last_;  ///< set while the close pairs of a complete search can be taken
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <vector>
 
 #include "stiv/surface.hpp"
 
@@ -52,6 +53,19 @@ inline MovingScene stirred_sheets(Index size, int sheets, double stir, unsigned 
   for (Index k = 0; k < definition.vertex_count; ++k)
     for (Index axis = 0; axis < 3; ++axis) scene.end(k, axis) += noise(random);
   scene.surface = std::make_shared<const Surface>(std::move(definition));
+  return scene;
+}
+
+/// The same sheets, each carried along by its own displacement; a zero one leaves its sheet at rest.
+inline MovingScene carried_sheets(Index size, const std::vector<Vector3>& displacements, double stir, unsigned seed) {
+  MovingScene scene = stirred_sheets(size, static_cast<int>(displacements.size()), stir, seed);
+  for (std::size_t sheet = 0; sheet < displacements.size(); ++sheet) {
+    const Index first = static_cast<Index>(sheet) * size * size;
+    if (displacements[sheet].isZero(0))
+      scene.end.middleRows(first, size * size) = scene.start.middleRows(first, size * size);
+    else
+      scene.end.middleRows(first, size * size).rowwise() += displacements[sheet].transpose();
+  }
   return scene;
 }
 

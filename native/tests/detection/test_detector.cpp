@@ -16,7 +16,7 @@ namespace {
 
 Events find(const MovingScene& scene, BroadPhase broad_phase, int threads, double separation) {
   Execution execution(threads);
-  return Detector(scene.surface, {.broad_phase = broad_phase})
+  return Detector(scene.surface, {.broad_phase = broad_phase, .large_body = 1})
       .find(scene.start, scene.end, {separation, 0.5}, execution);
 }
 
@@ -54,6 +54,54 @@ TEST_CASE("detector: both cuts of a flip face meet others, and never each other"
     MovingScene struck = scene;
     struck.end.row(4) << 0.6, 0.2, -1;
     CHECK(find(struck, broad_phase, 1, 0).size() == 2);
+  }
+}
+
+TEST_CASE("detector: bodies that move in different directions meet as brute force says, at any scale") {
+  const std::vector<Vector3> displacements{{0, 0, 0}, {0.4, -0.3, -0.15}, {-0.5, 0.1, -0.3}, {0.02, 0.6, -0.4}};
+  std::size_t found = 0;
+  for (const unsigned seed : {1U, 2U, 3U})
+    for (const double scale : {1e-7, 1.0, 1e7}) {
+      MovingScene scene = carried_sheets(12, displacements, 0.01, seed);
+      scene.start *= scale;
+      scene.end *= scale;
+      const Events expected = find(scene, BroadPhase::brute_force, 1, 0.004 * scale);
+      found += expected.size();
+      for (const int threads : {1, 2, 3})
+        CHECK(same_bits(find(scene, BroadPhase::bvh, threads, 0.004 * scale), expected));
+      CHECK(same_bits(find(scene, BroadPhase::hash_grid, 1, 0.004 * scale), expected));
+    }
+  CHECK(found > 1000);
+}
+
+TEST_CASE("detector: a body that moves past others by many edges has no more candidates than one that rests") {
+  const auto candidates = [](const std::vector<Vector3>& displacements) {
+    const MovingScene scene = carried_sheets(20, displacements, 1e-4, 1);
+    Execution execution(1);
+    Detector(scene.surface, {.large_body = 1}).find(scene.start, scene.end, {1e-4, 0.5}, execution);
+    return execution.counters.candidate_pairs;
+  };
+  const Vector3 none = Vector3::Zero(), hardly(1e-5, 0, 0), along(0.5, -0.4, 0.3), down(-0.3, 0.4, -0.3);
+  CHECK(candidates({none, along}) <= candidates({none, hardly}));
+  CHECK(candidates({none, none, along}) <= candidates({none, none, hardly}));
+  CHECK(candidates({down, none, along}) <= candidates({hardly, none, hardly}));
+}
+
+TEST_CASE("detector: within the pair limit, a large body that moves by many edges has no step with events") {
+  const Vector3 none = Vector3::Zero(), beside(0.5, 0, 0), through(0.6, 0, -0.15);
+  for (const bool meets : {false, true}) {
+    const MovingScene scene = carried_sheets(12, {none, meets ? through : beside}, 1e-4, 1);
+    Execution execution(1);
+    for (const Index large_body : {1, 1 << 14}) {
+      Detector detector(scene.surface, {.large_body = large_body});
+      const auto events = detector.find_within_pair_limit(scene.start, scene.end, {1e-4, 0.5}, execution);
+      const auto time = detector.earliest_time_within_pair_limit(scene.start, scene.end, {1e-4, 0.5}, execution);
+      const bool is_refused = meets && large_body == 1;
+      CHECK(events.has_value() != is_refused);
+      CHECK(time.has_value() != is_refused);
+      if (events) CHECK(events->empty() != meets);
+      if (time) CHECK((*time == never) != meets);
+    }
   }
 }
 

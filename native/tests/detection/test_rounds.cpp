@@ -28,7 +28,7 @@ struct CachedSearch {
   CandidateCache cache{detector};
 
   explicit CachedSearch(const MovingScene& scene, BroadPhase broad_phase = BroadPhase::bvh)
-      : detector(scene.surface, {.broad_phase = broad_phase}) {}
+      : detector(scene.surface, {.broad_phase = broad_phase, .large_body = 1}) {}
 
   Events cached(const Positions& start, const Positions& end, int threads = 1) {
     Execution execution(threads);
@@ -68,7 +68,7 @@ std::vector<Positions> ends_of_rounds(const MovingScene& scene, std::mt19937& ra
 
 void compare_rounds(const MovingScene& scene, unsigned seed) {
   std::mt19937 random(seed);
-  Detector one(scene.surface), two(scene.surface);
+  Detector one(scene.surface, {.large_body = 1}), two(scene.surface, {.large_body = 1});
   found_by(one, scene.start, scene.end, 1);
   found_by(two, scene.start, scene.end, 2);
   for (const Positions& end : ends_of_rounds(scene, random)) {
@@ -96,35 +96,38 @@ TEST_CASE("rounds: a detector with cached pairs finds exactly the events of one 
     compare_rounds(scene, seed);
     scene.end.bottomRows(162).rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.9);  // the others fall through it
     compare_rounds(scene, seed);
+    compare_rounds(carried_sheets(9, {{0, 0, 0}, {0.5, 0, -0.15}, {-0.3, 0.4, -0.3}}, 0.02, seed), seed);
   }
 }
 
 TEST_CASE("rounds: cached events are those of a whole search among the cached pairs, whatever came before") {
-  const MovingScene scene = stirred_sheets(9, 3, 0.06, 4);
-  std::mt19937 random(4);
-  CachedSearch trees(scene), grid(scene, BroadPhase::hash_grid);
   std::size_t found = 0, missed = 0;
-  for (const Positions& first : ends_of_rounds(scene, random)) {
-    CachedSearch fresh(scene);
-    trees.cache.clear();
-    grid.cache.clear();
-    const Events before = found_by(trees.detector, scene.start, first, 1);
-    found_by(fresh.detector, scene.start, first, 2);
-    found_by(grid.detector, scene.start, first, 1);
-    for (const Positions& end : ends_of_rounds(scene, random)) {
-      const Events cached = trees.cached(scene.start, end);
-      CHECK(same_bits(cached, fresh.cached(scene.start, end, 2)));
-      CHECK(same_bits(cached, grid.cached(scene.start, end)));
-      const Events all = expected(scene, scene.start, end);
-      for (const Event& event : cached) {
-        const Event* const same = event_of_pair(all, event);
-        REQUIRE(same != nullptr);
-        CHECK(same_bits({event}, {*same}));
+  for (const MovingScene& scene :
+       {stirred_sheets(9, 3, 0.06, 4), carried_sheets(9, {{0, 0, 0}, {0.5, 0, -0.15}, {-0.3, 0.4, -0.3}}, 0.02, 4)}) {
+    std::mt19937 random(4);
+    CachedSearch trees(scene), grid(scene, BroadPhase::hash_grid);
+    for (const Positions& first : ends_of_rounds(scene, random)) {
+      CachedSearch fresh(scene);
+      trees.cache.clear();
+      grid.cache.clear();
+      const Events before = found_by(trees.detector, scene.start, first, 1);
+      found_by(fresh.detector, scene.start, first, 2);
+      found_by(grid.detector, scene.start, first, 1);
+      for (const Positions& end : ends_of_rounds(scene, random)) {
+        const Events cached = trees.cached(scene.start, end);
+        CHECK(same_bits(cached, fresh.cached(scene.start, end, 2)));
+        CHECK(same_bits(cached, grid.cached(scene.start, end)));
+        const Events all = expected(scene, scene.start, end);
+        for (const Event& event : cached) {
+          const Event* const same = event_of_pair(all, event);
+          REQUIRE(same != nullptr);
+          CHECK(same_bits({event}, {*same}));
+        }
+        for (const Event& event : all)
+          if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(cached, event) != nullptr);
+        found += cached.size();
+        missed += all.size() - cached.size();
       }
-      for (const Event& event : all)
-        if (event_of_pair(before, event) != nullptr) CHECK(event_of_pair(cached, event) != nullptr);
-      found += cached.size();
-      missed += all.size() - cached.size();
     }
   }
   CHECK(found > 100);

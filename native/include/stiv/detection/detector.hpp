@@ -29,6 +29,9 @@ class PairSearch;
 struct DetectorOptions {
   BroadPhase broad_phase = BroadPhase::bvh;
   NarrowPhase narrow_phase = NarrowPhase::conservative;
+  /// Vertices from which one of several bodies may have its own frame in the broad phase; fewer pairs within a smaller
+  /// one are not worth it. Events do not depend on it.
+  Index large_body = 1 << 14;
 };
 
 /// Finds interference along linear steps of one surface, with trees that are cached between calls. [P4.1]
@@ -48,9 +51,9 @@ class Detector {
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
   Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);
 
-  /// The same, or nothing if the step has more close pairs than bounded time and memory allow: then search a shorter
-  /// step. The result depends only on the step. Only `BroadPhase::bvh` has a limit. If too many primitives overlap at
-  /// the start, every step exceeds it.
+  /// The same, or nothing if the step has more close pairs than bounded time and memory allow, or has events while a
+  /// large one of several bodies moves by many edges: then search a shorter step. The result depends only on the step.
+  /// Only `BroadPhase::bvh` limits pairs. If too many primitives overlap at the start, every step exceeds that limit.
   std::optional<Events> find_within_pair_limit(const PositionsView& start, const PositionsView& end,
                                                Proximity proximity, Execution& execution);
 

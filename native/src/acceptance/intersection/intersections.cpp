@@ -14,18 +14,18 @@ namespace stiv {
 
 namespace {
 
-GroupTable pairs_of_bodies(const Surface& surface) {
+GroupRelations pairs_of_bodies(const Surface& surface) {
   const auto count = static_cast<Index>(surface.bodies().size());
   std::vector<unsigned char> tested;
   for (Index a = 0; a < count; ++a)
     for (Index b = 0; b < count; ++b) tested.push_back(surface.bodies_meet(a, b));
-  return {count, std::move(tested)};
+  return {GroupTable(count, std::move(tested)), {}};
 }
 
 /// Searches for intersections of two kinds of primitives, or of one kind with itself.
 class Search {
  public:
-  Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupTable& bodies,
+  Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupRelations& bodies,
          const PositionsView& q, const PackedPoints& points)
       : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q), points_(points) {
     if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
@@ -83,7 +83,7 @@ class Search {
 
   const Surface& surface_;
   const Primitives &first_, &second_;
-  const GroupTable& bodies_;
+  const GroupRelations& bodies_;
   PositionsView q_;
   const PackedPoints& points_;
   std::vector<Bvh::Task> tasks_;
@@ -143,7 +143,7 @@ class IntersectionTest::Implementation {
   std::shared_ptr<const Surface> surface_;
   Primitives triangles_, loose_edges_, loose_vertices_;
   Stars stars_;
-  GroupTable bodies_;
+  GroupRelations bodies_;
   std::optional<PlacedVertices> placed_;   ///< of the last update, unless it was cancelled
   std::vector<unsigned char> free_stars_;  ///< of the last update
 };

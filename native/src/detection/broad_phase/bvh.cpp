@@ -15,7 +15,7 @@ namespace {
 /// Tasks, starting with the pair of roots, level by level.
 class TaskList {
  public:
-  TaskList(const Bvh& a, const Bvh& b, const GroupTable& groups) : a_(a), b_(b), groups_(groups) {}
+  TaskList(const Bvh& a, const Bvh& b, const GroupRelations& groups) : a_(a), b_(b), groups_(groups) {}
 
   std::vector<Bvh::Task> make(std::size_t about) {
     std::vector<Bvh::Task> tasks;
@@ -35,8 +35,13 @@ class TaskList {
   void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
     const Bvh::Level &a = a_.levels()[task.level], &b = b_.levels()[task.other_level];
     const Index group = a.groups[task.node], other = b.groups[task.other_node];
-    if (group != Bvh::mixed && other != Bvh::mixed && !groups_.meet(group, other)) return;
-    if (may_meet(a.boxes[task.node], b.boxes[task.other_node])) tasks.push_back(task);
+    if (group != Bvh::mixed && other != Bvh::mixed && !groups_.table.meet(group, other)) return;
+    if (may_meet_in_frames(a.boxes[task.node], group, b.boxes[task.other_node], other)) tasks.push_back(task);
+  }
+
+  bool may_meet_in_frames(const PackedBox& box, Index group, const PackedBox& other_box, Index other) const {
+    if (groups_.frames.are_alike()) return may_meet(box, other_box);
+    return may_meet(grown(box, groups_.frames.growth(group, other)), other_box);
   }
 
   /// Replaces both subtrees, or the higher one, with their children. False if they are blocks.
@@ -51,8 +56,10 @@ class TaskList {
     const auto [begin, end] = children(a_, task.level, task.node, level);
     const auto [other_begin, other_end] = children(b_, task.other_level, task.other_node, other_level);
     const PackedBox& other_box = b_.levels()[task.other_level].boxes[task.other_node];
+    const Index group = a_.levels()[task.level].groups[task.node];
+    const Index other_group = b_.levels()[task.other_level].groups[task.other_node];
     for (Index node = begin; node < end; ++node) {
-      if (!may_meet(a_.levels()[level].boxes[node], other_box)) continue;
+      if (!may_meet_in_frames(a_.levels()[level].boxes[node], group, other_box, other_group)) continue;
       for (Index other = same ? node : other_begin; other < other_end; ++other)
         add(tasks, {level, node, other_level, other});
     }
@@ -66,7 +73,7 @@ class TaskList {
   }
 
   const Bvh &a_, &b_;
-  const GroupTable& groups_;
+  const GroupRelations& groups_;
 };
 
 }  // namespace
@@ -224,7 +231,7 @@ void Bvh::refit_some_corners(std::span<const Index> primitives, const std::vecto
   summarise_touched();
 }
 
-std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupTable& groups, std::size_t about) const {
+std::vector<Bvh::Task> Bvh::tasks(const Bvh& other, const GroupRelations& groups, std::size_t about) const {
   return TaskList(*this, other, groups).make(about);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "detection/broad_phase/bounds.hpp"
+#include "detection/broad_phase/group_frames.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/execution.hpp"
 
@@ -27,6 +28,12 @@ class GroupTable {
  private:
   Index groups_ = 0;
   std::vector<unsigned char> meets_;  // (groups, groups)
+};
+
+/// Knowledge of a traversal about groups of primitives.
+struct GroupRelations {
+  GroupTable table{};
+  GroupFrames frames{};
 };
 
 /// Pairs that a traversal found, one array for each side. Its memory is reused.
@@ -102,12 +109,12 @@ class Bvh {
 
   /// About this many tasks, always the same ones for the same trees. Together they cover all pairs (i of this tree, j
   /// of `other`) with overlapping boxes of which one is active. Pairs of groups that are not tested are skipped; if
-  /// both trees know their corners, so are pairs that share one. Within one tree, each unordered pair is reported once,
-  /// with i != j.
-  std::vector<Task> tasks(const Bvh& other, const GroupTable& groups, std::size_t about = 256) const;
+  /// both trees know their corners, so are pairs that share one. Boxes are given in the frames of their groups. Within
+  /// one tree, each unordered pair is reported once, with i != j.
+  std::vector<Task> tasks(const Bvh& other, const GroupRelations& groups, std::size_t about = 256) const;
 
   /// Appends the pairs of one task, in an order that depends on the trees alone.
-  void overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const;
+  void overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const;
 
   /// All pairs at once; the same for any number of threads.
   static std::vector<std::pair<Index, Index>> overlapping_pairs(const Bvh& a, const Bvh& b, const Execution& execution);
@@ -127,7 +134,7 @@ class Bvh {
   const std::vector<Index>& corners() const { return corners_; }  ///< (blocks, corner_size, width)
   Index corner_size() const { return corner_size_; }
 
-  static constexpr Index mixed = -1;
+  static constexpr Index mixed = GroupFrames::mixed;
 
  private:
   void set_child(Level& level, std::size_t child, const PackedBox& box);

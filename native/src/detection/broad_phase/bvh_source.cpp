@@ -33,7 +33,7 @@ class BvhSource final : public CandidateSource {
  public:
   explicit BvhSource(const Surface& surface)
       : surface_(surface),
-        bodies_(table_of_bodies(surface)),
+        bodies_{table_of_bodies(surface)},
         swept_(surface),
         numbers_(surface.vertex_count()),
         vertices_(surface, numbers_.data(), surface.vertex_count()),
@@ -63,6 +63,7 @@ class BvhSource final : public CandidateSource {
     edges_.update(step, swept_, change, execution);
     faces_.update(step, swept_, change, execution);
     refitted_ = true;
+    bodies_.frames = swept_.body_frames();
     collect(execution);
   }
 
@@ -168,16 +169,34 @@ class BvhSource final : public CandidateSource {
     found.full = nullptr;
   }
 
+  /// Fills a block with pairs from `begin` on that share a frame. Returns where they end.
+  std::size_t fill_block(EventKind kind, const PairBuffer& found, std::size_t begin, PairBlock& block,
+                         Vector3& motion) const {
+    const FrameMotions& motions = swept_.motions();
+    const std::size_t most = std::min(found.count, begin + PairBlock::capacity);
+    std::size_t end = begin;
+    block.count = 0;
+    motion = motions.common;
+    for (; end < most; ++end) {
+      const std::array<Index, 4> vertices = vertices_of(surface_, kind, found[end]);
+      if (motions.has_own_frames()) {
+        const Vector3& of_pair = motions.of_pair(surface_.body_of(vertices[0]), surface_.body_of(vertices[3]));
+        if (end > begin && of_pair != motion) break;
+        motion = of_pair;
+      }
+      block.add(vertices);
+    }
+    return end;
+  }
+
   /// Appends the pairs that may interfere in this step or in a nearby one.
   void append_near(EventKind kind, const PairBuffer& found, std::vector<Candidate>& near) const {
-    const NearbySteps steps{swept_.motion(), separation_, SweptVertices::slack};
+    NearbySteps steps{Vector3::Zero(), separation_, SweptVertices::slack};
     PairBlock block;
     PairFlags apart;
     std::array<Candidate, PairBlock::capacity> some;
-    for (std::size_t begin = 0; begin < found.count; begin += block.count) {
-      block.count = 0;
-      const std::size_t end = std::min(found.count, begin + PairBlock::capacity);
-      for (std::size_t k = begin; k < end; ++k) block.add(vertices_of(surface_, kind, found[k]));
+    for (std::size_t begin = 0, end; begin < found.count; begin = end) {
+      end = fill_block(kind, found, begin, block, steps.motion);
       find_apart_by_hulls(kind, block, swept_.steps(), steps, apart);
       std::size_t count = 0;
       for (std::size_t k = begin; k < end; ++k) {
@@ -200,7 +219,7 @@ class BvhSource final : public CandidateSource {
   }
 
   const Surface& surface_;
-  GroupTable bodies_;
+  GroupRelations bodies_;
   SweptVertices swept_;
   double separation_ = 0;
   std::vector<Index> numbers_;  // of the vertices: their rows

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #ifndef STIV_BVH_TRAVERSAL_TYPES
 #define STIV_BVH_TRAVERSAL_TYPES
@@ -40,19 +41,25 @@ struct TreeView {
   Index corner_size;
 };
 
-/// Two trees and where their pairs go. `meets` is null where all groups meet.
+/// Two trees and where their pairs go. `meets` is null if all groups meet, `frames` if they have the same frame.
 struct Traversal {
   TreeView a, b;
   bool same_tree;
   const GroupTable* meets;
+  const GroupFrames* frames;
   PairBuffer* found;
+
+  Index group(const Bvh::Task& pair) const { return a.groups[pair.level][pair.node]; }
+  Index other_group(const Bvh::Task& pair) const { return b.groups[pair.other_level][pair.other_node]; }
 
   bool groups_meet(const Bvh::Task& pair) const {
     if (meets == nullptr) return true;
-    const Index group = a.groups[pair.level][pair.node];
-    const Index other = b.groups[pair.other_level][pair.other_node];
-    return group == Bvh::mixed || other == Bvh::mixed || meets->meet(group, other);
+    const Index first = group(pair), second = other_group(pair);
+    return first == Bvh::mixed || second == Bvh::mixed || meets->meet(first, second);
   }
+
+  /// Of boxes of the first node, in the frame of the second.
+  BoxGrowth growth(const Bvh::Task& pair) const { return frames->growth(group(pair), other_group(pair)); }
 
   /// Makes room for the pairs of two blocks.
   void reserve() const {
@@ -127,6 +134,18 @@ HWY_INLINE unsigned meeting_children(const Bvh::Node& node, const PackedBox& box
   return bits;
 }
 
+/// The children of a node, as large as they are in another frame.
+HWY_INLINE Bvh::Node grown_children(const Bvh::Node& node, const BoxGrowth& growth) {
+  const Floats d;
+  Bvh::Node result = node;
+  for (std::size_t plane = 0; plane < growth.values.size(); ++plane)
+    for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
+      const auto sum = hn::Add(hn::Load(d, node.planes[plane] + lane), hn::Set(d, growth.values[plane]));
+      hn::Store(hn::Max(sum, hn::Set(d, std::numeric_limits<float>::lowest())), d, result.planes[plane] + lane);
+    }
+  return result;
+}
+
 /// The lanes in the mask, moved to the front. GCC 12 copies the table of Highway's own Compress for AVX2 (1 KB) to the
 /// stack at each call.
 HWY_INLINE hn::Vec<Ints> compressed(hn::Vec<Ints> lanes, FloatMask mask) {
@@ -153,11 +172,12 @@ HWY_INLINE FloatMask apart_lanes(const Index* own, const Index* others, std::siz
   return mask;
 }
 
+/// `a` is the first block as it is in the frame of the other.
 template <Index size_a, Index size_b>
-void meet_blocks(const Traversal& t, Index block, Index other) {
+void meet_blocks(const Traversal& t, Index block, Index other, const Bvh::Node& a) {
   const Floats d;
   const Ints i;
-  const Bvh::Node &a = t.a.nodes[0][block], &b = t.b.nodes[0][other];
+  const Bvh::Node& b = t.b.nodes[0][other];
   unsigned left = meeting_children(a, t.b.boxes[0][other]);
   if (left == 0) return;
   t.reserve();
@@ -187,6 +207,50 @@ void meet_blocks(const Traversal& t, Index block, Index other) {
   t.found->count = count;
 }
 
+/// Boxes of a pair of nodes, each as the other one's frame sees it.
+template <bool grow>
+struct FramedBoxes {
+  BoxGrowth growth, opposite;
+
+  HWY_INLINE PackedBox first(const PackedBox& box) const { return grow ? grown(box, growth) : box; }
+  HWY_INLINE PackedBox second(const PackedBox& box) const { return grow ? grown(box, opposite) : box; }
+};
+
+/// Passes on the primitives of two nodes if they are blocks, else puts pairs of children onto the stack.
+template <Index size_a, Index size_b, bool grow>
+HWY_INLINE void meet_nodes(const Traversal& t, const Bvh::Task& pair, const FramedBoxes<grow>& framed, Bvh::Task* stack,
+                           std::size_t& top) {
+  const auto level = static_cast<std::size_t>(pair.level), other_level = static_cast<std::size_t>(pair.other_level);
+  const Bvh::Node &node = t.a.nodes[level][pair.node], &other = t.b.nodes[other_level][pair.other_node];
+  if (level == 0 && other_level == 0) {
+    if constexpr (grow)
+      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node, grown_children(node, framed.growth));
+    else
+      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node, node);
+  } else if (level > other_level) {
+    unsigned left = meeting_children(node, framed.second(t.b.boxes[other_level][pair.other_node]));
+    for (; left != 0; left &= left - 1)
+      stack[top++] = {pair.level - 1, pair.node * Bvh::width + std::countr_zero(left), pair.other_level,
+                      pair.other_node};
+  } else if (level < other_level) {
+    unsigned left = meeting_children(other, framed.first(t.a.boxes[level][pair.node]));
+    for (; left != 0; left &= left - 1)
+      stack[top++] = {pair.level, pair.node, pair.other_level - 1,
+                      pair.other_node * Bvh::width + std::countr_zero(left)};
+  } else {
+    const bool same = t.same_tree && pair.node == pair.other_node;
+    unsigned left = meeting_children(node, framed.second(t.b.boxes[other_level][pair.other_node]));
+    for (; left != 0; left &= left - 1) {
+      const int k = std::countr_zero(left);
+      const Index child = pair.node * Bvh::width + k;
+      unsigned others = meeting_children(other, framed.first(t.a.boxes[level - 1][child]));
+      if (same) others &= ~0U << k;
+      for (; others != 0; others &= others - 1)
+        stack[top++] = {pair.level - 1, child, pair.level - 1, pair.other_node * Bvh::width + std::countr_zero(others)};
+    }
+  }
+}
+
 template <Index size_a, Index size_b>
 void descend(const Traversal& t, const Bvh::Task& root) {
   // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Not initialized: clearing it
@@ -197,33 +261,12 @@ void descend(const Traversal& t, const Bvh::Task& root) {
   while (top > 0) {
     const Bvh::Task pair = stack[--top];
     if (!t.groups_meet(pair)) continue;
-    const auto level = static_cast<std::size_t>(pair.level), other_level = static_cast<std::size_t>(pair.other_level);
-    if (level == 0 && other_level == 0) {
-      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node);
-      if (t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
-    } else if (level > other_level) {
-      unsigned left = meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node]);
-      for (; left != 0; left &= left - 1)
-        stack[top++] = {pair.level - 1, pair.node * Bvh::width + std::countr_zero(left), pair.other_level,
-                        pair.other_node};
-    } else if (level < other_level) {
-      unsigned left = meeting_children(t.b.nodes[other_level][pair.other_node], t.a.boxes[level][pair.node]);
-      for (; left != 0; left &= left - 1)
-        stack[top++] = {pair.level, pair.node, pair.other_level - 1,
-                        pair.other_node * Bvh::width + std::countr_zero(left)};
-    } else {
-      const bool same = t.same_tree && pair.node == pair.other_node;
-      unsigned left = meeting_children(t.a.nodes[level][pair.node], t.b.boxes[other_level][pair.other_node]);
-      for (; left != 0; left &= left - 1) {
-        const int k = std::countr_zero(left);
-        const Index child = pair.node * Bvh::width + k;
-        unsigned others = meeting_children(t.b.nodes[level][pair.other_node], t.a.boxes[level - 1][child]);
-        if (same) others &= ~0U << k;
-        for (; others != 0; others &= others - 1)
-          stack[top++] = {pair.level - 1, child, pair.level - 1,
-                          pair.other_node * Bvh::width + std::countr_zero(others)};
-      }
-    }
+    const BoxGrowth growth = t.frames == nullptr ? BoxGrowth() : t.growth(pair);
+    if (t.frames == nullptr || growth.is_none)
+      meet_nodes<size_a, size_b>(t, pair, FramedBoxes<false>(), stack.data(), top);
+    else
+      meet_nodes<size_a, size_b>(t, pair, FramedBoxes<true>{growth, growth.opposite()}, stack.data(), top);
+    if (pair.level + pair.other_level == 0 && t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
   }
 }
 
@@ -245,8 +288,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void Bvh::overlaps(const Task& task, const Bvh& other, const GroupTable& groups, PairBuffer& found) const {
-  const Traversal traversal{TreeView(*this), TreeView(other), this == &other, groups.empty() ? nullptr : &groups,
+void Bvh::overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const {
+  const Traversal traversal{TreeView(*this),
+                            TreeView(other),
+                            this == &other,
+                            groups.table.empty() ? nullptr : &groups.table,
+                            groups.frames.are_alike() ? nullptr : &groups.frames,
                             &found};
   STIV_FOR_VECTOR_TARGET(traverse_trees)(traversal, task);
 }

@@ -45,7 +45,9 @@ class HashGrid final : public CandidateSource {
   explicit HashGrid(const Surface& surface) : surface_(surface), swept_(surface) {}
 
   void update(const Step& step, const Execution& execution) override {
-    swept_.update(step, execution);
+    Step in_common_frame = step;
+    in_common_frame.motions.of_bodies.clear();  // cells know no bodies
+    swept_.update(in_common_frame, execution);
     relevance_.emplace(surface_, step);
     const std::vector<Bounds> faces = bounds_of(surface_.triangles()), edges = bounds_of(surface_.edges());
     std::vector<Bounds> vertices;

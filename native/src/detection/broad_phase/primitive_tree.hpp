@@ -50,7 +50,8 @@ class PrimitiveTree {
   const std::vector<Index>& curve_places() const { return curve_places_; }
 
  private:
-  /// Below one changed vertex in this many, finding their primitives is faster than refitting all on several threads.
+  /// Below one changed vertex in this many, finding their primitives is faster than refitting those of their bodies on
+  /// several threads.
   static constexpr std::size_t few = 16;
   static constexpr Index chunk_size = 8192;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "detection/broad_phase/frame_motions.hpp"
 #include "stiv/detection/proximity.hpp"
 #include "stiv/types.hpp"
 
@@ -11,13 +12,7 @@ struct Step {
   PositionsView start;
   PositionsView end;
   Proximity proximity;
-  Vector3 motion = Vector3::Zero();  ///< of the frame in which boxes are computed, see common_motion
+  FrameMotions motions{};  ///< of the frames in which boxes are computed
 };
-
-/// The mean displacement of a step if the displacements relative to it are much smaller, else zero. A frame that moves
-/// along makes the boxes of a common motion small; a frame at rest keeps the boxes of vertices at rest unchanged. Any
-/// frame is valid, so the mean of about a thousand evenly picked vertices is enough. Depends only on the step, to the
-/// last bit. Zero without vertices.
-Vector3 common_motion(const PositionsView& start, const PositionsView& end);
 
 }  // namespace stiv

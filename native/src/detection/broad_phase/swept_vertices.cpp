@@ -58,14 +58,24 @@ struct SweptVertices::Survey {
 // no larger than the diameter of all coordinates. Each of two boxes is padded by more than half of that.
 double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
 
-/// Vertices whose step differs from that of their box, ascending.
+bool SweptVertices::has_other_frame(const Step& step, Index vertex) const {
+  const Index body = surface_.body_of(vertex);
+  return step.motions.of_body(body) != motions_.of_body(body);
+}
+
+/// Vertices whose step differs from that of their box, or whose frame does but not the common one; ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
+  const bool frames_differ = step.motions.common == motions_.common && step.motions != motions_;
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbors
     const auto same = [&](Index first, Index number) {
-      return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
+      if (!complete_ || !same_bits(step.start, start_, first, number) || !same_bits(step.end, end_, first, number))
+        return false;
+      for (Index k = 0; frames_differ && k < number; ++k)
+        if (has_other_frame(step, first + k)) return false;
+      return true;
     };
     for (Index some = begin; some < end; some += run) {
       const Index last = std::min(end, some + run);
@@ -95,11 +105,11 @@ SweptVertices::Survey SweptVertices::survey(const Step& step, const Execution& e
   return whole;
 }
 
-/// The current frame if it is still suitable; with the motion of this step.
+/// The current frame if it is still suitable; with the common motion of this step.
 SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& survey) const {
   Frame frame = frame_;
   frame.separation = step.proximity.separation;
-  frame.motion = step.motion;
+  frame.motion = step.motions.common;
   if (changed_.empty()) return frame;
   const auto count = static_cast<double>(surface_.vertex_count()), changed = static_cast<double>(changed_.size());
   const bool reaches =
@@ -117,15 +127,30 @@ SweptVertices::Frame SweptVertices::frame_for(const Step& step, const Survey& su
   return frame;
 }
 
+// Numbers of boxes are coordinates relative to the center, less a motion, with padding.
+GroupFrames SweptVertices::body_frames() const {
+  if (!motions_.has_own_frames()) return {};
+  std::vector<Vector3> relative;
+  double reach = 0;
+  for (const Vector3& motion : motions_.of_bodies) {
+    relative.emplace_back(motion - motions_.common);
+    reach = std::max(reach, motion.lpNorm<Eigen::Infinity>());
+  }
+  reach = std::max(reach, motions_.common.lpNorm<Eigen::Infinity>());
+  return {relative, 4 * (reach + frame_.radius + frame_.separation)};
+}
+
 PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   const double *from = row(step.start, vertex), *to = row(step.end, vertex);
+  const Vector3& own_motion = motions_.of_body(surface_.body_of(vertex));
   double start[3], end[3], reach = 0;
   bool moves = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Index>(k);
     start[k] = from[k] - frame_.centre[axis];
-    end[k] = to[k] - frame_.centre[axis] - frame_.motion[axis];
-    reach = std::max(reach, std::abs(end[k] - start[k]));
+    const double target = to[k] - frame_.centre[axis];
+    end[k] = target - own_motion[axis];
+    reach = std::max({reach, std::abs(end[k] - start[k]), std::abs(target - frame_.motion[axis] - start[k])});
     moves |= from[k] != to[k];
   }
   const double padding = frame_.margin() + slack * reach;
@@ -139,18 +164,28 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
   return box;
 }
 
-/// Is the start that of the vertex's box, and is the end within the slack of the segment? (Both without the common
-/// motion of their step.)
+/// Is the start that of the vertex's box, and is the end within the slack of the segment? In the frame of the body for
+/// its boxes and for pairs within it, in the common frame for other pairs.
 bool SweptVertices::near_segment(const Step& step, Index vertex) const {
   if (!same_bits(step.start, start_, vertex, 1)) return false;
+  const Index body = surface_.body_of(vertex);
+  const Vector3 &own = motions_.of_body(body), &own_of_step = step.motions.of_body(body);
+  const bool has_own_frame = own != motions_.common || own_of_step != step.motions.common;
+  return (!has_own_frame || near_segment(step, vertex, own, own_of_step)) &&
+         near_segment(step, vertex, motions_.common, step.motions.common);
+}
+
+/// The same in a frame with one motion for the boxes, and another one for the step.
+bool SweptVertices::near_segment(const Step& step, Index vertex, const Vector3& frame_motion,
+                                 const Vector3& step_motion) const {
   const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
-  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_.motion, other = end - start - step.motion;
+  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_motion, other = end - start - step_motion;
   const double length2 = motion.squaredNorm();
   const bool may_move = boxes_[vertex].active() || start == end;
   if (!(length2 > 0) || !may_move) return false;
   const double along = std::clamp(other.dot(motion) / length2, 0.0, 1.0);
   const double aside = (other - along * motion).lpNorm<Eigen::Infinity>();
-  const double size = start.lpNorm<1>() + end.lpNorm<1>() + step.motion.lpNorm<1>() + frame_.motion.lpNorm<1>();
+  const double size = start.lpNorm<1>() + end.lpNorm<1>() + step_motion.lpNorm<1>() + frame_motion.lpNorm<1>();
   return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
 }
 
@@ -165,10 +200,10 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
   });
 }
 
-/// Do the boxes contain the step in a frame with its motion? False for numbers that are not finite.
+/// Do the boxes contain the step in frames with its motions? False for numbers that are not finite.
 bool SweptVertices::holds(const Step& step, const Execution& execution) const {
   if (step.proximity.separation != frame_.separation) return false;
-  const bool all = step.motion != frame_.motion;
+  const bool all = step.motions.common != motions_.common;
   const auto count = all ? surface_.vertex_count() : static_cast<Index>(changed_.size());
   std::atomic<bool> near{true};
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
@@ -203,6 +238,7 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
   const bool all = !complete_ || frame != frame_;
   complete_ = false;  // until the end: this may be cancelled
   frame_ = frame;
+  motions_ = step.motions;
   if (all) {
     boxes_.resize(count);
     start_.resize(count, 3);

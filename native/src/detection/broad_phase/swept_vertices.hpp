@@ -5,6 +5,7 @@
 
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/candidate_source.hpp"
+#include "detection/broad_phase/group_frames.hpp"
 
 namespace stiv {
 
@@ -12,7 +13,8 @@ namespace stiv {
 /// does while all stay within their boxes. A box is active if its vertex moves.
 ///
 /// The padding covers the separation and the error of the narrow phase. It also covers `slack` times the vertex's
-/// displacement, so that steps from the same start stay inside if they end near the segment of the vertex.
+/// displacement, in the common frame or in its own if that is more, so that steps from the same start stay inside if
+/// they end near the segment of the vertex. (mathematics.md, "Boxes" and "Rounds of one edit")
 class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
@@ -32,8 +34,10 @@ class SweptVertices {
   /// Fraction of a vertex's displacement in the frame (its largest component) by which its box is padded. Small,
   /// because responses change a step by far more than padding can cover.
   static constexpr double slack = 1.0 / 1024;
-  /// The displacement of the frame of the boxes.
-  const Vector3& motion() const { return frame_.motion; }
+  /// The displacements of the frames of the boxes.
+  const FrameMotions& motions() const { return motions_; }
+  /// The same as the boxes' groups, one for each body.
+  GroupFrames body_frames() const;
 
   /// The step of the last update.
   const VertexSteps& steps() const { return steps_; }
@@ -51,10 +55,10 @@ class SweptVertices {
   }
 
  private:
-  /// The frame of the boxes. It changes as rarely as possible, so that boxes stay valid.
+  /// The parameters that all frames share. They change as rarely as possible, so that boxes stay valid.
   struct Frame {
     Vector3 centre = Vector3::Zero();
-    Vector3 motion = Vector3::Zero();  ///< displacement in a step, see common_motion
+    Vector3 motion = Vector3::Zero();  ///< the common one
     double radius = -1;                ///< bound of the coordinates relative to the center, at the start and at the end
     double separation = 0;
 
@@ -68,12 +72,15 @@ class SweptVertices {
   void take_steps(const Step& step, const Execution& execution);
   Frame frame_for(const Step& step, const Survey& survey) const;
   PackedBox box(const Step& step, Index vertex) const;
+  bool has_other_frame(const Step& step, Index vertex) const;
   bool near_segment(const Step& step, Index vertex) const;
+  bool near_segment(const Step& step, Index vertex, const Vector3& frame_motion, const Vector3& step_motion) const;
   bool holds(const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;
   Frame frame_;
+  FrameMotions motions_;
   Positions start_, end_;  // of the step for which each box was computed
   std::vector<PackedBox> boxes_;
   std::vector<Index> changed_;

@@ -78,14 +78,56 @@ TEST_CASE("bvh: groups that do not meet are left out") {
   const std::vector<Bounds> boxes = random_boxes(400, 0.2, 5);
   std::vector<Index> groups;
   for (Index k = 0; k < 400; ++k) groups.push_back(k % 3);
-  const GroupTable table(3, {0, 1, 1, 1, 1, 0, 1, 0, 1});
+  const GroupRelations relations{GroupTable(3, {0, 1, 1, 1, 1, 0, 1, 0, 1}), {}};
   const Bvh tree(boxes, groups);
   PairBuffer found;
-  for (const Bvh::Task& task : tree.tasks(tree, table)) tree.overlaps(task, tree, table, found);
+  for (const Bvh::Task& task : tree.tasks(tree, relations)) tree.overlaps(task, tree, relations, found);
   Pairs pairs;
   for (std::size_t k = 0; k < found.count; ++k) pairs.emplace_back(found.first[k], found.second[k]);
   CHECK(sorted(pairs, true) ==
-        expected_pairs(boxes, boxes, [&](Index i, Index j) { return table.meet(i % 3, j % 3); }));
+        expected_pairs(boxes, boxes, [&](Index i, Index j) { return relations.table.meet(i % 3, j % 3); }));
+}
+
+TEST_CASE("bvh: boxes in moving frames meet if they do at some time, and hardly any others") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const std::vector<Bounds> boxes = random_boxes(600, 0.1, 8);
+  std::vector<Index> groups;
+  for (Index k = 0; k < 600; ++k) groups.push_back(k % 4);
+  for (const double scale : {1e-5, 0.1, 3.0}) {
+    std::vector<Vector3> motions;
+    for (int k = 0; k < 4; ++k) motions.emplace_back(scale * Vector3(unit(random), unit(random), unit(random)));
+    motions[2] = motions[0];
+    const GroupRelations relations{{}, GroupFrames(motions, 8)};
+    const Bvh tree(boxes, groups);
+    PairBuffer found;
+    for (const Bvh::Task& task : tree.tasks(tree, relations)) tree.overlaps(task, tree, relations, found);
+    Pairs pairs;
+    for (std::size_t k = 0; k < found.count; ++k) pairs.emplace_back(found.first[k], found.second[k]);
+    pairs = sorted(pairs, true);
+    CHECK(std::adjacent_find(pairs.begin(), pairs.end()) == pairs.end());
+    const auto meet = [&](Index i, Index j, double tolerance) {
+      const Bounds &a = boxes[static_cast<std::size_t>(i)], &b = boxes[static_cast<std::size_t>(j)];
+      const Vector3 relative = motions[static_cast<std::size_t>(i % 4)] - motions[static_cast<std::size_t>(j % 4)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double along = relative[static_cast<Index>(axis)];
+        if (double(a.low[axis]) + std::min(0.0, along) > double(b.high[axis]) + tolerance ||
+            double(b.low[axis]) > double(a.high[axis]) + std::max(0.0, along) + tolerance)
+          return false;
+      }
+      return true;
+    };
+    std::size_t wanted = 0, most = 0;
+    for (Index i = 0; i < 600; ++i)
+      for (Index j = i + 1; j < 600; ++j) {
+        most += meet(i, j, 1e-4);
+        if (!meet(i, j, 0)) continue;
+        ++wanted;
+        CHECK(std::binary_search(pairs.begin(), pairs.end(), std::pair(i, j)));
+      }
+    CHECK(wanted > 100);
+    CHECK(pairs.size() <= most);
+  }
 }
 
 TEST_CASE("bvh: groups that did not change keep their boxes") {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "detection/broad_phase/primitive_tree.hpp"
+#include "detection/scenes.hpp"
 
 using namespace stiv;
 
@@ -125,4 +126,27 @@ TEST_CASE("primitive tree: kept while neighbours stay together, however far they
   const Kept kept(rest, bent);
   CHECK(kept.tree.tree().order() == kept.before->order());
   CHECK(pairs(kept.tree.tree()) == pairs(*kept.unchanged));
+}
+
+TEST_CASE(
+    "primitive tree: a body carried past one at rest, by many edges, has the pairs of edges that it has at rest") {
+  const auto pairs_of_edges = [](const Vector3& displacement, bool own_frames) {
+    const MovingScene scene = carried_sheets(20, {Vector3::Zero(), displacement}, 1e-4, 1);
+    const Surface& surface = *scene.surface;
+    Step step{scene.start, scene.end, {1e-4, 0.5}};
+    if (own_frames) step.motions = FrameChooser(surface, 1).choose(scene.start, scene.end);
+    SweptVertices swept(surface);
+    const Execution execution(1);
+    PrimitiveTree<2> edges(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()));
+    edges.update(step, swept, swept.update(step, execution), execution);
+    const GroupRelations bodies{{}, swept.body_frames()};
+    PairBuffer found;
+    for (const Bvh::Task& task : edges.tree().tasks(edges.tree(), bodies))
+      edges.tree().overlaps(task, edges.tree(), bodies, found);
+    return static_cast<double>(found.count);
+  };
+  const Vector3 hardly(1e-4, 0, 0), away(0.5, -0.4, 0.3);
+  CHECK(pairs_of_edges(hardly, true) > 1000);
+  CHECK(pairs_of_edges(away, true) < 1.1 * pairs_of_edges(hardly, true));  // of the slack
+  CHECK(pairs_of_edges(away, false) > 10 * pairs_of_edges(away, true));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include "detection/broad_phase/frame_motions.hpp"
 #include "detection/broad_phase/step.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
 #include "detection/scenes.hpp"
@@ -11,9 +12,21 @@ namespace {
 
 using Change = SweptVertices::Change;
 
+Change update_in_frames(SweptVertices& swept, const Surface& surface, const Positions& start, const Positions& end) {
+  const Execution execution(2);
+  return swept.update({start, end, {0.01, 0.5}, FrameChooser(surface, 1).choose(start, end)}, execution);
+}
+
+double longest_side(const PackedBox& box) {
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    longest = std::max(longest, -double(box.values[axis + 3]) - double(box.values[axis]));
+  return longest;
+}
+
 Change update(SweptVertices& swept, const Positions& start, const Positions& end, double separation = 0.01) {
   const Execution execution(2);
-  return swept.update({start, end, {separation, 0.5}, common_motion(start, end)}, execution);
+  return swept.update({start, end, {separation, 0.5}, {common_motion(start, end), {}}}, execution);
 }
 
 }  // namespace
@@ -67,4 +80,26 @@ TEST_CASE("swept vertices: the boxes of vertices at rest stay, whatever the othe
       CHECK(swept.boxes()[vertex].values == before[vertex].values);
     start = end;
   }
+}
+
+TEST_CASE("swept vertices: a body in a frame of its own has small boxes, and leaves those of others as they are") {
+  const Vector3 carried(3, -2, 1);
+  const MovingScene scene = carried_sheets(20, {Vector3::Zero(), carried, Vector3::Zero()}, 0.001, 4);
+  const Surface& surface = *scene.surface;
+  SweptVertices swept(surface);
+  update_in_frames(swept, surface, scene.start, scene.start - 2 * (scene.end - scene.start));  // as far as it goes
+  update_in_frames(swept, surface, scene.start, scene.start + 1e-3 * (scene.end - scene.start).rowwise().reverse());
+  const std::vector<PackedBox> before = swept.boxes();
+  CHECK(update_in_frames(swept, surface, scene.start, scene.end) == Change::some);
+  CHECK(swept.changed_bodies() == std::vector<unsigned char>{0, 1, 0});
+  for (std::size_t vertex = 0; vertex < before.size(); ++vertex) {
+    const bool moves = surface.body_of(static_cast<Index>(vertex)) == 1;
+    CHECK((swept.boxes()[vertex].values == before[vertex].values) != moves);
+    CHECK(longest_side(swept.boxes()[vertex]) < 0.03);
+  }
+  CHECK(update_in_frames(swept, surface, scene.start, scene.start + 0.5 * (scene.end - scene.start)) == Change::none);
+  Positions part = scene.end;
+  part.row(450) = scene.start.row(450);
+  CHECK(update_in_frames(swept, surface, scene.start, part) == Change::some);  // another mean of this body
+  CHECK(swept.changed_bodies() == std::vector<unsigned char>{0, 1, 0});
 }
