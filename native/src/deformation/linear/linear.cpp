@@ -21,7 +21,7 @@ using Entry = WeightMatrix::InnerIterator;
 class Linear final : public LinearDeformation {
  public:
   Linear(const WeightMatrix& matrix, Positions offset)
-      : matrix_(matrix), columns_(matrix_), offset_(std::move(offset)) {}
+      : matrix_(matrix), metrics_(WeightColumns(matrix_)), offset_(std::move(offset)) {}
 
   Index control_count() const override { return static_cast<Index>(matrix_.cols()); }
   Index vertex_count() const override { return static_cast<Index>(matrix_.rows()); }
@@ -65,7 +65,7 @@ class Linear final : public LinearDeformation {
   }
 
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    return make_linear_metric(columns_, options);
+    return metrics_.make(options);
   }
 
   const WeightMatrix& weights() const override { return matrix_; }
@@ -73,14 +73,14 @@ class Linear final : public LinearDeformation {
 
   std::vector<Index> support(Index control) const override {
     std::vector<Index> vertices;
-    for (WeightColumns::InnerIterator entry(columns_, control); entry; ++entry)
+    for (WeightColumns::InnerIterator entry(metrics_.matrix(), control); entry; ++entry)
       if (entry.value() != 0) vertices.push_back(static_cast<Index>(entry.row()));
     return vertices;
   }
 
  private:
   WeightMatrix matrix_;
-  WeightColumns columns_;
+  LinearMetrics metrics_;
   Positions offset_;
 };
 

@@ -90,21 +90,35 @@ class SparseLinearMetric final : public Metric {
   FutureFactor factor_;
 };
 
-std::unique_ptr<Metric> metric_of_active(const WeightColumns& matrix, double smoothness, ActiveControls active) {
-  const WeightColumns selected = selected_columns(matrix, active.control);
-  if (selected.cols() <= full_inverse_limit)
-    return make_gram_metric(dense_gram(selected), smoothness, std::move(active));
+}  // namespace
+
+LinearMetrics::LinearMetrics(WeightColumns matrix)
+    : matrix_(std::move(matrix)), squared_lengths_(squared_lengths(matrix_)) {}
+
+std::unique_ptr<Metric> LinearMetrics::make(const MetricOptions& options) const {
+  const auto of_weights = [&](const Eigen::VectorXd& weights) {
+    return make_of_active(options.smoothness, active_controls(squared_lengths_, weights));
+  };
+  return make_axis_metric(checked_weights(options, static_cast<Index>(matrix_.cols())), of_weights);
+}
+
+std::unique_ptr<Metric> LinearMetrics::make_of_active(double smoothness, ActiveControls active) const {
+  if (static_cast<Index>(active.control.size()) <= full_inverse_limit) {
+    Eigen::MatrixXd gram = gram_of(active.control);
+    return make_gram_metric(std::move(gram), smoothness, std::move(active));
+  }
+  const WeightColumns selected = selected_columns(matrix_, active.control);
   return std::make_unique<SparseLinearMetric>(selected, smoothness, std::move(active));
 }
 
-}  // namespace
-
-std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options) {
-  const Eigen::VectorXd lengths = squared_lengths(matrix);
-  const auto of_weights = [&](const Eigen::VectorXd& weights) {
-    return metric_of_active(matrix, options.smoothness, active_controls(lengths, weights));
-  };
-  return make_axis_metric(checked_weights(options, static_cast<Index>(matrix.cols())), of_weights);
+/// Each entry is the same sum, whatever the other controls are.
+Eigen::MatrixXd LinearMetrics::gram_of(const std::vector<Index>& controls) const {
+  if (matrix_.cols() > full_inverse_limit) return dense_gram(selected_columns(matrix_, controls));
+  std::call_once(summed_, [&] {
+    const FloatingPointScope floating_point;
+    gram_ = dense_gram(matrix_);
+  });
+  return gram_(controls, controls);
 }
 
 }  // namespace stiv

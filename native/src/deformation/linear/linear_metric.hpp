@@ -3,7 +3,9 @@
 
 #include <Eigen/SparseCore>
 #include <memory>
+#include <mutex>
 
+#include "deformation/metric/active_controls.hpp"
 #include "stiv/deformation/metric.hpp"
 
 namespace stiv {
@@ -12,8 +14,24 @@ namespace stiv {
 using WeightColumns = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 /// The metric of q = M p + c: M'M of the active controls, damped by eps times its mean diagonal. For few controls it
-/// stores the inverse, of which a sparse right-hand side reads few columns; for many, a sparse factor. (mathematics.md,
-/// "Metric")
-std::unique_ptr<Metric> make_linear_metric(const WeightColumns& matrix, const MetricOptions& options);
+/// stores the inverse, of which a sparse right-hand side reads few columns; for many, a sparse factor. M'M of few
+/// controls is summed once: sessions near other obstacles and tight edits need other metrics of the same weights.
+/// (mathematics.md, "Metric")
+class LinearMetrics {
+ public:
+  explicit LinearMetrics(WeightColumns matrix);
+
+  const WeightColumns& matrix() const { return matrix_; }
+  std::unique_ptr<Metric> make(const MetricOptions& options) const;
+
+ private:
+  std::unique_ptr<Metric> make_of_active(double smoothness, ActiveControls active) const;
+  Eigen::MatrixXd gram_of(const std::vector<Index>& controls) const;
+
+  WeightColumns matrix_;
+  Eigen::VectorXd squared_lengths_;
+  mutable std::once_flag summed_;
+  mutable Eigen::MatrixXd gram_;  ///< M'M; empty for many controls
+};
 
 }  // namespace stiv

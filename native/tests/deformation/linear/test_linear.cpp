@@ -64,6 +64,22 @@ TEST_CASE("linear: equal weights along all axes give the bits of one weight for 
   CHECK(dense(linear->metric(one)->apply_inverse(p, g), m) == dense(linear->metric(three)->apply_inverse(p, g), m));
 }
 
+TEST_CASE("linear: a metric has the same bits, whichever was made before of the same weights") {
+  const WeightMatrix weights = banded_weights(60, 25);
+  const auto linear = make_linear(weights);
+  linear->metric({});
+  MetricOptions options;
+  options.smoothness = 0.01;
+  options.weights = Eigen::VectorXd::Ones(25);
+  options.weights.segment(3, 9).setZero();
+  const SparseField field = random_field(25, 6, 1);
+  const SparseField again = linear->metric(options)->apply_inverse(Controls::Zero(25, 3), field);
+  const SparseField fresh = make_linear(weights)->metric(options)->apply_inverse(Controls::Zero(25, 3), field);
+  CHECK(again.index == fresh.index);
+  CHECK(again.value == fresh.value);
+  CHECK(again.index.size() == 16);
+}
+
 TEST_CASE("linear: a sparse covector over many controls") {
   const auto linear = make_linear(banded_weights(40, 20));
   const auto metric = linear->metric({});
