@@ -174,12 +174,16 @@ bool Surface::in_one_flip_face(const Index* vertices, std::size_t count) const {
 
 Eigen::VectorXd Surface::vertex_areas(const PositionsView& q) const {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count());
-  for (Index face = 0; face < triangles().rows(); ++face) {
+  add_vertex_areas(q, 0, static_cast<Index>(triangles().rows()), areas);
+  return areas;
+}
+
+void Surface::add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas) const {
+  for (Index face = first; face < end; ++face) {
     const auto corner = [&](Index k) -> Vector3 { return q.row(triangles()(face, k)); };
     const double third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
     for (Index k = 0; k < 3; ++k) areas[triangles()(face, k)] += third;
   }
-  return areas;
 }
 
 std::string Surface::describe_vertex(Index vertex) const {

@@ -72,6 +72,8 @@ class Surface {
 
   /// The barycentric area of each vertex, (N), at positions q: a third of the adjacent triangles' areas. [P4, Eq. 3]
   Eigen::VectorXd vertex_areas(const PositionsView& q) const;
+  /// Adds what the triangles [first, end) contribute to them.
+  void add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas) const;
 
   /// The name of a vertex in messages: object "X", vertex 12, numbered within its body.
   std::string describe_vertex(Index vertex) const;

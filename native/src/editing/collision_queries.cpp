@@ -64,7 +64,7 @@ void CollisionQueries::check_start(const Positions& q, Execution& execution) {
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
   }
-  guard_->detector.prepare(context_.centred(q), execution);
+  guard_->detector.prepare(context_.centred(q, execution), execution);
 }
 
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.
@@ -83,8 +83,8 @@ std::optional<Events> CollisionQueries::find(const Positions& from, const Positi
   const ScopedTimer timer(execution.timings.detection);
   guard_pairs_apart_at(from, execution);
   Detector& detector = guard_->round_detector ? *guard_->round_detector : guard_->detector;
-  return find_not_excluded(detector, context_.centred(from), context_.centred(to), context_.round_proximity(), limit,
-                           execution);
+  return find_not_excluded(detector, context_.centred(from, execution), context_.centred(to, execution),
+                           context_.round_proximity(), limit, execution);
 }
 
 Events CollisionQueries::find_cached(const Positions& from, State& to, Execution& execution) {
@@ -113,7 +113,8 @@ void CollisionQueries::prune_cache(const Positions& from, const Positions& to, E
   if (guard_->round_detector) return;
   const ScopedTimer timer(execution.timings.detection);
   guard_pairs_apart_at(from, execution);
-  guard_->cache.prune(context_.centred(from), context_.centred(to), context_.round_proximity(), execution);
+  guard_->cache.prune(context_.centred(from, execution), context_.centred(to, execution), context_.round_proximity(),
+                      execution);
 }
 
 std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, const Positions& from,
@@ -135,7 +136,7 @@ std::optional<double> CollisionQueries::earliest_time(const Positions& from, con
   const ScopedTimer timer(execution.timings.acceptance);
   guard_pairs_apart_at(from, execution);
   const Proximity& proximity = context_.proximity();
-  const Positions start = context_.centred(from), end = context_.centred(to);
+  const Positions start = context_.centred(from, execution), end = context_.centred(to, execution);
   if (!excluded_.empty()) {
     const auto events = find_not_excluded(guard_->detector, start, end, proximity, limit, execution);
     return events ? std::optional(first_time(*events)) : std::nullopt;
@@ -165,7 +166,8 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
   Proximity touching;
   touching.separation = context_.proximity().separation;
   touching.by_bodies = &no_separations_;
-  return guard_->detector.earliest_time(context_.centred(from), context_.centred(to), touching, execution) == never &&
+  return guard_->detector.earliest_time(context_.centred(from, execution), context_.centred(to, execution), touching,
+                                        execution) == never &&
          guard_->intersections.is_free(to, moved_vertices(from, to), execution);
 }
 

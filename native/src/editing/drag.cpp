@@ -43,15 +43,15 @@ void pull(EditCall& call, const Aim& aim, double distance) {
 double energy_drop_rate(EditCall& call, const Aim& aim, double distance) {
   const Counters& counters = call.execution.counters;
   const std::int64_t rounds_before = counters.rounds;
-  const double before = energy(call.accepted.surface, aim.surface);
+  const double before = call.context.energy(call.accepted.surface, aim.surface);
   pull(call, aim, distance);
-  const double after = energy(call.accepted.surface, aim.surface);
+  const double after = call.context.energy(call.accepted.surface, aim.surface);
   const auto rounds = static_cast<double>(std::max<std::int64_t>(counters.rounds - rounds_before, 1));
   return before > 0 ? (1 - after / before) / rounds : 0;
 }
 
 bool is_far(const EditCall& call, const Aim& aim) {
-  return longest_displacement(call.accepted.surface, aim.surface) > call.context.far_distance();
+  return call.context.longest_displacement(call.accepted.surface, aim.surface) > call.context.far_distance();
 }
 
 /// The part of a displacement along which a control responds.
@@ -88,7 +88,8 @@ bool passes_aside(EditCall& call, const Aim& aim, const Vector3& offset) {
   const std::size_t steps = call.report.path.size();
   run_sub_edits(call, {goal, std::move(aside->surface), false});
   pull(call, aim, std::numeric_limits<double>::infinity());
-  const double before = energy(from.surface, aim.surface), after = energy(call.accepted.surface, aim.surface);
+  const double before = call.context.energy(from.surface, aim.surface),
+               after = call.context.energy(call.accepted.surface, aim.surface);
   if (after < (1 - least_detour_gain) * before) return true;
   call.accepted = from;
   call.report.path.resize(steps);
@@ -97,16 +98,12 @@ bool passes_aside(EditCall& call, const Aim& aim, const Vector3& offset) {
 
 }  // namespace
 
-double longest_displacement(const Positions& from, const Positions& to) {
-  return (to - from).rowwise().norm().maxCoeff();
-}
-
 // A stride with contacts that took several calls, or was handed over late, is halved for the next one; any other is
 // doubled. Without contacts, a shorter stride takes as long.
 void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
   const double shortest = shortest_stride * call.context.pull_distance();
   for (bool arrives = false; !arrives;) {
-    const double way = longest_displacement(drag.followed.surface, aim.surface);
+    const double way = call.context.longest_displacement(drag.followed.surface, aim.surface);
     arrives = way <= drag.stride || !call.execution.has_time_budget();
     State next{aim.controls, aim.surface};
     if (!arrives) {
@@ -142,7 +139,7 @@ int poor_pulls_before_end(const Execution& execution) { return execution.has_tim
 
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
                                const Execution& execution) {
-  const double increment = longest_displacement(drag.followed.surface, aim.surface);
+  const double increment = context.longest_displacement(drag.followed.surface, aim.surface);
   const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
   return {context.pull_distance(), static_cast<int>(pulls), poor_pulls_before_end(execution)};
 }
@@ -173,11 +170,11 @@ void leap(EditCall& call, const Aim& aim, DragProgress& drag) {
 void pull_and_leap(EditCall& call, const Aim& aim, DragProgress& drag, PullLimits limits) {
   const bool is_rigid = !call.context.deformation().rotation_rows().empty();
   const auto leap_again = [&] {
-    const double missing = longest_displacement(call.accepted.surface, aim.surface);
+    const double missing = call.context.longest_displacement(call.accepted.surface, aim.surface);
     if (!is_far(call, aim) || missing < missing_growth_to_leap * drag.missing_at_leap) return;
-    const double before = energy(call.accepted.surface, aim.surface);
+    const double before = call.context.energy(call.accepted.surface, aim.surface);
     leap(call, aim, drag);
-    const double after = energy(call.accepted.surface, aim.surface);
+    const double after = call.context.energy(call.accepted.surface, aim.surface);
     drag.missing_at_leap = !is_rigid && after > (1 - least_leap_gain) * before ? missing : 0;
     if (after < before) limits.poor_pulls = 1;
   };
@@ -201,7 +198,7 @@ bool detour(EditCall& call, const Aim& aim) {
 }
 
 bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag) {
-  const double missing = longest_displacement(call.accepted.surface, aim.surface);
+  const double missing = call.context.longest_displacement(call.accepted.surface, aim.surface);
   if (!(missing > missing_growth * drag.missing_at_detour)) return false;
   const bool passes = detour(call, aim);
   drag.missing_at_detour = passes || !is_far(call, aim) ? 0 : missing;

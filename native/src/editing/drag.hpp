@@ -72,7 +72,4 @@ bool detour(EditCall& call, const Aim& aim);
 /// The same for a drag, which tries a detour again only when the way to the goal has doubled since one failed.
 bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag);
 
-/// The longest displacement of a vertex between two surfaces.
-double longest_displacement(const Positions& from, const Positions& to);
-
 }  // namespace stiv

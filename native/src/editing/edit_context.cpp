@@ -52,11 +52,10 @@ std::vector<Index> rows_without_length(const Deformation& deformation) {
 
 }  // namespace
 
-double energy(const Positions& a, const Positions& b) { return 0.5 * (a - b).squaredNorm(); }
-
 EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& start, EditOptions options, const Execution& execution)
     : surface_(checked(std::move(surface), deformation)),
+      moving_part_(surface_),
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
       limits_(deformation_->scalar_rows(), options_.storage),
@@ -145,9 +144,14 @@ Positions EditContext::surface_at(const Controls& controls, Execution& execution
   return deformation_->surface_in_range(controls, execution);
 }
 
-Positions EditContext::centred(const PositionsView& q) const {
-  Positions about_centre = q.rowwise() - centre_;
-  flush_below_range(about_centre);
+Positions EditContext::centred(const PositionsView& q, const Execution& execution) const {
+  constexpr Index rows_per_chunk = 8192;
+  Positions about_centre(q.rows(), 3);
+  execution.for_chunks(static_cast<Index>(q.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    auto some = about_centre.middleRows(begin, end - begin);
+    some = q.middleRows(begin, end - begin).rowwise() - centre_;
+    some = (some.array().abs() < least_coordinate).select(0.0, some);
+  });
   return about_centre;
 }
 

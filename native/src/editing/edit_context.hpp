@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editing/control_limits.hpp"
+#include "editing/moving_part.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
@@ -20,9 +21,6 @@ struct State {
   Controls controls;
   Positions surface;
 };
-
-/// 1/2 |a - b|^2 of two surfaces. (mathematics.md, Eq. 4)
-double energy(const Positions& a, const Positions& b);
 
 /// The validated input of a session, and data derived from it once. Only the weights and the metric can change.
 class EditContext {
@@ -58,6 +56,12 @@ class EditContext {
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
   /// Factors the metric again if the Jacobian was replaced, and returns whether it was.
   bool renew_metric();
+  /// Those of the moving part.
+  double energy(const Positions& a, const Positions& b) const { return moving_part_.energy(a, b); }
+  double longest_displacement(const Positions& from, const Positions& to) const {
+    return moving_part_.longest_displacement(from, to);
+  }
+  Eigen::VectorXd region_areas(const Positions& q) const { return moving_part_.region_areas(q); }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
   /// @param name of the argument: "controls" or "goal"
@@ -71,12 +75,13 @@ class EditContext {
   /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
   /// Relative to the center of the start: smaller coordinates round less.
-  Positions centred(const PositionsView& q) const;
+  Positions centred(const PositionsView& q, const Execution& execution = Execution(1)) const;
 
  private:
   void set_proximity(const Positions& start, const Controls& controls);
 
   std::shared_ptr<const Surface> surface_;
+  MovingPart moving_part_;
   std::shared_ptr<const Deformation> deformation_;
   EditOptions options_;
   ControlLimits limits_;

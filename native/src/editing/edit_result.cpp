@@ -33,7 +33,7 @@ EditResult make_result(const EditContext& context, const State& accepted, const 
   result.status = status;
   result.controls = accepted.controls;
   result.surface = accepted.surface;
-  result.energy = energy(accepted.surface, goal_surface);
+  result.energy = context.energy(accepted.surface, goal_surface);
   result.fraction = report.fraction;
   if (status == EditStatus::blocked) result.blocking = bodies_in_contact(context.surface(), report.events);
   result.events = std::move(report.events);

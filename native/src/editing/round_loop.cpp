@@ -94,7 +94,7 @@ bool RoundLoop::constrain() {
   ConstraintSet& constraints = progress_.constraints;
   ++call_.execution.counters.rounds;
   if (constraints.size() > max_constraints(call_.context) / 4) constraints.drop_inactive();
-  if (areas_.size() == 0) areas_ = region_areas(call_.context.surface(), call_.accepted.surface);
+  if (areas_.size() == 0) areas_ = call_.context.region_areas(call_.accepted.surface);
   const RoundVolumes volumes =
       volumes_of_round(call_.context, {*progress_.events, call_.accepted.surface, outcome_.candidate.surface, areas_},
                        progress_.round, constraints.size(), call_.execution);

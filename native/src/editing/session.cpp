@@ -74,7 +74,7 @@ class SurfaceSession final : public SessionImplementation {
       tightening_.reset();
       drag_.missing_at_detour = drag_.missing_at_leap = 0;
       forget_leaps();
-      const bool is_near = longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
+      const bool is_near = context_.longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
       if (is_near || context_.options().max_sub_edits == 1)
         run_sub_edits_by_steps(call, aim);
       else
@@ -201,17 +201,17 @@ class SurfaceSession final : public SessionImplementation {
   void edit_from_start(EditCall& call, const Aim& aim) {
     if (!can_edit_from_start(call, aim)) return;
     State start{trail_.start(), context_.surface_at(trail_.start(), call.execution)};
-    if (longest_displacement(start.surface, aim.surface) <= context_.far_distance()) return;
+    if (context_.longest_displacement(start.surface, aim.surface) <= context_.far_distance()) return;
     DragTrail trail = trail_;
     trail.add(aim.controls, call.report.path);
     if (!trail.is_known()) return;
     const State dragged = std::exchange(accepted_, std::move(start));
     EditReport report = std::exchange(call.report, {});
-    const double missing = energy(dragged.surface, aim.surface);
+    const double missing = context_.energy(dragged.surface, aim.surface);
     progress_.reset();
     queries_.clear_cache();
     edit_toward(call, aim);
-    if (energy(accepted_.surface, aim.surface) < (1 - least_gain_of_edit) * missing) {
+    if (context_.energy(accepted_.surface, aim.surface) < (1 - least_gain_of_edit) * missing) {
       std::vector<Controls> way = trail.way_back();
       report.path.insert(report.path.end(), way.begin() + 1, way.end());
       call.report.path.insert(call.report.path.begin(), report.path.begin(), report.path.end());

@@ -41,12 +41,12 @@ Vector3 along_weight_axes(const EditOptions& options, Index control, const Vecto
 class SubEditLoop {
  public:
   SubEditLoop(EditCall& call, const Aim& aim)
-      : call_(call), aim_(aim), energy_before_(energy(call.accepted.surface, aim.surface)) {}
+      : call_(call), aim_(aim), energy_before_(call_.context.energy(call.accepted.surface, aim.surface)) {}
 
   void run();
 
  private:
-  double energy_of(const State& state) const { return energy(state.surface, aim_.surface); }
+  double energy_of(const State& state) const { return call_.context.energy(state.surface, aim_.surface); }
   RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
   RoundOutcome first_answer();
   bool diverges(const State& state) const;
@@ -89,7 +89,8 @@ RoundOutcome SubEditLoop::first_answer() {
 bool SubEditLoop::diverges(const State& state) const {
   if (moves_pinned_controls(call_.context.options(), call_.accepted.controls, aim_.controls)) return false;
   const std::optional<State> goal = feasible_state(call_.context, aim_.controls, call_.execution);
-  return goal && energy(state.surface, goal->surface) > largest_growth * energy(call_.accepted.surface, goal->surface);
+  return goal && call_.context.energy(state.surface, goal->surface) >
+                     largest_growth * call_.context.energy(call_.accepted.surface, goal->surface);
 }
 
 /// Accepts a fraction of the step to the outcome. If no fraction of the first step is accepted, tries the straight step

@@ -25,7 +25,7 @@ class Tightening {
   void run();
 
  private:
-  double energy_now() const { return energy(call_.accepted.surface, aim_.surface); }
+  double energy_now() const { return call_.context.energy(call_.accepted.surface, aim_.surface); }
   Controls step() const;
   double fraction_nearest_to_goal(const Controls& motion) const;
   double pull();
@@ -76,7 +76,8 @@ double Tightening::pull() {
 bool Tightening::run_level() {
   call_.metric = &call_.context.tight_metric(progress_.level);
   while (progress_.poor_pulls < poor_pulls_before_next_level && progress_.pulls < max_pulls) {
-    if (longest_displacement(call_.accepted.surface, aim_.surface) <= call_.context.least_separation()) return false;
+    if (call_.context.longest_displacement(call_.accepted.surface, aim_.surface) <= call_.context.least_separation())
+      return false;
     const double gain = pull();
     ++progress_.pulls;
     progress_.gain += gain;

@@ -53,11 +53,15 @@ std::vector<Stiv> interference_volumes(const Events& events, const std::vector<R
 
 Eigen::VectorXd region_areas(const Surface& surface, const Positions& q) {
   Eigen::VectorXd areas = surface.vertex_areas(q);
+  substitute_missing_areas(areas);
+  return areas;
+}
+
+void substitute_missing_areas(Eigen::VectorXd& areas) {
   const Index count = static_cast<Index>((areas.array() > 0).count());
   const double substitute = count > 0 ? areas.sum() / count : 1;
   for (double& area : areas)
     if (!(area > 0)) area = substitute;
-  return areas;
 }
 
 }  // namespace stiv

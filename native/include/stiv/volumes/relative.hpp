@@ -26,5 +26,7 @@ std::vector<Stiv> interference_volumes(const Events& events, const std::vector<R
 /// The areas A_i, (N), at positions q: barycentric areas. Vertices without area, which can collide too, have the mean
 /// of the others.
 Eigen::VectorXd region_areas(const Surface& surface, const Positions& q);
+/// Gives vertices without area the mean of the others; 1 if no vertex has any.
+void substitute_missing_areas(Eigen::VectorXd& areas);
 
 }  // namespace stiv

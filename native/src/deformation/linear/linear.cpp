@@ -64,9 +64,7 @@ class Linear final : public LinearDeformation {
     return weighted_sums(matrix_, d, Execution(1));
   }
 
-  std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
-    return metrics_.make(options);
-  }
+  std::unique_ptr<Metric> metric(const MetricOptions& options) const override { return metrics_.make(options); }
 
   const WeightMatrix& weights() const override { return matrix_; }
   const Positions& offset() const override { return offset_; }

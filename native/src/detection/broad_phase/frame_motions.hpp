@@ -28,7 +28,8 @@ Vector3 common_motion(const PositionsView& start, const PositionsView& end);
 /// Chooses the frames of steps of a surface. Depends only on the step, to the last bit.
 class FrameChooser {
  public:
-  /// One of several bodies with at least `large_body` vertices may get a frame of its own if it is tested against itself.
+  /// One of several bodies with at least `large_body` vertices may get a frame of its own if it is tested against
+  /// itself.
   FrameChooser(const Surface& surface, Index large_body);
 
   /// The frame of a body moves with its own mean displacement if that leaves much less than the common motion does, and
