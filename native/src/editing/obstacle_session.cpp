@@ -50,14 +50,14 @@ class ObstacleSession final : public SessionImplementation {
   }
 
   EditResult edit(const Controls& goal, Execution& execution) override {
-    return carry_out(goal, execution, [&] { return near_->session.edit(goal, execution); });
+    return carry_out(goal, execution, [&] { return near_->session->edit(goal, execution); });
   }
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
-    return carry_out(goal, execution, [&] { return near_->session.drag(goal, execution, hand_over); });
+    return carry_out(goal, execution, [&] { return near_->session->drag(goal, execution, hand_over); });
   }
   EditResult settle(Execution& execution) override {
     const Controls goal = goal_;
-    return carry_out(goal, execution, [&] { return near_->session.settle(execution); });
+    return carry_out(goal, execution, [&] { return near_->session->settle(execution); });
   }
 
   void restore(const Controls& controls, const Controls& goal) override {
@@ -68,7 +68,7 @@ class ObstacleSession final : public SessionImplementation {
         is_valid ? moving_bounds(*surface_, deformation_->surface_in_range(controls, execution))
                  : Eigen::AlignedBox3d();
     if (is_inside(bounds))
-      with_scene_numbers(near_->scene, controls, [&] { near_->session.restore(controls, goal); });
+      with_scene_numbers(near_->scene, controls, [&] { near_->session->restore(controls, goal); });
     else
       open(around(bounds), controls, goal, execution);
     goal_ = goal;
@@ -77,7 +77,7 @@ class ObstacleSession final : public SessionImplementation {
   }
 
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
-    near_->session.set_weights(weights, weight_axes);
+    near_->session->set_weights(weights, weight_axes);
     options_.weights = std::move(weights);
     options_.weight_axes = std::move(weight_axes);
   }
@@ -87,18 +87,18 @@ class ObstacleSession final : public SessionImplementation {
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
     bounds.extend(moving_bounds(*surface_, end));
     const auto test = [&](Near& near) {
-      Positions from = near.session.surface(), to = from;
+      Positions from = near.session->surface(), to = from;
       from.topRows(start.rows()) = start;
       to.topRows(end.rows()) = end;
-      return near.session.is_step_free(from, to, execution);
+      return near.session->is_step_free(from, to, execution);
     };
     if (is_inside(bounds)) return test(*near_);
-    return test(*make_near(grown(bounds, margin()), execution));
+    return test(*make_near(grown(bounds, margin()), start_, start_, execution));
   }
 
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, own_surface_);
-    auto nearest = with_scene_numbers(near_->session.least_distance(pairs), near_->scene);
+    auto nearest = with_scene_numbers(near_->session->least_distance(pairs), near_->scene);
     // A triangle outside of the box may be closer than the nearest one inside.
     if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
     const Execution execution(options_.threads);
@@ -108,16 +108,16 @@ class ObstacleSession final : public SessionImplementation {
     return with_scene_numbers(LeastDistance(scene.surface).find(q, pairs), scene);
   }
 
-  const Controls& controls() const override { return near_->session.controls(); }
+  const Controls& controls() const override { return near_->session->controls(); }
   const Positions& surface() const override { return own_surface_; }
-  double separation() const override { return near_->session.separation(); }
+  double separation() const override { return near_->session->separation(); }
   const Surface& topology() const override { return *surface_; }
 
  private:
   /// The obstacles near a box, and a session with them.
   struct Near {
     NearScene scene;
-    EditSession session;
+    std::unique_ptr<SessionImplementation> session;
   };
 
   Eigen::AlignedBox3d around(const Eigen::AlignedBox3d& bounds) const {
@@ -127,17 +127,19 @@ class ObstacleSession final : public SessionImplementation {
   }
 
   double margin() const {
-    double separation = near_->session.separation();
+    double separation = near_->session->separation();
     for (const BodyPairSeparation& pair : options_.pair_separations) separation = std::max(separation, pair.separation);
     return 2 * separation;
   }
 
   bool is_inside(const Eigen::AlignedBox3d& bounds) const { return contains(box_, bounds, margin()); }
 
-  std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, Execution& execution) const {
+  std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal,
+                                  Execution& execution) const {
     NearScene scene = near_scene(*surface_, deformation_, obstacles_, box, execution);
-    return with_scene_numbers(scene, start_, [&] {
-      EditSession session(scene.surface, scene.deformation, start_, options_, execution);
+    return with_scene_numbers(scene, accepted, [&] {
+      auto session =
+          make_surface_session(scene.surface, scene.deformation, start_, options_, accepted, goal, execution);
       return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
     });
   }
@@ -145,10 +147,7 @@ class ObstacleSession final : public SessionImplementation {
   /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
   /// has changed.
   void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
-    std::unique_ptr<Near> near = make_near(box, execution);
-    if (accepted != start_ || goal != start_)
-      with_scene_numbers(near->scene, accepted, [&] { near->session.restore(accepted, goal); });
-    near_ = std::move(near);
+    near_ = make_near(box, accepted, goal, execution);
     box_ = box;
     keep_surface();
   }
@@ -181,7 +180,7 @@ class ObstacleSession final : public SessionImplementation {
     try {
       open(box, accepted, goal, execution);
     } catch (...) {
-      near_->session.restore(accepted, goal);
+      near_->session->restore(accepted, goal);
       if (!of_call.cancel_requested()) throw;
     }
   }
@@ -195,7 +194,7 @@ class ObstacleSession final : public SessionImplementation {
     return bounds;
   }
 
-  void keep_surface() { own_surface_ = near_->session.surface().topRows(surface_->vertex_count()); }
+  void keep_surface() { own_surface_ = near_->session->surface().topRows(surface_->vertex_count()); }
 
   /// The result with the surface of this session, and the numbers of all obstacles' vertices.
   EditResult as_own(EditResult result) const {

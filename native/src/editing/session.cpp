@@ -30,11 +30,11 @@ enum class FollowedGoal {
 class SurfaceSession final : public SessionImplementation {
  public:
   SurfaceSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                 const Controls& controls, EditOptions options, Execution& execution)
-      : context_(std::move(surface), std::move(deformation), controls, std::move(options), execution),
-        queries_(context_) {
+                 const Controls& start, EditOptions options, const Controls& accepted, const Controls& goal,
+                 Execution& execution)
+      : context_(std::move(surface), std::move(deformation), start, std::move(options), execution), queries_(context_) {
     execution.check();
-    restore(controls, controls, execution);
+    restore(accepted, goal, execution);
   }
 
   void restore(const Controls& controls, const Controls& goal) override {
@@ -299,16 +299,25 @@ class SurfaceSession final : public SessionImplementation {
 
 }  // namespace
 
+std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
+                                                            std::shared_ptr<const Deformation> deformation,
+                                                            const Controls& start, EditOptions options,
+                                                            const Controls& accepted, const Controls& goal,
+                                                            Execution& execution) {
+  return std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), start, std::move(options),
+                                          accepted, goal, execution);
+}
+
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options) {
   Execution execution(std::max(0, options.threads));  // a negative number is reported with the other options
-  implementation_ = std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), controls,
-                                                     std::move(options), execution);
+  implementation_ = make_surface_session(std::move(surface), std::move(deformation), controls, std::move(options),
+                                         controls, controls, execution);
 }
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options, Execution& execution)
-    : implementation_(std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), controls,
-                                                       std::move(options), execution)) {}
+    : implementation_(make_surface_session(std::move(surface), std::move(deformation), controls, std::move(options),
+                                           controls, controls, execution)) {}
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options, Obstacles obstacles, Execution& execution)
     : implementation_(make_obstacle_session(std::move(surface), std::move(deformation), controls, std::move(options),

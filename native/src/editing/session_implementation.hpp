@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,5 +27,13 @@ class SessionImplementation {
   virtual double separation() const = 0;
   virtual const Surface& topology() const = 0;
 };
+
+/// A session without obstacles, with an accepted state and the goal of the call before, as after a restore.
+/// @throws as EditSession; StartIntersectsError is about the accepted state
+std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
+                                                            std::shared_ptr<const Deformation> deformation,
+                                                            const Controls& start, EditOptions options,
+                                                            const Controls& accepted, const Controls& goal,
+                                                            Execution& execution);
 
 }  // namespace stiv
