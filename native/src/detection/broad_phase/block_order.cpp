@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "detection/broad_phase/curve_order.hpp"
-#include "detection/broad_phase/median_split.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 #include "detection/broad_phase/window_order.hpp"
 
 namespace stiv {
@@ -18,34 +18,22 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Items = std::span<NumberedPoint>;
 
-/// Runs in a window. More of them cost more time, and yield slightly closer runs.
-constexpr std::size_t runs_in_window = 128;
-/// The same in an order that is known; a divisor of `runs_in_window`.
-constexpr std::size_t runs_in_known_window = 64;
+/// Points in a window, without an order and in one that is known. Larger ones cost more time, and yield slightly
+/// closer runs.
+constexpr std::size_t window_size = window_capacity;
+constexpr std::size_t known_window_size = window_size / 2;
 
 enum class Given { unordered, in_order };
-
-void order_spatially(Items items, std::size_t run) {
-  if (items.size() <= window_capacity) {
-    order_window(items, run);
-    return;
-  }
-  const std::size_t half = size_of_first_part(items.size(), run);
-  split_at_median(items, half);
-  order_spatially(items.first(half), run);
-  order_spatially(items.subspan(half), run);
-}
 
 /// A curve, or an order that is known already, replaces the first levels of median splits, which cost the most and
 /// matter the least.
 void order_spatially(Items items, std::size_t run, Given given, const Execution& execution) {
-  const std::size_t window = run * (given == Given::in_order ? runs_in_known_window : runs_in_window);
+  const std::size_t window = given == Given::in_order ? known_window_size : window_size;
   if (given == Given::unordered && items.size() > window) sort_along_curve(items);
-  const auto chunk = static_cast<Index>(run * runs_in_window);
-  execution.for_chunks(static_cast<Index>(items.size()), chunk, [&](Index begin, Index end, Index) {
+  execution.for_chunks(static_cast<Index>(items.size()), window_size, [&](Index begin, Index end, Index) {
     for (auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end); first < last;
          first += window)
-      order_spatially(items.subspan(first, std::min(window, last - first)), run);
+      order_window(items.subspan(first, std::min(window, last - first)), run);
   });
 }
 
