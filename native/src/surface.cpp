@@ -15,6 +15,7 @@ namespace {
 /// Row-wise check of corner indices: in range, and all corners of one body.
 template <class Corners>
 void check_corners(const SurfaceDefinition& definition, const Corners& corners, const char* what) {
+  const bool has_several = definition.bodies.size() > 1;
   for (Index row = 0; row < corners.rows(); ++row) {
     for (Index k = 0; k < corners.cols(); ++k) {
       const Index vertex = corners(row, k);
@@ -25,7 +26,7 @@ void check_corners(const SurfaceDefinition& definition, const Corners& corners, 
       throw InputError(message.str());
     }
     const auto body = [&](Index k) { return definition.vertex_body[corners(row, k)]; };
-    for (Index k = 1; k < corners.cols(); ++k) {
+    for (Index k = 1; k < corners.cols() && has_several; ++k) {
       if (body(k) == body(0)) continue;
       std::ostringstream message;
       message << what << " " << row << " joins two objects, \"" << definition.bodies[body(0)].name << "\" and \""
@@ -49,18 +50,18 @@ void check_bodies(const SurfaceDefinition& definition) {
             << " vertices";
     throw InputError(message.str());
   }
-  const auto require = [&](Index body, const std::string& where) {
-    if (body >= 0 && body < count) return;
+  const auto is_valid = [&](Index body) { return body >= 0 && body < count; };
+  const auto fail = [&](Index body, const std::string& where) {
     std::ostringstream message;
     message << where << ": body index " << body << " is out of range 0.." << count - 1;
     throw InputError(message.str());
   };
   for (std::size_t vertex = 0; vertex < definition.vertex_body.size(); ++vertex)
-    require(definition.vertex_body[vertex], "vertex " + std::to_string(vertex));
-  for (const auto& [a, b] : definition.ignored) {
-    require(a, "ignored pair");
-    require(b, "ignored pair");
-  }
+    if (!is_valid(definition.vertex_body[vertex]))
+      fail(definition.vertex_body[vertex], "vertex " + std::to_string(vertex));
+  for (const auto& [a, b] : definition.ignored)
+    for (const Index body : {a, b})
+      if (!is_valid(body)) fail(body, "ignored pair");
 }
 
 /// Calls `work(smaller, larger)` for the ends of each side of a face and each loose edge, with repetitions.

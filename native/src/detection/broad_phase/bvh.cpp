@@ -71,17 +71,19 @@ class TaskList {
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
-  std::vector<Eigen::Vector3f> centres(boxes.size());
-  for (std::size_t k = 0; k < boxes.size(); ++k)
+std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes) {
+  std::vector<NumberedPoint> centres(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    centres[k].number = static_cast<Index>(k);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float middle = boxes[k].low[axis] / 2 + boxes[k].high[axis] / 2;
-      centres[k][static_cast<Index>(axis)] = std::isfinite(middle) ? middle : 0;
+      centres[k].position[axis] = std::isfinite(middle) ? middle : 0;
     }
+  }
   return centres;
 }
 
-Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+Bvh::Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
          const Execution& execution)
     : Bvh(block_order(centres, groups, width, execution), static_cast<Index>(centres.size()), groups, corners,
           execution) {}

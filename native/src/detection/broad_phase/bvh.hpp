@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "detection/broad_phase/bounds.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/execution.hpp"
 
@@ -60,8 +61,8 @@ class Bvh {
   /// Builds over the centers of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
-  /// Builds over finite points; the boxes come with the first refit.
-  Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+  /// Builds over the centers of primitives; the boxes come with the first refit.
+  Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
       const Execution& execution);
   /// The same in a given order of all `count` primitives, as block_order returns it.
   Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
@@ -158,7 +159,7 @@ class Bvh {
 };
 
 /// Centers of boxes, zero where one is infinite.
-std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes);
+std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>
 void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
