@@ -109,31 +109,47 @@ HWY_INLINE void find_keys(const NumberedPoint* points, std::size_t count, Window
   for (std::size_t k = count; k < end; ++k) buffers.keys[k] = std::numeric_limits<std::int32_t>::max();
 }
 
-HWY_INLINE std::size_t keys_below(std::int32_t bound, const std::int32_t* keys, std::size_t count) {
+/// Number of keys below a bound, and the keys next to it on both sides, if there are any.
+struct Cut {
+  std::size_t below;
+  std::int32_t last_below, first_above;
+};
+
+HWY_INLINE Cut cut_at(std::int32_t bound, const std::int32_t* keys, std::size_t count) {
   const Keys d;
-  const auto limit = hn::Set(d, bound);
-  auto below = hn::Zero(d);  // minus their number
-  for (std::size_t k = 0; k < count; k += keys_at_once)
-    for (std::size_t next = k; next < k + keys_at_once; next += hn::Lanes(d))
-      below = hn::Add(below, hn::VecFromMask(d, hn::Lt(hn::Load(d, keys + next), limit)));
-  return static_cast<std::size_t>(-hn::GetLane(hn::SumOfLanes(d, below)));
+  const auto limit = hn::Set(d, bound), most = hn::Set(d, std::numeric_limits<std::int32_t>::max());
+  auto below = hn::Zero(d), last = below, first = most;  // `below`: minus their number
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    const auto key = hn::Load(d, keys + k);
+    const auto is_below = hn::Lt(key, limit);
+    below = hn::Add(below, hn::VecFromMask(d, is_below));
+    last = hn::Max(last, hn::IfThenElseZero(is_below, key));
+    first = hn::Min(first, hn::IfThenElse(is_below, most, key));
+  }
+  return {static_cast<std::size_t>(-hn::GetLane(hn::SumOfLanes(d, below))), hn::GetLane(hn::MaxOfLanes(d, last)),
+          hn::GetLane(hn::MinOfLanes(d, first))};
 }
 
-/// A bound with `rank` of the keys below it: by interpolation, and by bisection where that gains little.
+/// A bound with `rank` of the keys below it: by interpolation between keys, and by bisection where that gains little.
 HWY_INLINE std::int32_t find_bound(const std::int32_t* keys, std::size_t count, std::size_t rank) {
   std::int32_t low = 0, high = key_end;
-  std::size_t below_low = 0, below_high = count;
+  std::size_t low_rank = 0, high_rank = count;
   for (bool bisect = false;;) {
-    const std::int32_t width = high - low;  // at least two keys lie between
-    const double fraction =
-        bisect ? 0.5 : static_cast<double>(rank - below_low) / static_cast<double>(below_high - below_low);
-    const auto step = static_cast<std::int32_t>(fraction * width);
-    const std::int32_t bound = low + (step < 1 ? 1 : step);
-    const std::size_t below = keys_below(bound, keys, padded(count));
-    if (below == rank) return bound;
-    (below < rank ? low : high) = bound;
-    (below < rank ? below_low : below_high) = below;
-    bisect = high - low > width / 2;
+    const std::size_t between = high_rank - low_rank;
+    const float fraction = bisect ? 0.5F : static_cast<float>(rank - low_rank) / static_cast<float>(between);
+    const auto step = static_cast<std::int32_t>(fraction * static_cast<float>(high - low));
+    const std::int32_t bound = low + (step < 1 ? 1 : step < high - low ? step : high - low);
+    const Cut cut = cut_at(bound, keys, padded(count));
+    if (cut.below == rank) return bound;
+    if (cut.below == rank + 1) return cut.last_below;
+    if (cut.below < rank) {
+      low = cut.first_above;
+      low_rank = cut.below;
+    } else {
+      high = cut.last_below;
+      high_rank = cut.below - 1;
+    }
+    bisect = high_rank - low_rank > between / 2;
   }
 }
 
@@ -144,9 +160,9 @@ HWY_INLINE void split(const NumberedPoint* points, std::size_t count, std::size_
   std::size_t below = 0, above = first;
   for (std::size_t k = 0; k < count; ++k) {
     const auto is_below = static_cast<std::size_t>(buffers.keys[k] < bound);
-    result[above ^ ((above ^ below) & (0 - is_below))] = points[k];  // not a branch: it would be random
+    result[above + ((below - above) & (0 - is_below))] = points[k];  // not a branch: it would be random
     below += is_below;
-    above += 1 - is_below;
+    above = first + k + 1 - below;
   }
 }
 
