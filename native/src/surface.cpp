@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
@@ -12,10 +13,18 @@ namespace stiv {
 
 namespace {
 
+template <class Corners>
+bool are_in_range(const Corners& corners, Index vertex_count) {
+  bool outside = false;  // no early end: compilers turn this into vector code
+  for (const Index* corner = corners.data(); corner != corners.data() + corners.size(); ++corner)
+    outside |= (*corner < 0) | (*corner >= vertex_count);
+  return !outside;
+}
+
 /// Row-wise check of corner indices: in range, and all corners of one body.
 template <class Corners>
 void check_corners(const SurfaceDefinition& definition, const Corners& corners, const char* what) {
-  const bool has_several = definition.bodies.size() > 1;
+  if (definition.bodies.size() == 1 && are_in_range(corners, definition.vertex_count)) return;
   for (Index row = 0; row < corners.rows(); ++row) {
     for (Index k = 0; k < corners.cols(); ++k) {
       const Index vertex = corners(row, k);
@@ -26,7 +35,7 @@ void check_corners(const SurfaceDefinition& definition, const Corners& corners, 
       throw InputError(message.str());
     }
     const auto body = [&](Index k) { return definition.vertex_body[corners(row, k)]; };
-    for (Index k = 1; k < corners.cols() && has_several; ++k) {
+    for (Index k = 1; k < corners.cols(); ++k) {
       if (body(k) == body(0)) continue;
       std::ostringstream message;
       message << what << " " << row << " joins two objects, \"" << definition.bodies[body(0)].name << "\" and \""
@@ -111,18 +120,26 @@ std::vector<unsigned char> meeting_bodies(const SurfaceDefinition& definition) {
   return meets;
 }
 
-/// Neighbors of all vertices in compressed rows.
+/// Neighbors of all vertices in compressed rows. Edges are sorted: those to larger neighbors follow each other.
 void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, std::vector<Index>& neighbours) {
-  start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for (Index edge = 0; edge < edges.rows(); ++edge)
-    for (Index k = 0; k < 2; ++k) ++start[static_cast<std::size_t>(edges(edge, k)) + 1];
-  for (std::size_t vertex = 0; vertex + 1 < start.size(); ++vertex) start[vertex + 1] += start[vertex];
+  const auto vertices = static_cast<std::size_t>(vertex_count);
+  std::vector<Index> smaller(vertices, 0), larger(vertices, 0);  // numbers of neighbors, then where to write the next
+  for (Index edge = 0; edge < edges.rows(); ++edge) {
+    ++larger[edges(edge, 0)];
+    ++smaller[edges(edge, 1)];
+  }
+  start.resize(vertices + 1);
+  start[0] = 0;
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+    const Index count = smaller[vertex];
+    smaller[vertex] = start[vertex];
+    start[vertex + 1] = start[vertex] + count + std::exchange(larger[vertex], start[vertex] + count);
+  }
   neighbours.resize(static_cast<std::size_t>(2 * edges.rows()));
-  std::vector<Index> cursor(start.begin(), start.end() - 1);
-  const auto add = [&](Index from, Index to) { neighbours[cursor[from]++] = to; };
-  // Edges are sorted, so the smaller neighbors of a vertex must be entered before its larger ones.
-  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 1), edges(edge, 0));
-  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
+  for (Index edge = 0; edge < edges.rows(); ++edge) {
+    neighbours[larger[edges(edge, 0)]++] = edges(edge, 1);
+    neighbours[smaller[edges(edge, 1)]++] = edges(edge, 0);
+  }
 }
 
 /// Numbers of the flip faces of every vertex.

@@ -9,9 +9,9 @@
 
 namespace stiv {
 
-/// The numbers of primitives with the given centers, ordered so that runs of `block`, 2 `block`, 4 `block` and so on are
-/// close together in space. Each block (a power of two, at most 512) holds primitives of one group (`groups` by number,
-/// empty: a single group) and is padded with -1. The same for any number of threads.
+/// The numbers of primitives with the given centers, ordered so that runs of `block`, 2 `block`, 4 `block` and so on
+/// are close together in space. Each block (a power of two, at most 512) holds primitives of one group (`groups` by
+/// number, empty: a single group) and is padded with -1. The same for any number of threads.
 std::vector<Index> block_order(std::vector<NumberedPoint> centres, const std::vector<Index>& groups, Index block,
                                const Execution& execution);
 

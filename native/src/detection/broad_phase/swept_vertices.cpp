@@ -61,11 +61,16 @@ double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42
 /// Vertices whose step differs from that of their box, ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
+  if (!complete_) {
+    std::vector<Index> all(static_cast<std::size_t>(count));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbors
     const auto same = [&](Index first, Index number) {
-      return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
+      return same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
     };
     for (Index some = begin; some < end; some += run) {
       const Index last = std::min(end, some + run);
@@ -207,8 +212,10 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
     boxes_.resize(count);
     start_.resize(count, 3);
     end_.resize(count, 3);
-    changed_.resize(count);
-    std::iota(changed_.begin(), changed_.end(), 0);
+    if (static_cast<Index>(changed_.size()) < count) {
+      changed_.resize(count);
+      std::iota(changed_.begin(), changed_.end(), 0);
+    }
   }
   sweep(step, changed_, execution);
   outdated_.clear();
