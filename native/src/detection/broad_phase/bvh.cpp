@@ -90,9 +90,7 @@ Bvh::Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& gr
 
 Bvh::Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
          const Execution& execution)
-    : size_(count), order_(std::move(order)), places_(count) {
-  for (std::size_t place = 0; place < order_.size(); ++place)
-    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
+    : size_(count), order_(std::move(order)) {
   reserve_levels(groups);
   const Index last_group = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
   set_corners(corners, std::vector<unsigned char>(static_cast<std::size_t>(last_group) + 1, 1), execution);
@@ -165,8 +163,16 @@ void Bvh::summarise_all(const Execution& execution) {
                          });
 }
 
+void Bvh::prepare_refit_some() {
+  if (!places_.empty()) return;
+  places_.resize(size_);
+  for (std::size_t place = 0; place < order_.size(); ++place)
+    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
+}
+
 /// Sorts the blocks by marking them: blocks are few, and each is listed many times.
 void Bvh::find_touched(std::span<const Index> primitives) {
+  prepare_refit_some();
   constexpr std::size_t bits = 64;
   is_touched_.resize((order_.size() / width + bits - 1) / bits, 0);
   for (const Index primitive : primitives) {

@@ -86,6 +86,9 @@ class Bvh {
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
 
+  /// Allocates what the first refit of some primitives would allocate.
+  void prepare_refit_some();
+
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
   void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
@@ -150,7 +153,7 @@ class Bvh {
 
   Index size_ = 0;
   std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
-  std::vector<Index> places_;  // place of each primitive
+  std::vector<Index> places_;  // place of each primitive, for refit_some
   std::vector<Level> levels_;  // blocks first, the root last
   std::vector<Index> corners_;
   Index corner_size_ = 0;

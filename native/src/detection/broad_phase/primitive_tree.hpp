@@ -29,7 +29,10 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one, so that memory does not
     // grow late in a session.
-    if (tree_ && !incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
+    if (tree_) {
+      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
+      tree_->prepare_refit_some();
+    }
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
@@ -47,8 +50,15 @@ class PrimitiveTree {
   }
 
   const Bvh& tree() const { return *tree_; }
-  /// Of each vertex along a space-filling curve, when the tree was built. Only in a tree over vertices.
-  const std::vector<Index>& curve_places() const { return curve_places_; }
+
+  /// The vertices when their tree was built, for the first trees over their primitives.
+  struct Curve {
+    std::vector<NumberedPoint> points;  ///< see points_at
+    std::vector<Index> places;          ///< of each vertex along a space-filling curve
+  };
+  const Curve& curve() const { return curve_; }
+  /// Frees the memory, once those trees are built.
+  void drop_curve() { curve_ = {}; }
 
  private:
   /// Below one changed vertex in this many, finding their primitives is faster than refitting all on several threads.
@@ -63,21 +73,24 @@ class PrimitiveTree {
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
     const std::vector<Index> bodies = bodies_of_primitives(execution);
-    tree_.emplace(order_of(points_at(start, execution), bodies, execution), count_, bodies, CornerRows{rows_, size},
-                  execution);
+    tree_.emplace(order_at(start, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
     spread_ = spread(start);
   }
 
-  std::vector<Index> order_of(std::vector<NumberedPoint> points, const std::vector<Index>& bodies,
+  std::vector<Index> order_at(const PositionsView& start, const std::vector<Index>& bodies,
                               const Execution& execution) {
     if constexpr (size == 1) {
+      std::vector<NumberedPoint> points = points_at(start, execution);
+      if (!tree_) curve_.points = points;
       sort_along_curve(points);
-      note_places(points);
+      if (!tree_) curve_.places = places_of(points);
       return block_order_along(std::move(points), bodies, Bvh::width, execution);
     } else {
       // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
-      if (!vertices_ || tree_) return block_order(centres_of({}, points, execution), bodies, Bvh::width, execution);
-      const std::vector<Index> order = order_by_corners(rows_, count_, size, vertices_->curve_places());
+      if (!vertices_ || tree_)
+        return block_order(centres_of({}, points_at(start, execution), execution), bodies, Bvh::width, execution);
+      const auto& [points, places] = vertices_->curve();
+      const std::vector<Index> order = order_by_corners(rows_, count_, size, places);
       return block_order_along(centres_of(order, points, execution), bodies, Bvh::width, execution);
     }
   }
@@ -95,10 +108,11 @@ class PrimitiveTree {
     return points;
   }
 
-  void note_places(const std::vector<NumberedPoint>& along_curve) {
-    curve_places_.resize(along_curve.size());
+  static std::vector<Index> places_of(const std::vector<NumberedPoint>& along_curve) {
+    std::vector<Index> places(along_curve.size());
     for (std::size_t place = 0; place < along_curve.size(); ++place)
-      curve_places_[along_curve[place].number] = static_cast<Index>(place);
+      places[along_curve[place].number] = static_cast<Index>(place);
+    return places;
   }
 
   /// Sums of the corners of all primitives, in an order of these (empty: ascending).
@@ -154,7 +168,7 @@ class PrimitiveTree {
   const Index* rows_;
   Index count_;
   const PrimitiveTree<1>* vertices_;
-  std::vector<Index> curve_places_;
+  Curve curve_;
   std::optional<Bvh> tree_;
   double spread_ = 0;  // when the tree was built
   std::optional<VertexIncidence> incidence_;
