@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
@@ -12,9 +13,18 @@ namespace stiv {
 
 namespace {
 
+template <class Corners>
+bool are_in_range(const Corners& corners, Index vertex_count) {
+  bool outside = false;  // no early end: compilers turn this into vector code
+  for (const Index* corner = corners.data(); corner != corners.data() + corners.size(); ++corner)
+    outside |= (*corner < 0) | (*corner >= vertex_count);
+  return !outside;
+}
+
 /// Row-wise check of corner indices: in range, and all corners of one body.
 template <class Corners>
 void check_corners(const SurfaceDefinition& definition, const Corners& corners, const char* what) {
+  if (definition.bodies.size() == 1 && are_in_range(corners, definition.vertex_count)) return;
   for (Index row = 0; row < corners.rows(); ++row) {
     for (Index k = 0; k < corners.cols(); ++k) {
       const Index vertex = corners(row, k);
@@ -49,18 +59,18 @@ void check_bodies(const SurfaceDefinition& definition) {
             << " vertices";
     throw InputError(message.str());
   }
-  const auto require = [&](Index body, const std::string& where) {
-    if (body >= 0 && body < count) return;
+  const auto is_valid = [&](Index body) { return body >= 0 && body < count; };
+  const auto fail = [&](Index body, const std::string& where) {
     std::ostringstream message;
     message << where << ": body index " << body << " is out of range 0.." << count - 1;
     throw InputError(message.str());
   };
   for (std::size_t vertex = 0; vertex < definition.vertex_body.size(); ++vertex)
-    require(definition.vertex_body[vertex], "vertex " + std::to_string(vertex));
-  for (const auto& [a, b] : definition.ignored) {
-    require(a, "ignored pair");
-    require(b, "ignored pair");
-  }
+    if (!is_valid(definition.vertex_body[vertex]))
+      fail(definition.vertex_body[vertex], "vertex " + std::to_string(vertex));
+  for (const auto& [a, b] : definition.ignored)
+    for (const Index body : {a, b})
+      if (!is_valid(body)) fail(body, "ignored pair");
 }
 
 /// Calls `work(smaller, larger)` for the ends of each side of a face and each loose edge, with repetitions.
@@ -110,18 +120,26 @@ std::vector<unsigned char> meeting_bodies(const SurfaceDefinition& definition) {
   return meets;
 }
 
-/// Neighbors of all vertices in compressed rows.
+/// Neighbors of all vertices in compressed rows. Edges are sorted: those to larger neighbors follow each other.
 void connect(const Edges& edges, Index vertex_count, std::vector<Index>& start, std::vector<Index>& neighbours) {
-  start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for (Index edge = 0; edge < edges.rows(); ++edge)
-    for (Index k = 0; k < 2; ++k) ++start[static_cast<std::size_t>(edges(edge, k)) + 1];
-  for (std::size_t vertex = 0; vertex + 1 < start.size(); ++vertex) start[vertex + 1] += start[vertex];
+  const auto vertices = static_cast<std::size_t>(vertex_count);
+  std::vector<Index> smaller(vertices, 0), larger(vertices, 0);  // numbers of neighbors, then where to write the next
+  for (Index edge = 0; edge < edges.rows(); ++edge) {
+    ++larger[edges(edge, 0)];
+    ++smaller[edges(edge, 1)];
+  }
+  start.resize(vertices + 1);
+  start[0] = 0;
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+    const Index count = smaller[vertex];
+    smaller[vertex] = start[vertex];
+    start[vertex + 1] = start[vertex] + count + std::exchange(larger[vertex], start[vertex] + count);
+  }
   neighbours.resize(static_cast<std::size_t>(2 * edges.rows()));
-  std::vector<Index> cursor(start.begin(), start.end() - 1);
-  const auto add = [&](Index from, Index to) { neighbours[cursor[from]++] = to; };
-  // Edges are sorted, so the smaller neighbors of a vertex must be entered before its larger ones.
-  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 1), edges(edge, 0));
-  for (Index edge = 0; edge < edges.rows(); ++edge) add(edges(edge, 0), edges(edge, 1));
+  for (Index edge = 0; edge < edges.rows(); ++edge) {
+    neighbours[larger[edges(edge, 0)]++] = edges(edge, 1);
+    neighbours[smaller[edges(edge, 1)]++] = edges(edge, 0);
+  }
 }
 
 /// Numbers of the flip faces of every vertex.

@@ -77,9 +77,8 @@ def as_indices(value: ArrayLike, name: str, shape: tuple[int | None, ...], count
         raise InputError(f"{name}: dtype is {array.dtype}, expected integers")
     _check_shape(array, name, shape)
     limit = np.iinfo(np.int32).max if count is None else count
-    outside = (array < 0) | (array >= limit)
-    if outside.any():
-        where = tuple(np.argwhere(outside)[0])
+    if array.size > 0 and (array.min() < 0 or array.max() >= limit):
+        where = tuple(np.argwhere((array < 0) | (array >= limit))[0])
         raise InputError(f"{name}, row {where[0]}: index {array[where]} is out of range 0..{limit - 1}")
     return np.ascontiguousarray(array, np.int32)
 

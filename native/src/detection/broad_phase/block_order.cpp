@@ -2,137 +2,111 @@
 #include "detection/broad_phase/block_order.hpp"
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "detection/broad_phase/curve_order.hpp"
-#include "detection/broad_phase/median_split.hpp"
 #include "detection/broad_phase/window_order.hpp"
 
 namespace stiv {
 
 namespace {
 
-using Points = std::vector<Eigen::Vector3f>;
+using Points = std::vector<NumberedPoint>;
 using Items = std::span<NumberedPoint>;
 
-/// Runs in a window. More of them cost more time, and yield slightly closer runs.
-constexpr std::size_t runs_in_window = 128;
-/// The same in an order that is known; a divisor of `runs_in_window`.
-constexpr std::size_t runs_in_known_window = 64;
+/// Points in a window, without an order and in one that is known. Larger ones cost more time, and yield slightly
+/// closer runs.
+constexpr std::size_t window_size = window_capacity;
+constexpr std::size_t known_window_size = window_size / 2;
 
 enum class Given { unordered, in_order };
-
-void order_spatially(Items items, std::size_t run) {
-  if (items.size() <= window_capacity) {
-    order_window(items, run);
-    return;
-  }
-  const std::size_t half = size_of_first_part(items.size(), run);
-  split_at_median(items, half);
-  order_spatially(items.first(half), run);
-  order_spatially(items.subspan(half), run);
-}
 
 /// A curve, or an order that is known already, replaces the first levels of median splits, which cost the most and
 /// matter the least.
 void order_spatially(Items items, std::size_t run, Given given, const Execution& execution) {
-  const std::size_t window = run * (given == Given::in_order ? runs_in_known_window : runs_in_window);
+  const std::size_t window = given == Given::in_order ? known_window_size : window_size;
   if (given == Given::unordered && items.size() > window) sort_along_curve(items);
-  const auto chunk = static_cast<Index>(run * runs_in_window);
-  execution.for_chunks(static_cast<Index>(items.size()), chunk, [&](Index begin, Index end, Index) {
+  execution.for_chunks(static_cast<Index>(items.size()), window_size, [&](Index begin, Index end, Index) {
     for (auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end); first < last;
          first += window)
-      order_spatially(items.subspan(first, std::min(window, last - first)), run);
+      order_window(items.subspan(first, std::min(window, last - first)), run);
   });
 }
 
-void order_spatially(std::span<Index> numbers, const Points& centres, std::size_t run, Given given,
-                     const Execution& execution) {
-  std::vector<NumberedPoint> items;
-  items.reserve(numbers.size());
-  for (const Index number : numbers) {
-    const Eigen::Vector3f& centre = centres[number];
-    items.push_back({{centre[0], centre[1], centre[2]}, number});
-  }
-  order_spatially(items, run, given, execution);
-  std::transform(items.begin(), items.end(), numbers.begin(), [](const NumberedPoint& item) { return item.number; });
-}
-
-std::vector<Index> numbered(std::size_t count) {
-  std::vector<Index> items(count);
-  std::iota(items.begin(), items.end(), 0);
-  return items;
-}
-
-/// Sorts the items by group (at least 0); items of one group keep their order. A counting sort.
-void sort_by_group(std::vector<Index>& items, const std::vector<Index>& groups) {
-  const auto before = [&](Index a, Index b) { return groups[a] < groups[b]; };
-  if (groups.empty() || std::is_sorted(items.begin(), items.end(), before)) return;
+/// Sorts the points by group (at least 0); those of one group keep their order. A counting sort.
+void sort_by_group(Points& points, const std::vector<Index>& groups) {
+  const auto before = [&](const NumberedPoint& a, const NumberedPoint& b) {
+    return groups[a.number] < groups[b.number];
+  };
+  if (groups.empty() || std::is_sorted(points.begin(), points.end(), before)) return;
   std::vector<std::size_t> starts(static_cast<std::size_t>(*std::max_element(groups.begin(), groups.end())) + 1, 0);
   for (const Index group : groups) ++starts[group];
   std::size_t sum = 0;
   for (std::size_t& start : starts) sum += std::exchange(start, sum);
-  const std::vector<Index> unsorted = items;
-  for (const Index item : unsorted) items[starts[groups[item]]++] = item;
+  const Points unsorted = points;
+  for (const NumberedPoint& point : unsorted) points[starts[groups[point.number]]++] = point;
 }
 
-/// Primitives of each group in spatial order, group by group. Each group is padded to whole blocks.
-std::vector<Index> order_in_groups(std::vector<Index> items, Given given, const Points& centres,
-                                   const std::vector<Index>& groups, std::size_t block, const Execution& execution) {
-  const auto group = [&](Index item) { return groups.empty() ? 0 : groups[item]; };
-  sort_by_group(items, groups);
-  std::vector<Index> places;
-  places.reserve(items.size() + block);
-  for (auto begin = items.begin(); begin != items.end();) {
-    const Index common = group(*begin);
-    const auto end = std::find_if(begin, items.end(), [&](Index item) { return group(item) != common; });
-    order_spatially({begin, end}, centres, block, given, execution);
-    places.insert(places.end(), begin, end);
-    places.resize((places.size() + block - 1) / block * block, -1);
-    begin = end;
-  }
-  return places;
+/// Appends the numbers of the points, padded to whole blocks.
+void append_blocks(std::span<const NumberedPoint> points, std::size_t block, std::vector<Index>& places) {
+  for (const NumberedPoint& point : points) places.push_back(point.number);
+  places.resize((places.size() + block - 1) / block * block, -1);
 }
 
-Points centres_of_blocks(const std::vector<Index>& places, const Points& centres, std::size_t block) {
-  Points result;
-  for (std::size_t first = 0; first < places.size(); first += block) {
+/// Appends the center of each block.
+void append_centres(std::span<const NumberedPoint> points, std::size_t block, Points& centres) {
+  for (std::size_t first = 0; first < points.size(); first += block) {
     Eigen::AlignedBox3f box;
-    for (std::size_t place = first; place < first + block; ++place)
-      if (places[place] >= 0) box.extend(centres[places[place]]);
-    result.push_back(box.center());
+    for (const NumberedPoint& point : points.subspan(first, std::min(block, points.size() - first)))
+      box.extend(Eigen::Map<const Eigen::Vector3f>(point.position.data()));
+    const Eigen::Vector3f centre = box.center();
+    centres.push_back({{centre[0], centre[1], centre[2]}, static_cast<Index>(centres.size())});
   }
-  return result;
 }
 
-std::vector<Index> block_order(std::vector<Index> items, Given given, const Points& centres,
-                               const std::vector<Index>& groups, Index block, const Execution& execution) {
-  std::vector<Index> places = order_in_groups(std::move(items), given, centres, groups, block, execution);
-  const auto differs = [&](Index group) { return group != groups.front(); };
-  if (std::none_of(groups.begin(), groups.end(), differs)) return places;
-  const Points block_centres = centres_of_blocks(places, centres, block);
-  std::vector<Index> blocks = numbered(block_centres.size());
-  order_spatially(blocks, block_centres, block, Given::unordered, execution);
+/// Sorts blocks of several groups, given group by group.
+std::vector<Index> order_blocks(const std::vector<Index>& places, Points centres, std::size_t block,
+                                const Execution& execution) {
+  order_spatially(centres, block, Given::unordered, execution);
   std::vector<Index> order;
   order.reserve(places.size());
-  for (const Index first : blocks)
-    order.insert(order.end(), places.begin() + first * block, places.begin() + (first + 1) * block);
+  for (const NumberedPoint& centre : centres) {
+    const auto first = places.begin() + static_cast<std::ptrdiff_t>(block) * centre.number;
+    order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block));
+  }
   return order;
+}
+
+std::vector<Index> block_order(Points points, Given given, const std::vector<Index>& groups, std::size_t block,
+                               const Execution& execution) {
+  const auto group = [&](const NumberedPoint& point) { return groups.empty() ? 0 : groups[point.number]; };
+  sort_by_group(points, groups);
+  std::vector<Index> places;
+  places.reserve(points.size() + block);
+  Points centres;
+  for (auto begin = points.begin(); begin != points.end();) {
+    const auto differs = [&](const NumberedPoint& point) { return group(point) != group(*begin); };
+    const auto end = groups.empty() ? points.end() : std::find_if(begin, points.end(), differs);
+    const Items items(begin, end);
+    order_spatially(items, block, given, execution);
+    append_blocks(items, block, places);
+    if (begin != points.begin() || end != points.end()) append_centres(items, block, centres);
+    begin = end;
+  }
+  return centres.empty() ? places : order_blocks(places, std::move(centres), block, execution);
 }
 
 }  // namespace
 
-std::vector<Index> block_order(const Points& centres, const std::vector<Index>& groups, Index block,
+std::vector<Index> block_order(Points centres, const std::vector<Index>& groups, Index block,
                                const Execution& execution) {
-  return block_order(numbered(centres.size()), Given::unordered, centres, groups, block, execution);
+  return block_order(std::move(centres), Given::unordered, groups, static_cast<std::size_t>(block), execution);
 }
 
-std::vector<Index> block_order_along(std::vector<Index> items, const Points& centres, const std::vector<Index>& groups,
-                                     Index block, const Execution& execution) {
-  return block_order(std::move(items), Given::in_order, centres, groups, block, execution);
+std::vector<Index> block_order_along(Points centres, const std::vector<Index>& groups, Index block,
+                                     const Execution& execution) {
+  return block_order(std::move(centres), Given::in_order, groups, static_cast<std::size_t>(block), execution);
 }
 
 }  // namespace stiv

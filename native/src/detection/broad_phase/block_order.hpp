@@ -3,19 +3,20 @@
 
 #include <vector>
 
+#include "detection/broad_phase/numbered_point.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
 
-/// Indices of primitives with the given centers (finite), ordered so that runs of `block`, 2 `block`, 4 `block` and so
-/// on are close together in space. Each block holds primitives of one group (`groups` empty: a single group) and is
-/// padded with -1. The same for any number of threads.
-std::vector<Index> block_order(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups,
-                               Index block, const Execution& execution);
+/// The numbers of primitives with the given centers, ordered so that runs of `block`, 2 `block`, 4 `block` and so on
+/// are close together in space. Each block (a power of two, at most 512) holds primitives of one group (`groups` by
+/// number, empty: a single group) and is padded with -1. The same for any number of threads.
+std::vector<Index> block_order(std::vector<NumberedPoint> centres, const std::vector<Index>& groups, Index block,
+                               const Execution& execution);
 
-/// The same for `items`, all indices in a spatial order: only what is close together there is sorted.
-std::vector<Index> block_order_along(std::vector<Index> items, const std::vector<Eigen::Vector3f>& centres,
-                                     const std::vector<Index>& groups, Index block, const Execution& execution);
+/// The same for centers in a spatial order: only what is close together there is sorted.
+std::vector<Index> block_order_along(std::vector<NumberedPoint> centres, const std::vector<Index>& groups, Index block,
+                                     const Execution& execution);
 
 }  // namespace stiv

@@ -78,26 +78,26 @@ class TaskList {
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes) {
-  std::vector<Eigen::Vector3f> centres(boxes.size());
-  for (std::size_t k = 0; k < boxes.size(); ++k)
+std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes) {
+  std::vector<NumberedPoint> centres(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    centres[k].number = static_cast<Index>(k);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float middle = boxes[k].low[axis] / 2 + boxes[k].high[axis] / 2;
-      centres[k][static_cast<Index>(axis)] = std::isfinite(middle) ? middle : 0;
+      centres[k].position[axis] = std::isfinite(middle) ? middle : 0;
     }
+  }
   return centres;
 }
 
-Bvh::Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+Bvh::Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
          const Execution& execution)
     : Bvh(block_order(centres, groups, width, execution), static_cast<Index>(centres.size()), groups, corners,
           execution) {}
 
 Bvh::Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
          const Execution& execution)
-    : size_(count), order_(std::move(order)), places_(count) {
-  for (std::size_t place = 0; place < order_.size(); ++place)
-    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
+    : size_(count), order_(std::move(order)) {
   reserve_levels(groups);
   const Index last_group = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
   set_corners(corners, std::vector<unsigned char>(static_cast<std::size_t>(last_group) + 1, 1), execution);
@@ -170,8 +170,16 @@ void Bvh::summarise_all(const Execution& execution) {
                          });
 }
 
+void Bvh::prepare_refit_some() {
+  if (!places_.empty()) return;
+  places_.resize(size_);
+  for (std::size_t place = 0; place < order_.size(); ++place)
+    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
+}
+
 /// Sorts the blocks by marking them: blocks are few, and each is listed many times.
 void Bvh::find_touched(std::span<const Index> primitives) {
+  prepare_refit_some();
   constexpr std::size_t bits = 64;
   is_touched_.resize((order_.size() / width + bits - 1) / bits, 0);
   for (const Index primitive : primitives) {

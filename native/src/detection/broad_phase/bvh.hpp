@@ -11,6 +11,7 @@
 
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/group_frames.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/execution.hpp"
 
@@ -67,8 +68,8 @@ class Bvh {
   /// Builds over the centers of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
-  /// Builds over finite points; the boxes come with the first refit.
-  Bvh(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& groups, const CornerRows& corners,
+  /// Builds over the centers of primitives; the boxes come with the first refit.
+  Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
       const Execution& execution);
   /// The same in a given order of all `count` primitives, as block_order returns it.
   Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
@@ -91,6 +92,9 @@ class Bvh {
   /// The same for some primitives, each listed at least once. The cost does not depend on the others.
   template <class BoxOf>
   void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
+
+  /// Allocates what the first refit of some primitives would allocate.
+  void prepare_refit_some();
 
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
@@ -156,7 +160,7 @@ class Bvh {
 
   Index size_ = 0;
   std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
-  std::vector<Index> places_;  // place of each primitive
+  std::vector<Index> places_;  // place of each primitive, for refit_some
   std::vector<Level> levels_;  // blocks first, the root last
   std::vector<Index> corners_;
   Index corner_size_ = 0;
@@ -165,7 +169,7 @@ class Bvh {
 };
 
 /// Centers of boxes, zero where one is infinite.
-std::vector<Eigen::Vector3f> centres_of(const std::vector<Bounds>& boxes);
+std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>
 void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {

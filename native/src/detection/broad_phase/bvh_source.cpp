@@ -46,6 +46,7 @@ class BvhSource final : public CandidateSource {
     vertices_.prepare(start, execution);
     edges_.prepare(start, execution);
     faces_.prepare(start, execution);
+    vertices_.drop_curve();
   }
 
   void update(const Step& step, const Execution& execution) override {
@@ -62,6 +63,7 @@ class BvhSource final : public CandidateSource {
     vertices_.update(step, swept_, change, execution);
     edges_.update(step, swept_, change, execution);
     faces_.update(step, swept_, change, execution);
+    vertices_.drop_curve();
     refitted_ = true;
     bodies_.frames = swept_.body_frames();
     collect(execution);

@@ -64,10 +64,9 @@ struct Traversal {
   /// Makes room for the pairs of two blocks.
   void reserve() const {
     constexpr std::size_t most = Bvh::width * Bvh::width + Bvh::width;
-    if (found->count + most <= found->first.size()) return;
-    found->first.resize(2 * found->first.size() + 1024);
-    found->second.resize(found->first.size());
+    if (found->count + most > found->first.size()) grow(*found);
   }
+  static void grow(PairBuffer& buffer);
 };
 
 }  // namespace stiv
@@ -287,6 +286,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace stiv {
+
+void Traversal::grow(PairBuffer& buffer) {
+  buffer.first.resize(2 * buffer.first.size() + 1024);
+  buffer.second.resize(buffer.first.size());
+}
 
 void Bvh::overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const {
   const Traversal traversal{TreeView(*this),

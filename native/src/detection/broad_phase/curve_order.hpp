@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "detection/broad_phase/median_split.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 
 namespace stiv {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "detection/broad_phase/median_split.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 
 namespace stiv {
 

@@ -9,6 +9,7 @@
 #include "detection/broad_phase/bvh.hpp"
 #include "detection/broad_phase/candidate_source.hpp"
 #include "detection/broad_phase/corner_order.hpp"
+#include "detection/broad_phase/curve_order.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
 #include "detection/primitive_pair.hpp"
 
@@ -28,7 +29,10 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one, so that memory does not
     // grow late in a session.
-    if (tree_ && !incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
+    if (tree_) {
+      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
+      tree_->prepare_refit_some();
+    }
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
@@ -46,8 +50,15 @@ class PrimitiveTree {
   }
 
   const Bvh& tree() const { return *tree_; }
-  /// Of each vertex along a space-filling curve, when the tree was built. Only in a tree over vertices.
-  const std::vector<Index>& curve_places() const { return curve_places_; }
+
+  /// The vertices when their tree was built, for the first trees over their primitives.
+  struct Curve {
+    std::vector<NumberedPoint> points;  ///< see points_at
+    std::vector<Index> places;          ///< of each vertex along a space-filling curve
+  };
+  const Curve& curve() const { return curve_; }
+  /// Frees the memory, once those trees are built.
+  void drop_curve() { curve_ = {}; }
 
  private:
   /// Below one changed vertex in this many, finding their primitives is faster than refitting those of their bodies on
@@ -62,39 +73,62 @@ class PrimitiveTree {
 
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
-    const std::vector<Eigen::Vector3f> centres = centres_at(start, execution);
     const std::vector<Index> bodies = bodies_of_primitives(execution);
-    tree_.emplace(order_of(centres, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
+    tree_.emplace(order_at(start, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
     spread_ = spread(start);
   }
 
-  std::vector<Index> order_of(const std::vector<Eigen::Vector3f>& centres, const std::vector<Index>& bodies,
+  std::vector<Index> order_at(const PositionsView& start, const std::vector<Index>& bodies,
                               const Execution& execution) {
-    if constexpr (size == 1) curve_places_ = places_along_curve(centres);
-    // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
-    const bool knows_order = size == 1 || (vertices_ && !tree_);
-    if (!knows_order) return block_order(centres, bodies, Bvh::width, execution);
-    const std::vector<Index>& places = size == 1 ? curve_places_ : vertices_->curve_places();
-    return block_order_along(order_by_corners(rows_, count_, size, places), centres, bodies, Bvh::width, execution);
+    if constexpr (size == 1) {
+      std::vector<NumberedPoint> points = points_at(start, execution);
+      if (!tree_) curve_.points = points;
+      sort_along_curve(points);
+      if (!tree_) curve_.places = places_of(points);
+      return block_order_along(std::move(points), bodies, Bvh::width, execution);
+    } else {
+      // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
+      if (!vertices_ || tree_)
+        return block_order(centres_of({}, points_at(start, execution), execution), bodies, Bvh::width, execution);
+      const auto& [points, places] = vertices_->curve();
+      const std::vector<Index> order = order_by_corners(rows_, count_, size, places);
+      return block_order_along(centres_of(order, points, execution), bodies, Bvh::width, execution);
+    }
   }
 
-  /// Of all primitives, scaled so that no sum overflows; zero for vertices beyond single precision.
-  std::vector<Eigen::Vector3f> centres_at(const PositionsView& start, const Execution& execution) const {
-    std::vector<Eigen::Vector3f> points(surface_.vertex_count());
+  /// Of all vertices, scaled so that no sum overflows; zero for vertices beyond single precision.
+  std::vector<NumberedPoint> points_at(const PositionsView& start, const Execution& execution) const {
+    std::vector<NumberedPoint> points(static_cast<std::size_t>(surface_.vertex_count()));
     execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index begin, Index end, Index) {
       for (Index vertex = begin; vertex < end; ++vertex) {
-        const Eigen::Vector3f point = (start.row(vertex) - start.row(0)).template cast<float>();
-        points[vertex] = point.allFinite() ? Eigen::Vector3f(point / 4) : Eigen::Vector3f(Eigen::Vector3f::Zero());
+        const Eigen::Vector3f point = (start.row(vertex) - start.row(0)).template cast<float>() / 4;
+        const bool is_finite = point.allFinite();
+        points[vertex] = {{is_finite ? point[0] : 0, is_finite ? point[1] : 0, is_finite ? point[2] : 0}, vertex};
       }
     });
-    if (size == 1) return points;
-    std::vector<Eigen::Vector3f> centres(count_);
+    return points;
+  }
+
+  static std::vector<Index> places_of(const std::vector<NumberedPoint>& along_curve) {
+    std::vector<Index> places(along_curve.size());
+    for (std::size_t place = 0; place < along_curve.size(); ++place)
+      places[along_curve[place].number] = static_cast<Index>(place);
+    return places;
+  }
+
+  /// Sums of the corners of all primitives, in an order of these (empty: ascending).
+  std::vector<NumberedPoint> centres_of(const std::vector<Index>& order, const std::vector<NumberedPoint>& points,
+                                        const Execution& execution) const {
+    std::vector<NumberedPoint> centres(static_cast<std::size_t>(count_));
     execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
-      for (Index primitive = begin; primitive < end; ++primitive) {
+      for (Index place = begin; place < end; ++place) {
+        const Index primitive = order.empty() ? place : order[place];
         const auto corners = row(primitive);
-        Eigen::Vector3f sum = points[corners[0]];
-        for (std::size_t k = 1; k < static_cast<std::size_t>(size); ++k) sum += points[corners[k]];
-        centres[primitive] = sum;
+        NumberedPoint centre = points[corners[0]];
+        for (std::size_t k = 1; k < static_cast<std::size_t>(size); ++k)
+          for (std::size_t axis = 0; axis < 3; ++axis) centre.position[axis] += points[corners[k]].position[axis];
+        centre.number = primitive;
+        centres[place] = centre;
       }
     });
     return centres;
@@ -135,7 +169,7 @@ class PrimitiveTree {
   const Index* rows_;
   Index count_;
   const PrimitiveTree<1>* vertices_;
-  std::vector<Index> curve_places_;
+  Curve curve_;
   std::optional<Bvh> tree_;
   double spread_ = 0;  // when the tree was built
   std::optional<VertexIncidence> incidence_;

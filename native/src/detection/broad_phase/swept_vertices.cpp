@@ -66,13 +66,17 @@ bool SweptVertices::has_other_frame(const Step& step, Index vertex) const {
 /// Vertices whose step differs from that of their box, or whose frame does but not the common one; ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
   const Index count = surface_.vertex_count();
+  if (!complete_) {
+    std::vector<Index> all(static_cast<std::size_t>(count));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
   const bool frames_differ = step.motions.common == motions_.common && step.motions != motions_;
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbors
     const auto same = [&](Index first, Index number) {
-      if (!complete_ || !same_bits(step.start, start_, first, number) || !same_bits(step.end, end_, first, number))
-        return false;
+      if (!same_bits(step.start, start_, first, number) || !same_bits(step.end, end_, first, number)) return false;
       for (Index k = 0; frames_differ && k < number; ++k)
         if (has_other_frame(step, first + k)) return false;
       return true;
@@ -243,8 +247,10 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
     boxes_.resize(count);
     start_.resize(count, 3);
     end_.resize(count, 3);
-    changed_.resize(count);
-    std::iota(changed_.begin(), changed_.end(), 0);
+    if (static_cast<Index>(changed_.size()) < count) {
+      changed_.resize(count);
+      std::iota(changed_.begin(), changed_.end(), 0);
+    }
   }
   sweep(step, changed_, execution);
   outdated_.clear();

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <span>
 
-#include "detection/broad_phase/median_split.hpp"
+#include "detection/broad_phase/numbered_point.hpp"
 
 namespace stiv {
 
-constexpr std::size_t window_capacity = 64;
+constexpr std::size_t window_capacity = 1024;
 
 /// The first part of a split: the largest power of two times `run` that is less than `count`, so parts of all sizes end
 /// where nodes of a tree end.
@@ -18,8 +18,8 @@ constexpr std::size_t size_of_first_part(std::size_t count, std::size_t run) {
   return half;
 }
 
-/// Sorts up to `window_capacity` points along the longest axis of their box, and then both parts, until parts have
-/// `run` points. Compares all pairs of points: without branches, that is faster than a sort.
+/// Splits up to `window_capacity` points at a median along the longest axis of their box, and then both parts, until
+/// parts have at most `run` points. The same for all vector targets.
 void order_window(std::span<NumberedPoint> points, std::size_t run);
 
 }  // namespace stiv

@@ -150,7 +150,7 @@ TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
 }
 
 TEST_CASE("bvh: the tree does not depend on the number of threads") {
-  const std::vector<Eigen::Vector3f> centres = centres_of(random_boxes(20000, 0.05, 8));
+  const std::vector<NumberedPoint> centres = centres_of(random_boxes(20000, 0.05, 8));
   std::vector<Index> groups;
   for (Index k = 0; k < 20000; ++k) groups.push_back(k < 15000 ? 0 : 1);
   const Bvh tree(centres, groups, {}, Execution(1));

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <set>
@@ -53,6 +55,42 @@ TEST_CASE("window order: halves are split along the longest axis, and all vector
     for (std::size_t k = 0; k < half; ++k) expected.insert(along[k].second);
     if (count >= 24) CHECK(found == expected);
   }
+}
+
+TEST_CASE("window order: halves of points in any order and of any spread, as sorted by position and index") {
+  std::mt19937 random(4);
+  std::normal_distribution<float> spread(0, 3);
+  const auto height = [](std::size_t k) { return static_cast<float>(k); };
+  const std::vector<std::function<float(std::size_t)>> positions{
+      [&](std::size_t) { return std::round(spread(random)) + 0.5F; },
+      height,
+      [&](std::size_t k) { return -height(k); },
+      [&](std::size_t k) { return height(std::min(k, 500 - std::min<std::size_t>(k, 500))); },
+      [&](std::size_t k) { return k == 3 ? 1e30F : -1.0F; },
+      [&](std::size_t k) { return std::ldexp(1.0F, static_cast<int>(k % 20)); },
+      [&](std::size_t) { return 2.0F; }};
+  for (const std::size_t count : {9U, 16U, 17U, 32U, 33U, 100U, 511U, 513U, 1024U})
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const auto& position : positions) {
+        Points points;
+        for (std::size_t k = 0; k < count; ++k) {
+          const float along = position(k);
+          points.push_back({{0.1F * along, 0.1F * along, 0.1F * along}, static_cast<Index>(k)});
+          points.back().position[axis] = along;
+        }
+        Points sorted = points;
+        std::stable_sort(sorted.begin(), sorted.end(), [&](const NumberedPoint& a, const NumberedPoint& b) {
+          return a.position[axis] < b.position[axis];
+        });
+        order_window(points, 8);
+        const auto half = static_cast<std::ptrdiff_t>(size_of_first_part(count, 8));
+        std::vector<Index> found = numbers_of(points), expected = numbers_of(sorted);
+        for (std::vector<Index>* numbers : {&found, &expected}) {
+          std::sort(numbers->begin(), numbers->begin() + half);
+          std::sort(numbers->begin() + half, numbers->end());
+        }
+        CHECK(found == expected);
+      }
 }
 
 TEST_CASE("window order: the first part ends where nodes end") {
