@@ -59,16 +59,17 @@ struct SweptVertices::Survey {
 double SweptVertices::Frame::margin() const { return 0.55 * separation + 0x1p-42 * (2 * radius); }
 
 /// Vertices whose step differs from that of their box, ascending.
-std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
+std::vector<Index> SweptVertices::changed_in(const PositionsView& start, const PositionsView& end,
+                                             const Execution& execution) const {
   const Index count = surface_.vertex_count();
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
-  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+  execution.for_chunks(count, chunk_size, [&](Index first_vertex, Index last_vertex, Index chunk) {
     constexpr Index run = 32;  // unchanged vertices mostly have unchanged neighbors
     const auto same = [&](Index first, Index number) {
-      return complete_ && same_bits(step.start, start_, first, number) && same_bits(step.end, end_, first, number);
+      return complete_ && same_bits(start, start_, first, number) && same_bits(end, end_, first, number);
     };
-    for (Index some = begin; some < end; some += run) {
-      const Index last = std::min(end, some + run);
+    for (Index some = first_vertex; some < last_vertex; some += run) {
+      const Index last = std::min(last_vertex, some + run);
       if (same(some, last - some)) continue;
       for (Index vertex = some; vertex < last; ++vertex)
         if (!same(vertex, 1)) parts[chunk].push_back(vertex);
@@ -179,27 +180,60 @@ bool SweptVertices::holds(const Step& step, const Execution& execution) const {
 }
 
 /// Vertices whose step equals that of their box, now and in the last step, are up to date. Valid also if cancelled.
-void SweptVertices::take_steps(const Step& step, const Execution& execution) {
+void SweptVertices::take_steps(const PositionsView& start, const PositionsView& end, const Execution& execution) {
   if (!complete_) {
-    steps_.update(step.start, step.end, execution);
+    steps_.update(start, end, execution);
     outdated_.clear();
     return;
   }
-  steps_.update(step.start, step.end, outdated_, execution);
+  steps_.update(start, end, outdated_, execution);
   outdated_.insert(outdated_.end(), changed_.begin(), changed_.end());
-  steps_.update(step.start, step.end, changed_, execution);
+  steps_.update(start, end, changed_, execution);
   outdated_ = changed_;
+}
+
+/// Are both ends of the step within an eighth of the separation of a surface? (Differences have relative errors only.)
+bool SweptVertices::stays_near(const Positions& surface, const PositionsView& start, const PositionsView& end,
+                               const Execution& execution) const {
+  const double reach = frame_.separation / 8;
+  std::atomic<bool> near{true};
+  execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index first, Index last, Index) {
+    bool all = near.load(std::memory_order_relaxed);
+    for (Index vertex = first; vertex < last && all; ++vertex) {
+      const double *const from = row(start, vertex), *const to = row(end, vertex), *const place = row(surface, vertex);
+      bool moves = false;
+      for (std::size_t k = 0; k < 3; ++k) {
+        all &= std::abs(from[k] - place[k]) <= reach && std::abs(to[k] - place[k]) <= reach;
+        all &= is_valid_coordinate(from[k]) && is_valid_coordinate(to[k]);
+        moves |= from[k] != to[k];
+      }
+      all &= !moves || boxes_[vertex].active();
+    }
+    if (!all) near.store(false, std::memory_order_relaxed);
+  });
+  return near;
+}
+
+// Relative to the boxes' step at its start or end, positions differ by at most h/8 along each axis, so projections onto
+// n by h/8 |n|_1. Boxes that do not overlap leave a gap of more than h, hulls that are apart one of h |n|_1: at least
+// three quarters of it remain for the whole step.
+bool SweptVertices::take_short_step(const PositionsView& start, const PositionsView& end, const Execution& execution) {
+  if (!complete_ || !(frame_.separation > 0)) return false;
+  if (!stays_near(start_, start, end, execution) && !stays_near(end_, start, end, execution)) return false;
+  changed_ = changed_in(start, end, execution);
+  take_steps(start, end, execution);
+  return true;
 }
 
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, Reuse reuse) {
   const Index count = surface_.vertex_count();
-  changed_ = changed_in(step, execution);
+  changed_ = changed_in(step.start, step.end, execution);
   if (complete_ && reuse == Reuse::allowed && holds(step, execution)) {
-    take_steps(step, execution);
+    take_steps(step.start, step.end, execution);
     return Change::none;
   }
   const Frame frame = frame_for(step, survey(step, execution));
-  take_steps(step, execution);
+  take_steps(step.start, step.end, execution);
   const bool all = !complete_ || frame != frame_;
   complete_ = false;  // until the end: this may be cancelled
   frame_ = frame;
