@@ -181,11 +181,11 @@ def _open_vertices(triangles: Indices, leaders: Indices) -> Indices:
 
     In a closed fan, each neighbor follows one triangle and precedes another, so the sums of their codes cancel.
     """
-    codes = _random_codes(len(leaders))
     sums = np.zeros(len(leaders))
-    for corner in range(3):
-        after, before = triangles[:, (corner + 1) % 3], triangles[:, (corner + 2) % 3]
-        sums += np.bincount(triangles[:, corner], codes[after] - codes[before], len(leaders))
+    corners = np.ascontiguousarray(triangles.T, np.intp)  # columns of rows of three are slow
+    codes = [_random_codes(len(leaders)).take(corner) for corner in corners]
+    for k in range(3):
+        sums += np.bincount(corners[k], codes[k - 2] - codes[k - 1], len(leaders))
     is_open = np.zeros(len(leaders), np.bool_)
     is_open[leaders[np.flatnonzero(sums)]] = True
     return np.flatnonzero(is_open).astype(np.int32)

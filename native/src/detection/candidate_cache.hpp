@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,14 @@ class CandidateCache {
   /// Removes candidates that the step of the whole surface, (N, 3), does not bring close.
   /// @throws Interrupted with nothing changed, as `find`
   void prune(const PositionsView& start, const PositionsView& end, Proximity proximity, const Execution& execution);
+
+  /// The earliest contact in a short step of the whole surface, (N, 3), `never` if there is none, decided by the
+  /// candidates of the detector's last search. Nothing if these may miss a pair that touches: then search.
+  /// @param proximity must ask no pair of bodies to keep a distance
+  std::optional<double> earliest_contact(const PositionsView& start, const PositionsView& end,
+                                         const Proximity& proximity, Execution& execution) {
+    return search_.earliest_contact({start, end, proximity}, execution);
+  }
 
   void clear();
 

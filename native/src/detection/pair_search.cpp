@@ -53,6 +53,17 @@ constexpr auto append_event = [](const PairTest& test, EventKind kind) {
   };
 };
 
+/// Lowers `earliest` to the time of each event.
+auto lower_to(std::atomic<double>& earliest) {
+  return [&earliest](const PairTest& test, EventKind kind) {
+    return [&test, &earliest, kind](const Candidate& candidate, auto&) {
+      const double latest = std::min(1.0, earliest.load(std::memory_order_relaxed));
+      if (latest == 0) return;
+      if (const auto event = test.event(kind, candidate, latest)) lower(earliest, event->time);
+    };
+  };
+}
+
 }  // namespace
 
 void check_proximity(const Proximity& proximity) {
@@ -94,15 +105,19 @@ std::optional<Events> PairSearch::find(const Step& given, PairLimit limit, Execu
 std::optional<double> PairSearch::earliest_time(const Step& given, PairLimit limit, Execution& execution) {
   const Step step = in_frames(given);
   std::atomic<double> earliest{never};
-  const auto results = search(step, limit, execution, [&](const PairTest& test, EventKind kind) {
-    return [&test, &earliest, kind](const Candidate& candidate, ChunkResult&) {
-      const double latest = std::min(1.0, earliest.load(std::memory_order_relaxed));
-      if (latest == 0) return;
-      if (const auto event = test.event(kind, candidate, latest)) lower(earliest, event->time);
-    };
-  });
-  if (!results) return std::nullopt;
+  if (!search(step, limit, execution, lower_to(earliest))) return std::nullopt;
   if (limit == PairLimit::respected && step.motions.go_far && earliest.load() < never) return std::nullopt;
+  return earliest.load();
+}
+
+std::optional<double> PairSearch::earliest_contact(const Step& step, Execution& execution) {
+  check_step(step);
+  const FloatingPointScope floating_point;
+  if (!source_->take_short_step(step.start, step.end, execution)) return std::nullopt;
+  drop_close_pairs();
+  unsearched_ = step.proximity.separation;
+  std::atomic<double> earliest{never};
+  decide_candidates(step.proximity, execution, lower_to(earliest));
   return earliest.load();
 }
 
@@ -128,7 +143,24 @@ Events PairSearch::find_among(const ClosePairs& pairs, const VertexSteps& steps,
   return collect(results, execution);
 }
 
+/// Searches the step of `source_` for its close pairs only. They are seldom wanted: an edit mostly ends with a short
+/// step.
+void PairSearch::search_again(const Execution& execution) {
+  const FloatingPointScope floating_point;
+  const VertexStep* const rows = source_->vertex_steps().data();
+  Positions start(surface_->vertex_count(), 3), end(surface_->vertex_count(), 3);
+  for (Index vertex = 0; vertex < surface_->vertex_count(); ++vertex) {
+    start.row(vertex) = Eigen::Map<const Eigen::RowVector3d>(rows[vertex].start);
+    end.row(vertex) = Eigen::Map<const Eigen::RowVector3d>(rows[vertex].end);
+  }
+  const Step step = in_frames({start, end, {*unsearched_}});
+  source_->update(step, execution);
+  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motions, step.proximity.separation};
+  unsearched_.reset();
+}
+
 ClosePairs PairSearch::take_close_pairs(const Execution& execution) {
+  if (unsearched_) search_again(execution);
   if (!last_) return {};
   const ChunkRange chunks = chunks_of(*source_);
   std::vector<std::vector<Candidate>> found(chunks.all);
@@ -162,11 +194,19 @@ template <class Decide>
 std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Step& step, PairLimit limit,
                                                                        Execution& execution, const Decide& decide) {
   const FloatingPointScope floating_point;
-  last_.reset();
+  drop_close_pairs();
   source_->update(step, execution);
   ++execution.counters.detections;
   if (limit == PairLimit::respected && !source_->is_within_pair_limit()) return std::nullopt;
-  const PairTest test(*surface_, source_->vertex_steps(), step.proximity, narrow_phase_);
+  std::vector<ChunkResult> results = decide_candidates(step.proximity, execution, decide);
+  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motions, step.proximity.separation};
+  return results;
+}
+
+template <class Decide>
+std::vector<PairSearch::ChunkResult> PairSearch::decide_candidates(const Proximity& proximity, Execution& execution,
+                                                                   const Decide& decide) const {
+  const PairTest test(*surface_, source_->vertex_steps(), proximity, narrow_phase_);
   const ChunkRange chunks = chunks_of(*source_);
   std::vector<ChunkResult> results(chunks.all);
   execution.for_chunks(chunks.all, 1, [&](Index chunk, Index, Index) {
@@ -177,7 +217,6 @@ std::optional<std::vector<PairSearch::ChunkResult>> PairSearch::search(const Ste
     source_->visit(kind, chunks.within_kind(chunk), std::ref(decide_some));
   });
   count(results, execution.counters);
-  if (source_->is_within_pair_limit()) last_ = WholeSearch{step.motions, step.proximity.separation};
   return results;
 }
 

@@ -33,11 +33,19 @@ class PairSearch {
   std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);
   std::optional<double> earliest_time(const Step& step, PairLimit limit, Execution& execution);
 
+  /// Earliest contact in a short step, decided by the candidates of the last search. Nothing, with nothing changed, if
+  /// these may miss a pair that touches: then search. Close pairs are afterwards those of a search of this step.
+  /// @param step its proximity must ask no pair of bodies to keep a distance
+  std::optional<double> earliest_contact(const Step& step, Execution& execution);
+
   /// Moves out the pairs that the step of the last complete search may bring close (see append_close); none if they
   /// were taken before.
   ClosePairs take_close_pairs(const Execution& execution);
-  bool has_close_pairs() const { return last_.has_value(); }
-  void drop_close_pairs() { last_.reset(); }
+  bool has_close_pairs() const { return last_.has_value() || unsearched_.has_value(); }
+  void drop_close_pairs() {
+    last_.reset();
+    unsearched_.reset();
+  }
 
   /// Events of a step among some pairs; `steps` holds the step of their vertices.
   Events find_among(const ClosePairs& pairs, const VertexSteps& steps, const Proximity& proximity,
@@ -68,6 +76,10 @@ class PairSearch {
   std::optional<std::vector<ChunkResult>> search(const Step& step, PairLimit limit, Execution& execution,
                                                  const Decide& decide);
   template <class Decide>
+  std::vector<ChunkResult> decide_candidates(const Proximity& proximity, Execution& execution,
+                                             const Decide& decide) const;
+  void search_again(const Execution& execution);
+  template <class Decide>
   static void decide_all(const PairTest& test, EventKind kind, std::span<Candidate> candidates, const Decide& decide,
                          ChunkResult& result);
   static Events collect(const std::vector<ChunkResult>& results, Execution& execution);
@@ -77,7 +89,8 @@ class PairSearch {
   NarrowPhase narrow_phase_;
   FrameChooser frames_;
   std::unique_ptr<CandidateSource> source_;
-  std::optional<WholeSearch> last_;  ///< set while the close pairs of a complete search can be taken
+  std::optional<WholeSearch> last_;   ///< set while the close pairs of a complete search can be taken
+  std::optional<double> unsearched_;  ///< separation of the step of `source_`, if close pairs need a search of it
 };
 
 /// @throws InputError for a separation or a clearance ratio out of range

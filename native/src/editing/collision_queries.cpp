@@ -166,9 +166,11 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
   Proximity touching;
   touching.separation = context_.proximity().separation;
   touching.by_bodies = &no_separations_;
-  return guard_->detector.earliest_time(context_.centred(from, execution), context_.centred(to, execution), touching,
-                                        execution) == never &&
-         guard_->intersections.is_free(to, moved_vertices(from, to), execution);
+  const Positions start = context_.centred(from, execution), end = context_.centred(to, execution);
+  // As most steps are no longer than rounding, the last search has mostly found all pairs that can touch.
+  std::optional<double> first = guard_->cache.earliest_contact(start, end, touching, execution);
+  if (!first) first = guard_->detector.earliest_time(start, end, touching, execution);
+  return *first == never && guard_->intersections.is_free(to, moved_vertices(from, to), execution);
 }
 
 }  // namespace stiv

@@ -56,7 +56,8 @@ class SurfaceSession final : public SessionImplementation {
     tightening_.reset();
     queries_.clear_cache();
     trail_.begin(controls);
-    drag_ = {.followed = last_feasible(context_, state, context_.limits().nearest(goal), execution)};
+    const Controls aim = context_.limits().nearest(goal);
+    drag_ = {.followed = aim == controls ? state : last_feasible(context_, state, aim, execution)};
     goal_ = goal;
     accepted_ = std::move(state);
     is_dragging_ = goal != controls;

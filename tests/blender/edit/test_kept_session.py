@@ -11,6 +11,7 @@ from building import add_cube, add_modifier, cube_above_floor, edit_mode, shift
 from stiv.blender import BlenderEdit, EditSettings, check_scene
 from stiv.blender.edit import kept_session
 from stiv.blender.edit.culled_edit import begin_culled_steps
+from stiv.blender.edit.sessions import deformation_of
 from stiv.task import run
 
 
@@ -59,6 +60,29 @@ def test_consecutive_drags_share_a_session() -> None:
         assert edit.write().passed
         edit.finish()
     assert sessions[0] is sessions[1] is sessions[2]
+
+
+def test_a_kept_deformation_is_that_of_the_present_scene() -> None:
+    cage()
+    first = pressed(1.0)
+    deformation = first._solver.deformation
+    first.finish()
+    second = pressed(0.2)
+    assert second._solver.deformation is deformation
+    fresh = deformation_of(second.assembly, second.control_sets)
+    for controls in (second.controls, second.controls + (0, 0, 0.25)):
+        assert np.array_equal(deformation.surface(controls), fresh.surface(controls))
+
+
+def test_an_obstacle_moved_between_two_edits_is_where_it_is_now() -> None:
+    cage()
+    pressed(1.0).finish()
+    bpy.data.objects["Floor"].location.z -= 0.5
+    bpy.context.view_layer.update()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    floor = [mesh.owner.name for mesh in edit.assembly.meshes].index("Floor")
+    shown = edit.surface_of(edit.controls)[edit.assembly.vertices(floor)]
+    assert (shown[:, 2] == -0.5).all()
 
 
 def test_a_modifier_changed_by_hand_between_two_edits_is_seen() -> None:

@@ -69,6 +69,10 @@ class BvhSource final : public CandidateSource {
     collect(execution);
   }
 
+  bool take_short_step(const PositionsView& start, const PositionsView& end, const Execution& execution) override {
+    return refitted_ && collected_ && swept_.take_short_step(start, end, execution);
+  }
+
   const VertexSteps& vertex_steps() const override { return swept_.steps(); }
 
   bool is_within_pair_limit() const override { return collected_; }

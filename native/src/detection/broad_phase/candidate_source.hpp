@@ -32,7 +32,10 @@ class CandidateSource {
   virtual void prepare(const PositionsView&, const Execution&) {}
   /// @throws InputError as Surface::check_positions, except for the shape
   virtual void update(const Step& step, const Execution& execution) = 0;
-  /// The step of the last update, for vector code to load.
+  /// Takes a short step from or to the surface of the last update if the candidates then contain every pair that
+  /// touches in it. Otherwise returns false, with nothing changed.
+  virtual bool take_short_step(const PositionsView&, const PositionsView&, const Execution&) { return false; }
+  /// The step that was taken last, for vector code to load.
   virtual const VertexSteps& vertex_steps() const = 0;
   /// Are the candidates few enough for bounded time and memory? Depends only on the step. Visits are complete in any
   /// case.

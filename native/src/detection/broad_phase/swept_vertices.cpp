@@ -230,6 +230,38 @@ void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   outdated_ = changed_;
 }
 
+/// Are both ends of the step within an eighth of the separation of a surface, and does only move what may move?
+/// Differences of coordinates have relative errors, which the remaining gaps cover.
+bool SweptVertices::stays_near(const Positions& surface, const Step& step, const Execution& execution) const {
+  const double reach = frame_.separation / 8;
+  std::atomic<bool> near{true};
+  execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index begin, Index end, Index) {
+    bool all = near.load(std::memory_order_relaxed);
+    for (Index vertex = begin; vertex < end && all; ++vertex) {
+      const double *const from = row(step.start, vertex), *const to = row(step.end, vertex);
+      const double* const place = row(surface, vertex);
+      bool moves = false;
+      for (std::size_t k = 0; k < 3; ++k) {
+        all &= std::abs(from[k] - place[k]) <= reach && std::abs(to[k] - place[k]) <= reach;
+        all &= is_valid_coordinate(from[k]) && is_valid_coordinate(to[k]);
+        moves |= from[k] != to[k];
+      }
+      all &= !moves || boxes_[vertex].active();
+    }
+    if (!all) near.store(false, std::memory_order_relaxed);
+  });
+  return near;
+}
+
+bool SweptVertices::take_short_step(const PositionsView& start, const PositionsView& end, const Execution& execution) {
+  const Step step{start, end, {}, motions_};
+  if (!complete_ || !(frame_.separation > 0)) return false;
+  if (!stays_near(start_, step, execution) && !stays_near(end_, step, execution)) return false;
+  changed_ = changed_in(step, execution);
+  take_steps(step, execution);
+  return true;
+}
+
 SweptVertices::Change SweptVertices::update(const Step& step, const Execution& execution, Reuse reuse) {
   const Index count = surface_.vertex_count();
   changed_ = changed_in(step, execution);

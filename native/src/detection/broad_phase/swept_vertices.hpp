@@ -31,6 +31,12 @@ class SweptVertices {
   /// @throws InputError as Surface::check_positions
   Change update(const Step& step, const Execution& execution, Reuse reuse = Reuse::allowed);
 
+  /// Takes a step, (N, 3) each, that begins and ends near the start of the boxes' step, or near its end. Pairs whose
+  /// boxes or hulls stayed apart by the separation do not touch in it. Otherwise returns false, with nothing changed: a
+  /// vertex is further away than an eighth of the separation, or moves but did not in the boxes' step.
+  /// (mathematics.md, "Steps as short as rounding")
+  bool take_short_step(const PositionsView& start, const PositionsView& end, const Execution& execution);
+
   /// Fraction of a vertex's displacement in the frame (its largest component) by which its box is padded. Small,
   /// because responses change a step by far more than padding can cover.
   static constexpr double slack = 1.0 / 1024;
@@ -39,7 +45,7 @@ class SweptVertices {
   /// The same as the boxes' groups, one for each body.
   GroupFrames body_frames() const;
 
-  /// The step of the last update.
+  /// The step that was taken last.
   const VertexSteps& steps() const { return steps_; }
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   const std::vector<Index>& changed() const { return changed_; }
@@ -76,6 +82,7 @@ class SweptVertices {
   bool near_segment(const Step& step, Index vertex) const;
   bool near_segment(const Step& step, Index vertex, const Vector3& frame_motion, const Vector3& step_motion) const;
   bool holds(const Step& step, const Execution& execution) const;
+  bool stays_near(const Positions& surface, const Step& step, const Execution& execution) const;
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;

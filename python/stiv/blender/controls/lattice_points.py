@@ -12,7 +12,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.points import PointGoal, to_stored
-from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, transform_points
+from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.scene.lattice_reading import read_lattice_points
 from stiv.blender.scene.modifier_stack import modifier_error
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
@@ -52,7 +52,7 @@ def check_lattice(ob: bpy.types.Object) -> None:
 
 def _selected(ob: bpy.types.Object, participant: Participant) -> Flags:
     if ob.mode == "EDIT":
-        return np.array([point.select for point in ob.data.points], np.bool_)
+        return read_collection(ob.data.points, "select", 1, np.bool_)
     return np.full(len(ob.data.points), participant.selected)
 
 

@@ -42,7 +42,7 @@ def count_increments(path: Path, points: Floats, longest: float, most: int) -> i
     if len(points) == 0 or longest <= 0:
         return 1
     matrices = [path(k / SAMPLES) for k in range(SAMPLES + 1)]
-    turn = sum(_turn(before[:3, :3], after[:3, :3]) for before, after in pairwise(matrices))
+    turn = _turns(np.array(matrices)[:, :3, :3])
     low, high = extents(points)
     corners = np.array([np.where(choice, high, low) for choice in np.ndindex(2, 2, 2)])
     length = _length_of_few(np.array(matrices), corners)  # no point moves further than a corner of its box
@@ -63,10 +63,17 @@ def _length_of_few(matrices: Floats, points: Floats) -> float:
     return sum(longest)
 
 
+def _turns(linear: Floats) -> float:
+    """Sum of the angles from each linear map, (n, 3, 3), to the next.
+
+    Most typed values are translations, which need no decompositions.
+    """
+    changes = np.flatnonzero((linear[1:] != linear[:-1]).any(axis=(1, 2)))
+    return sum(_turn(linear[k], linear[k + 1]) for k in changes)
+
+
 def _turn(before: Floats, after: Floats) -> float:
-    """Angle between two linear maps; most typed values are translations, which need no decompositions."""
-    if np.array_equal(before, after):
-        return 0.0
+    """Angle between two linear maps."""
     return float(np.linalg.norm(rotation_vector(nearest_rotation(after @ np.linalg.pinv(before)))))
 
 

@@ -37,10 +37,10 @@ class SessionInputs:
     @classmethod
     def of(cls, assembly: Assembly, control_sets: Sequence[ControlSet], options: stiv.EditOptions) -> SessionInputs:
         """The inputs of a session of these control sets."""
-        positions = assembly.positions
-        moving = np.zeros(len(positions), bool)
-        moving[assembly.vertices_of([index for each in control_sets for index in each.surfaces])] = True
-        diagonal = diagonal_of(positions[moving])
+        positions, moving = assembly.positions, np.zeros(len(assembly.positions), bool)
+        vertices = assembly.vertices_of([index for each in control_sets for index in each.surfaces])
+        moving[vertices] = True
+        diagonal = diagonal_of(positions.take(vertices, axis=0))
         chosen = astuple(replace(options, weights=None, weight_axes=None))
         fingerprint = digest(moving, positions[~moving], *_flat(chosen))
         return cls(assembly.surface, fingerprint, tuple(each.deformation for each in control_sets), diagonal, options)
@@ -53,29 +53,32 @@ class SessionInputs:
         return growth and same and self.fingerprint == other.fingerprint and are_equal(self.surface, other.surface)
 
 
-_kept: tuple[SessionInputs, stiv.EditSession] | None = None
+_kept: tuple[SessionInputs, stiv.EditSession, stiv.Deformation] | None = None
 
 
-def keep_session(inputs: SessionInputs, session: stiv.EditSession) -> None:
-    """Keep a session that nothing else uses any more. It replaces the one that was kept."""
+def keep_session(inputs: SessionInputs, session: stiv.EditSession, deformation: stiv.Deformation) -> None:
+    """Keep a session that nothing else uses any more, and its deformation. They replace those that were kept."""
     global _kept
-    _kept = inputs, session
+    _kept = inputs, session, deformation
 
 
-def take_session(inputs: SessionInputs, controls: Floats) -> stiv.EditSession | None:
-    """The kept session at these controls, (m, 3), if it was made from the same inputs. Then none is kept any more."""
+def take_session(inputs: SessionInputs, controls: Floats) -> tuple[stiv.EditSession, stiv.Deformation] | None:
+    """The kept session at these controls, (m, 3), and its deformation, if it was made from the same inputs.
+
+    Then none is kept any more.
+    """
     global _kept
     kept, _kept = _kept, None
     if kept is None or not kept[0].agree_with(inputs):
         return None
-    session, options = kept[1], inputs.options
+    (_, session, deformation), options = kept, inputs.options
     try:
         session.restore(controls)
         if not _weighs_alike(kept[0].options, options):
             session.set_weights(options.weights, options.weight_axes)
     except (stiv.InfeasibleError, stiv.StartIntersectsError):
         return None
-    return session
+    return session, deformation
 
 
 def _weighs_alike(a: stiv.EditOptions, b: stiv.EditOptions) -> bool:

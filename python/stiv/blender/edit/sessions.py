@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the session that solves for all control sets of an assembly."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import bpy
@@ -42,16 +42,19 @@ def assemble_with_controls(
 
 def session_options(
     assembly: Assembly,
-    deformation: stiv.Deformation,
+    make_deformation: Callable[[], stiv.Deformation],
     control_sets: Sequence[ControlSet],
     controls: ArrayLike,
     settings: EditSettings,
 ) -> stiv.EditOptions:
-    """Options of a session of all control sets that starts at these stacked controls, (m, 3)."""
+    """Options of a session of all control sets that starts at these stacked controls, (m, 3).
+
+    make_deformation: returns that of `deformation_of`; called only if pairs are excluded.
+    """
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     exclude = None
     if settings.excluded.pairs:
-        q = deformation.surface(np.asarray(controls, np.float64))
+        q = make_deformation().surface(np.asarray(controls, np.float64))
         exclude = find_excluded_triangles(settings.excluded, assembly, q, settings.threads)
     return stiv.EditOptions(
         **settings.shared(),

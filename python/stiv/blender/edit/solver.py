@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The session of an edit with its history; opened again when flipped triangles have to stay free of intersections."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import stiv
@@ -28,7 +29,7 @@ CALLS = 4  # of a session between two Jacobians of observed stacks
 
 
 class EditSolver:
-    """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, `deformation`, and the `trail`.
+    """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, and the `trail`.
 
     excluded: the excluded pairs of the settings, and those at the start that needed no decision.
     """
@@ -44,14 +45,21 @@ class EditSolver:
         self._inputs: SessionInputs | None = None  # of the session, if the next edit may use it
         self._blocked, self._calls = False, 0
         self._at_start = self.assembly = assembly
-        self.deformation = deformation_of(assembly, control_sets)
+        self._deformation: stiv.Deformation | None = None  # a kept session has its own
         self.trail = Trail(controls, controls)
 
     def start(self) -> Steps[None]:
         """Steps that open the session, if collisions are on. Raise InputError, StartIntersectsError."""
         if self._settings.interference:
             self._at_start = guard_bent_quads(self.assembly, self._settings.threads)
-            yield from self._open_session(self._at_start, self.trail.written, self.deformation)
+            yield from self._open_session(self._at_start, self.trail.written)
+
+    @property
+    def deformation(self) -> stiv.Deformation:
+        """Deformation of the surface by the controls of all control sets."""
+        if self._deformation is None:
+            self._deformation = deformation_of(self.assembly, self.control_sets)
+        return self._deformation
 
     @property
     def has_session(self) -> bool:
@@ -104,7 +112,7 @@ class EditSolver:
             return
         start = stack_controls([each.controls for each in control_sets])
         if self._session is None:
-            self.deformation = deformation_of(self.assembly, control_sets)
+            self._deformation = None
         else:
             try:
                 yield from self._open_session(self._at_start, start)
@@ -153,29 +161,29 @@ class EditSolver:
             run(self.solve(call.goal))
         return True
 
-    def _open_session(self, assembly: Assembly, controls: Floats, known: stiv.Deformation | None = None) -> Steps[None]:
-        """Open a session. At its first start, objects may intersect themselves and those that move with them.
-
-        known: the deformation of the control sets and of the assembly's positions, if it exists.
-        """
-        deformation = known or deformation_of(assembly, self.control_sets)
+    def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
+        """Open a session. At its first start, objects may intersect themselves and those that move with them."""
+        make_deformation = cache(lambda: deformation_of(assembly, self.control_sets))
         try:
-            session = yield from self._make_session(assembly, deformation, controls)
+            opened = yield from self._make_session(assembly, make_deformation, controls)
         except stiv.StartIntersectsError as error:
             if self._session is not None:
                 raise
             self.excluded = exclude_undecided(self._settings.excluded, assembly, error.pairs, self._moving(assembly))
-            session = yield from self._make_session(assembly, deformation, controls)
-        self._session, self.deformation, self.assembly = session, deformation, assembly
+            opened = yield from self._make_session(assembly, make_deformation, controls)
+        (self._session, self._deformation), self.assembly = opened, assembly
 
     def _make_session(
-        self, assembly: Assembly, deformation: stiv.Deformation, controls: Floats
-    ) -> Steps[stiv.EditSession]:
+        self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats
+    ) -> Steps[tuple[stiv.EditSession, stiv.Deformation]]:
         settings = replace(self._settings, excluded=self.excluded)
-        options = session_options(assembly, deformation, self.control_sets, controls, settings)
+        options = session_options(assembly, make_deformation, self.control_sets, controls, settings)
         self._inputs = None if self._is_changing() else SessionInputs.of(assembly, self.control_sets, options)
         kept = None if self._inputs is None else take_session(self._inputs, controls)
-        return kept or (yield from make_session(assembly, deformation, controls, options))
+        if kept is not None:
+            return kept
+        deformation = make_deformation()
+        return (yield from make_session(assembly, deformation, controls, options)), deformation
 
     def _is_changing(self) -> bool:
         """Does the session depend on more than its inputs: exclusions of the start, or values of Blender?"""
@@ -187,7 +195,7 @@ class EditSolver:
         if self._session is not None and self._inputs is not None:
             weights = weights_of_all([each.weights for each in self.control_sets])
             options = replace(self._inputs.options, weights=weights, weight_axes=axes_of_all(self.control_sets))
-            keep_session(replace(self._inputs, options=options), self._session)
+            keep_session(replace(self._inputs, options=options), self._session, self.deformation)
         self._session = None
 
     def _moving(self, assembly: Assembly) -> set[str]:

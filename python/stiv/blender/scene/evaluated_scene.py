@@ -272,9 +272,9 @@ def _find_roots(owner: bpy.types.Object) -> frozenset[str]:
 def _check_finite(mesh: VisibleMesh) -> None:
     if not np.isfinite(mesh.matrix).all():
         raise InputError(f"{mesh.owner.name}: its transform is not finite; clear its location and scale")
-    finite = np.isfinite(mesh.local).all(axis=1)
+    finite = np.isfinite(mesh.local)
     if not finite.all():
-        vertex = mesh.vertex_number(int(np.argmin(finite)))
+        vertex = mesh.vertex_number(int(np.argmin(finite.all(axis=1))))
         raise InputError(f"{mesh.owner.name}: vertex {vertex} has a coordinate that is not finite; delete it")
 
 
