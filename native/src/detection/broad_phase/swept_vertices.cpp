@@ -230,8 +230,8 @@ void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   outdated_ = changed_;
 }
 
-/// Are both ends of the step within an eighth of the separation of a surface, and does only move what may move?
-/// Differences of coordinates have relative errors, which the remaining gaps cover.
+/// Are both ends of the step within an eighth of the separation of a surface, and are the boxes of all vertices that
+/// move active? Differences of coordinates have relative errors, which the remaining gaps cover.
 bool SweptVertices::stays_near(const Positions& surface, const Step& step, const Execution& execution) const {
   const double reach = frame_.separation / 8;
   std::atomic<bool> near{true};
