@@ -30,8 +30,8 @@ class PairSearch {
 
   /// Nothing if a step is refused.
   /// @throws InputError for a step or a proximity that does not fit, as the others
-  std::optional<Events> find(const Step& step, PairLimit limit, Execution& execution);
-  std::optional<double> earliest_time(const Step& step, PairLimit limit, Execution& execution);
+  std::optional<Events> find(const Step& given, PairLimit limit, Execution& execution);
+  std::optional<double> earliest_time(const Step& given, PairLimit limit, Execution& execution);
 
   /// Earliest contact in a short step, decided by the candidates of the last search. Nothing, with nothing changed, if
   /// these may miss a pair that touches: then search. Close pairs are afterwards those of a search of this step.

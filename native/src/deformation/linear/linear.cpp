@@ -21,7 +21,7 @@ using Entry = WeightMatrix::InnerIterator;
 class Linear final : public LinearDeformation {
  public:
   Linear(const WeightMatrix& matrix, Positions offset)
-      : matrix_(matrix), metrics_(WeightColumns(matrix_)), offset_(std::move(offset)) {}
+      : matrix_(matrix), metrics_(matrix_), offset_(std::move(offset)) {}
 
   Index control_count() const override { return static_cast<Index>(matrix_.cols()); }
   Index vertex_count() const override { return static_cast<Index>(matrix_.rows()); }

@@ -92,8 +92,8 @@ class SparseLinearMetric final : public Metric {
 
 }  // namespace
 
-LinearMetrics::LinearMetrics(WeightColumns matrix)
-    : matrix_(std::move(matrix)), squared_lengths_(squared_lengths(matrix_)) {}
+LinearMetrics::LinearMetrics(const WeightMatrix& matrix)
+    : matrix_(matrix), squared_lengths_(squared_lengths(matrix_)) {}
 
 std::unique_ptr<Metric> LinearMetrics::make(const MetricOptions& options) const {
   const auto of_weights = [&](const Eigen::VectorXd& weights) {

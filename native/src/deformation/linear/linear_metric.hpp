@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "deformation/metric/active_controls.hpp"
+#include "stiv/deformation/linear.hpp"
 #include "stiv/deformation/metric.hpp"
 
 namespace stiv {
@@ -19,7 +20,7 @@ using WeightColumns = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 /// (mathematics.md, "Metric")
 class LinearMetrics {
  public:
-  explicit LinearMetrics(WeightColumns matrix);
+  explicit LinearMetrics(const WeightMatrix& matrix);
 
   const WeightColumns& matrix() const { return matrix_; }
   std::unique_ptr<Metric> make(const MetricOptions& options) const;
