@@ -26,6 +26,6 @@ inline const char* coordinate_fault(double x) {
 }
 
 /// Sets computed coordinates below the range to 0. Weights of distant controls cause them.
-inline void flush_below_range(Positions& q) { q = (q.array().abs() < least_coordinate).select(0.0, q); }
+inline void flush_below_range(Eigen::Ref<Positions> q) { q = (q.array().abs() < least_coordinate).select(0.0, q); }
 
 }  // namespace stiv

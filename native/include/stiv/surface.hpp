@@ -51,6 +51,9 @@ class Surface {
 
   const std::vector<Body>& bodies() const { return definition_.bodies; }
   Index body_of(Index vertex) const { return definition_.vertex_body[vertex]; }
+  bool is_fixed(Index vertex) const {
+    return bodies()[static_cast<std::size_t>(body_of(vertex))].mobility == Mobility::fixed;
+  }
 
   /// True if primitives of these two bodies are tested against each other.
   bool bodies_meet(Index a, Index b) const {

@@ -53,6 +53,9 @@ constexpr auto append_event = [](const PairTest& test, EventKind kind) {
   };
 };
 
+/// Whether a step is refused if it has events.
+bool must_be_free(const Step& step, PairLimit limit) { return limit == PairLimit::respected && step.motions.go_far; }
+
 /// Lowers `earliest` to the time of each event.
 auto lower_to(std::atomic<double>& earliest) {
   return [&earliest](const PairTest& test, EventKind kind) {
@@ -98,7 +101,7 @@ std::optional<Events> PairSearch::find(const Step& given, PairLimit limit, Execu
   std::optional<std::vector<ChunkResult>> results = search(step, limit, execution, append_event);
   if (!results) return std::nullopt;
   Events events = collect(*results, execution);
-  if (limit == PairLimit::respected && step.motions.go_far && !events.empty()) return std::nullopt;
+  if (must_be_free(step, limit) && !events.empty()) return std::nullopt;
   return events;
 }
 
@@ -106,7 +109,7 @@ std::optional<double> PairSearch::earliest_time(const Step& given, PairLimit lim
   const Step step = in_frames(given);
   std::atomic<double> earliest{never};
   if (!search(step, limit, execution, lower_to(earliest))) return std::nullopt;
-  if (limit == PairLimit::respected && step.motions.go_far && earliest.load() < never) return std::nullopt;
+  if (must_be_free(step, limit) && earliest.load() < never) return std::nullopt;
   return earliest.load();
 }
 

@@ -148,9 +148,8 @@ Positions EditContext::centred(const PositionsView& q, const Execution& executio
   constexpr Index rows_per_chunk = 8192;
   Positions about_centre(q.rows(), 3);
   execution.for_chunks(static_cast<Index>(q.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
-    auto some = about_centre.middleRows(begin, end - begin);
-    some = q.middleRows(begin, end - begin).rowwise() - centre_;
-    some = (some.array().abs() < least_coordinate).select(0.0, some);
+    about_centre.middleRows(begin, end - begin) = q.middleRows(begin, end - begin).rowwise() - centre_;
+    flush_below_range(about_centre.middleRows(begin, end - begin));
   });
   return about_centre;
 }

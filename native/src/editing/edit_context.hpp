@@ -56,7 +56,7 @@ class EditContext {
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
   /// Factors the metric again if the Jacobian was replaced, and returns whether it was.
   bool renew_metric();
-  /// Those of the moving part.
+  /// As MovingPart.
   double energy(const Positions& a, const Positions& b) const { return moving_part_.energy(a, b); }
   double longest_displacement(const Positions& from, const Positions& to) const {
     return moving_part_.longest_displacement(from, to);

@@ -38,8 +38,7 @@ double unit_in_frame(const StorageFrame& storage, const Controls& p, const std::
 std::vector<unsigned char> movable_vertices(const Surface& surface, const Deformation& deformation) {
   std::vector<unsigned char> movable(surface.vertex_count(), 0);
   for (Index control = 0; control < deformation.control_count(); ++control)
-    for (const Index vertex : deformation.support(control))
-      movable[vertex] = surface.bodies()[surface.body_of(vertex)].mobility != Mobility::fixed;
+    for (const Index vertex : deformation.support(control)) movable[vertex] = !surface.is_fixed(vertex);
   if (std::find(movable.begin(), movable.end(), 1) == movable.end()) std::fill(movable.begin(), movable.end(), 1);
   return movable;
 }

@@ -18,8 +18,7 @@ constexpr Index few_triangles = 1 << 16;              // near ones, few for a se
 Eigen::AlignedBox3d moving_bounds(const Surface& surface, const PositionsView& q) {
   Eigen::AlignedBox3d bounds;
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
-    if (surface.bodies()[at(surface.body_of(vertex))].mobility != Mobility::fixed)
-      bounds.extend(Vector3(q.row(vertex)));
+    if (!surface.is_fixed(vertex)) bounds.extend(Vector3(q.row(vertex)));
   return bounds;
 }
 

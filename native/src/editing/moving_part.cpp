@@ -14,10 +14,6 @@ namespace {
 // them.
 constexpr Index rows_of_sums = 16;
 
-bool is_moving(const Surface& surface, Index vertex) {
-  return surface.bodies()[at(surface.body_of(vertex))].mobility != Mobility::fixed;
-}
-
 }  // namespace
 
 void MovingPart::Range::include(Index element) {
@@ -28,9 +24,9 @@ void MovingPart::Range::include(Index element) {
 MovingPart::MovingPart(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {
   const Index rows = surface_->vertex_count(), triangles = static_cast<Index>(surface_->triangles().rows());
   for (Index vertex = 0; vertex < rows; ++vertex)
-    if (is_moving(*surface_, vertex)) rows_.include(vertex);
+    if (!surface_->is_fixed(vertex)) rows_.include(vertex);
   for (Index triangle = 0; triangle < triangles; ++triangle)
-    if (is_moving(*surface_, surface_->triangles()(triangle, 0))) triangles_.include(triangle);
+    if (!surface_->is_fixed(surface_->triangles()(triangle, 0))) triangles_.include(triangle);
   rows_.first -= rows_.first % rows_of_sums;
   rows_.end = std::min(rows, (rows_.end + rows_of_sums - 1) / rows_of_sums * rows_of_sums);
 }
