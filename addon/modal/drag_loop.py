@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from .drag_writer import DragWriter
 from .event import Event
 from .event_handling import step
 from .pointer import Pointer
@@ -16,7 +17,7 @@ from .request import Request
 from .state import Effect, Phase, State
 
 if TYPE_CHECKING:
-    from ..stiv_blender import Edit, EditResult, Motion, Steps, Task, WriteReport
+    from ..stiv_blender import Edit, EditResult, Motion, Steps, Task
     from ..transform import Transform
 
 FRAME = 1.0 / 60.0  # seconds that a tick waits for a solve
@@ -36,7 +37,6 @@ MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a
 POOR_GAIN = (
     0.9999  # the same for a poor state, of which one settles a drag at rest: deep in a wall, a slide gains little
 )
-MAX_REJECTED = 2  # states in a row that fail in Blender's evaluation while a solve runs: the next one may pass
 MAX_IDLE = 10  # repeated solves that settle and accept nothing, each from where the last one was; then a drag ends
 MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
@@ -124,9 +124,7 @@ class DragLoop:
         self.progress = Progress.STARTING
         self.transform: Transform | None = None
         self.result: EditResult | None = None
-        self.report: WriteReport | None = None
-        self.written: EditResult | None = None  # the result that the scene shows
-        self.turned = 0.0  # radians by which contact has turned a moving object in it
+        self.writer = DragWriter()
         self.note = ""
         self.error: Exception | None = None
         self.edit: Edit | None = None
@@ -136,9 +134,6 @@ class DragLoop:
         self._pending = False
         self._confirmed = False
         self._unfinished: Goal | None = None
-        self._unwritten = False
-        self._shown_beside = False  # the last state was written while a solve ran, and is to be tested completely
-        self._rejected = 0  # states since the last one that was written
         self._settled = False
         self._refusal = ""
         self._solves = 0
@@ -149,20 +144,19 @@ class DragLoop:
         self._is_poor = False
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
-        self._writes_since: float | None = None  # until the next call, so that drawing counts
-        self._written_in = 0.0  # seconds of the last writing; before the first one, of reading
         self._run(calls.begin(state.request), self._take_first_edit)
         began = time.perf_counter()
         starts_job = not self._advance_task(0.0)  # reads the scene, which takes about as long as writing and drawing it
-        self._written_in = time.perf_counter() - began
-        self._limit_budget(self._written_in)
+        self.writer.seconds = time.perf_counter() - began
+        self._limit_budget(self.writer.seconds)
         if starts_job:
             self._advance_task(START_WAIT)
 
     @property
     def at_rest(self) -> bool:
         """Whether nothing is left to solve until the next event."""
-        unfinished = self._pending or self._unwritten or self._shown_beside or self._task is not None
+        writes = self.writer.is_due or self.writer.is_incomplete
+        unfinished = self._pending or writes or self._task is not None
         return self.progress.ended or not unfinished
 
     @property
@@ -201,9 +195,9 @@ class DragLoop:
         return self._guarded(lambda: self._fail(reason))
 
     def _guarded(self, action: Callable[[], None]) -> Progress:
-        if self._writes_since is not None:
-            self._limit_budget(time.perf_counter() - self._writes_since)
-            self._writes_since = None
+        drawn_in = self.writer.drawn_in()
+        if drawn_in is not None:
+            self._limit_budget(drawn_in)
         if not self.progress.ended:
             try:
                 action()
@@ -244,9 +238,9 @@ class DragLoop:
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
                 return
-        if self._shown_beside and not self._pending and self._task is None:
-            self._unwritten = True
-        if self._unwritten and not self._solves_on():
+        if self.writer.is_incomplete and not self._pending and self._task is None:
+            self.writer.is_due = True
+        if self.writer.is_due and not self._solves_on():
             self._write()
         if self._confirmed and self.at_rest and (self._settled or self.result is None):
             self.progress = Progress.FINISHED
@@ -307,7 +301,7 @@ class DragLoop:
         is_new = self._unfinished is None
         self._unfinished = None
         doublings = min(self._empty, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
-        hand_over = None if self._confirmed or self._rests() else max(HAND_OVER, self._written_in / 2)
+        hand_over = None if self._confirmed or self._rests() else max(HAND_OVER, self.writer.seconds / 2)
         budget = FINAL_BUDGET if self._confirmed else self._budget
         budget = (budget if hand_over is None else max(budget, LONG_BUDGET)) * 2**doublings
         steps = self.edit.drag_steps(goal.motion, time_budget=budget, hand_over=hand_over)
@@ -335,7 +329,7 @@ class DragLoop:
             self._may_gain(goal.state, found) or not _same_goal(goal.state, self.state)
         )
         self._unfinished = goal if nothing_accepted else None
-        self._unwritten |= len(found.path) > 0 or (self.report is None and not nothing_accepted)
+        self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
         ends = found.status == "reached" or (found.status == "blocked" and self._fruitless > 0)
         if not self._pending and (ends or self._is_poor):
             self._end_settling()
@@ -346,7 +340,7 @@ class DragLoop:
             return
         self._solves += 1
         if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
-            self.result, self._unwritten = settled, True
+            self.result, self.writer.is_due = settled, True
         if settled.status != "budget" or self.stopped:
             return
         gained = self._has_gained(self._solved[0], settled)
@@ -415,7 +409,7 @@ class DragLoop:
         if isinstance(found, ValueError):
             self.state, self._refusal = replace(self.state, request=self._begun), str(found)
             return
-        self.edit, self._begun, self.turned = found, request, 0.0
+        self.edit, self._begun, self.writer.turned = found, request, 0.0
 
     def _switch_interference(self) -> None:
         assert self.edit is not None
@@ -453,14 +447,14 @@ class DragLoop:
         self._leave_task()
         if self.edit is not None:
             self.edit.restore()
-        self._pending = self._unwritten = False
+        self._pending = self.writer.is_due = False
         self._settled = True  # by the steps
         self.result = None
         self._run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
         return True
 
     def _take_applied(self, transform: Transform, edit: Edit, result: EditResult) -> None:
-        self.edit, self.result, self.transform, self._unwritten = edit, result, transform, True
+        self.edit, self.result, self.transform, self.writer.is_due = edit, result, transform, True
 
     def _stop(self) -> None:
         """Keep the last accepted state."""
@@ -469,54 +463,25 @@ class DragLoop:
             self._task.cancel()
 
     def _write(self) -> None:
-        self._unwritten = False
-        self._writes_since = begun = time.perf_counter()
-        if not (self._drags_on() and self._write_beside_solve()):
-            self._write_at_once()
-        self._written_in = time.perf_counter() - begun
-
-    def _write_at_once(self) -> None:
         assert self.edit is not None
-        self._unwritten = self._shown_beside = False
-        self._rejected = 0
-        self.report = self.edit.write()
-        if self.report is not None and self.report.result is not None:  # solved again
-            self.result = self.report.result
-        self.written = self.result if self.report is None or not self.report.message else None
-        self.turned = self.edit.turned  # a session in a job cannot be asked
+        with self.writer.writing():
+            if self._drags_on():
+                if self.writer.write_beside(self.edit, self.result, self._start_solve):
+                    return
+                self._end_solve()
+            self.result = self.writer.write(self.edit, self.result)
 
     def _drags_on(self) -> bool:
         """Whether the next work is a solve for a new goal, and takes too long for the same frame."""
         continues = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
         is_new = not _same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
         solved = self.result.timings["total"] if self.result is not None else 0.0
-        return continues and is_new and solved + self._written_in > FITTING
+        return continues and is_new and solved + self.writer.seconds > FITTING
 
-    def _write_beside_solve(self) -> bool:
-        """Write the accepted state while the next solve runs; returns whether the displayed state passed the test.
-
-        A state that fails is not shown, and the solve continues: the path would have to be solved again before the view
-        could change. A later state is written instead, or this one with `write` once the drag rests.
-        """
-        assert self.edit is not None
-        taken, result = self.edit.take_state(), self.result
-        if taken is None:
-            return False
+    def _start_solve(self) -> None:
         self._begin_solve()
         if self._task is not None:
             self._task.start()
-        report = self.edit.write_taken(taken)
-        if report is None and self._rejected < MAX_REJECTED and self.edit.write_shown():
-            self._rejected += 1
-            self._shown_beside = True
-            return True
-        if report is None:
-            self._end_solve()
-            return False
-        self._rejected = 0
-        self.report, self.written, self.turned = report, result, taken.turned
-        self._shown_beside = True
-        return True
 
     def _end_solve(self) -> None:
         """Cancel a solve and wait for its end, which takes milliseconds; its goal is solved for again."""

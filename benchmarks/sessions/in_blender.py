@@ -95,7 +95,7 @@ class ScriptedDrag:
     @property
     def written(self) -> Any:
         """The result that the scene shows."""
-        return self.drag.written
+        return self.drag.writer.written
 
     @property
     def written_for(self) -> float:
@@ -105,7 +105,7 @@ class ScriptedDrag:
     @property
     def report(self) -> Any:
         """Report of the last writing."""
-        return self.drag.report
+        return self.drag.writer.report
 
     @property
     def error(self) -> Exception | None:

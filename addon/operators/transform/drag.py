@@ -169,23 +169,23 @@ class DragOperator(Mixin):
 
     def _show(self, context: bpy.types.Context) -> None:
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
-        drag = self._drag
+        drag, writer = self._drag, self._drag.writer
         self._show_waiting(context)
         if drag.progress is not Progress.RUNNING or drag.edit is None or drag.shows_soon:
             return
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
         status = outcome_text(drag.result) if drag.result is not None else ""
-        news = (replace(drag.state, pointer=NO_POINTER), value, status, id(drag.written), drag.note)
+        news = (replace(drag.state, pointer=NO_POINTER), value, status, id(writer.written), drag.note)
         if news == self._shown:  # a moved pointer alone is drawn with its result
             return
         self._shown = news
-        turned = turned_text(drag.turned, translate)
-        notes = [text for text in (turned, translate_error(drag.note), write_failure(drag.report)) if text]
+        turned = turned_text(writer.turned, translate)
+        notes = [text for text in (turned, translate_error(drag.note), write_failure(writer.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
-        if drag.written is not None and drag.written is drag.result:
-            display.show_edit(drag.edit, drag.written, self._motion_of_all())
-        elif drag.written is None and drag.report is not None:  # Blender shows another state than the result's
+        if writer.written is not None and writer.written is drag.result:
+            display.show_edit(drag.edit, writer.written, self._motion_of_all())
+        elif writer.written is None and writer.report is not None:  # Blender shows another state than the result's
             display.end_edit()
 
     def _show_waiting(self, context: bpy.types.Context) -> None:
@@ -227,7 +227,7 @@ class DragOperator(Mixin):
         values |= changed_options(
             drag.state.request, drag.state.proportional, constraint_of(drag.state, self._frame), context.scene
         )
-        edit, result, report = drag.edit, drag.result, drag.report
+        edit, result, report = drag.edit, drag.result, drag.writer.report
         if edit is not None and result is not None and report is not None:
             insert_keyframes(context, edit)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)

@@ -1,34 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
-from fake_edit import FakeEdit, FakeTask
+from fake_edit import FakeEdit
 from hypothesis import given
 from hypothesis import strategies as st
+from scripted_drag import follow, move_to, new_drag
 from test_event_handling import EVENTS
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW, DragCalls, DragLoop, Progress
+from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW, DragLoop, Progress
 from stiv_addon.modal.event import Event
-from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect, State
-
-
-def new_drag(edit: FakeEdit) -> DragLoop:
-    """A drag whose goal is a hundredth of the pointer's x, or the typed number."""
-    calls = DragCalls(
-        edit.begin_steps, measure, lambda value, state: value, edit.apply_steps, lambda steps: FakeTask(steps, edit)
-    )
-    return DragLoop(calls, State(Pointer.at((0.0, 0.0))))
-
-
-def measure(state: State) -> float:
-    typed = state.typed.value(0, lambda text: evaluate(text, {"": 1.0}.get))
-    return (typed or 0.0) if state.typed.active else state.pointer.effective[0] / 100.0
-
-
-def move_to(x: float) -> Event:
-    return Event("MOUSEMOVE", "NOTHING", (x, 0.0))
 
 
 @pytest.fixture
@@ -146,124 +129,11 @@ def test_a_solve_longer_than_a_frame_leaves_the_events_free() -> None:
     assert drag.progress is Progress.CANCELLED and edit.shown == 0.0
 
 
-def follow(drag: DragLoop, edit: FakeEdit, *positions: float) -> None:
-    """Move the mouse before each tick."""
-    for x in positions:
-        drag.handle(move_to(x))
-        drag.tick()
-
-
-def long_solves(**given: object) -> FakeEdit:
-    """Solves that end in the next tick, and take longer than a frame."""
-    return FakeEdit(delays={"drag": 1}, solving=0.03, **given)
-
-
-def test_the_next_solve_runs_while_a_state_is_written() -> None:
-    edit = long_solves()
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    assert edit.calls == ["drag", "write beside", "drag", "write beside"]
-    assert edit.goals == [0.1, 0.2] and edit.shown == drag.written.path[-1] == 0.2
-    assert drag.turned == 0.5 and edit.busy  # with the solve for the third goal
-    drag.tick()
-    drag.tick()
-    assert edit.shown == 0.3 and drag.at_rest and drag.written is drag.result
-
-
-def test_a_solve_and_a_writing_that_fit_into_a_frame_run_in_sequence(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The state is newer then."""
-    monkeypatch.setattr(drag_loop, "FITTING", 60.0)
-    edit = FakeEdit(delays={"drag": 1})
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20)
-    assert edit.calls == ["drag", "write"] and not edit.busy
-
-
-def test_an_edit_that_must_be_written_first_is() -> None:
-    edit = long_solves(taking=False)
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    assert edit.calls == ["drag", "write"]
-
-
-def test_a_solve_toward_the_same_goal_waits_for_the_writing() -> None:
-    """It may find nothing to show, and the next motion would have to wait for it."""
-    edit = FakeEdit(solving=0.03, statuses=["budget", "corrected"])
-    drag = new_drag(edit)
-    follow(drag, edit, 10)
-    assert edit.calls == ["drag", "write"] and not drag.at_rest
-
-
-@pytest.mark.parametrize("end", ["ESC", "RIGHTMOUSE"])
-def test_cancelling_while_a_solve_runs_restores_the_start(end: str) -> None:
-    edit = long_solves()
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20)
-    assert edit.busy and edit.shown == 0.1
-    drag.handle(Event(end))
-    assert drag.progress is Progress.CANCELLED and edit.calls[-1] == "restore" and edit.shown == 0.0
-
-
-def test_a_confirmation_while_a_solve_runs_ends_at_the_last_goal() -> None:
-    edit = long_solves()
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    drag.handle(Event("LEFTMOUSE"))
-    while drag.progress is Progress.FINISHING:
-        drag.tick()
-    assert drag.progress is Progress.FINISHED and edit.shown == edit.accepted == drag.transform == 0.3
-
-
-def test_a_taken_state_that_fails_the_test_is_written_again_once_the_solve_has_ended() -> None:
-    """Blender flips the diagonals of bent quads."""
-    edit = long_solves(flips=True)
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20)
-    assert edit.calls == ["drag", "write beside", "drag", "write"] and not edit.busy
-    assert edit.shown == edit.accepted == 0.2 and drag.at_rest
-
-
-def test_a_state_that_fails_the_test_is_not_shown_and_the_solve_continues() -> None:
-    edit = long_solves(cutting=(0.2,))
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    assert edit.calls == ["drag", "write beside", "drag", "write beside", "write shown"] and edit.busy
-    assert edit.shown == drag.written.path[-1] == 0.1 and drag.report.passed and not drag.at_rest
-    follow(drag, edit, 40)
-    assert edit.calls[5:] == ["drag", "write beside"] and edit.shown == drag.written.path[-1] == 0.3
-
-
-def test_the_last_state_is_written_completely_if_it_failed_beside_a_solve() -> None:
-    edit = long_solves(cutting=(0.2,))
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    edit.furthest = 0.0  # nothing more is accepted
-    for _ in range(4):
-        drag.tick()
-    assert edit.calls[-1] == "write" and drag.at_rest and edit.shown == edit.accepted
-
-
-def test_after_several_failures_the_path_is_solved_again() -> None:
-    edit = long_solves(cutting=(0.2, 0.3, 0.4))
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30, 40, 50)
-    assert edit.calls.count("write shown") == drag_loop.MAX_REJECTED
-    assert edit.calls[-1] == "write" and edit.shown == edit.accepted
-
-
-@pytest.mark.parametrize("call", ["drag", "write beside"])
-def test_an_exception_beside_a_solve_restores_and_ends(call: str) -> None:
-    edit = long_solves(failing={call: RuntimeError("broken")})
-    drag = new_drag(edit)
-    follow(drag, edit, 10, 20, 30)
-    assert drag.progress is Progress.CANCELLED and edit.calls[-1] == "restore" and str(drag.error) == "broken"
-
-
 def test_solves_hand_over_early_only_until_the_mouse_rests(monkeypatch: pytest.MonkeyPatch) -> None:
     """Short solves gain too little each, and would seem to have settled."""
     edit = FakeEdit(statuses=["budget"] * 3)
     drag = new_drag(edit)
-    follow(drag, edit, 50)
+    follow(drag, 50)
     monkeypatch.setattr(drag_loop, "REST_TIME", 0.0)
     drag.tick()
     drag.handle(Event("LEFTMOUSE"))
