@@ -86,19 +86,10 @@ def _selected_elements(obj: bpy.types.Object) -> Vector:
     elif obj.type in {"CURVE", "SURFACE"}:
         positions = (position for spline in obj.data.splines for position in _selected_on(spline))
     else:
-        positions = _selected_points(obj.data.points)
+        positions = stiv_blender.read_selected_lattice_points(obj.data).tolist()
     matrix = np.array(obj.matrix_world)
     local = np.fromiter(chain.from_iterable(positions), float).reshape(-1, 3)
     return np.asarray(np.einsum("ij,kj->ik", local, matrix[:3, :3]) + matrix[:3, 3])
-
-
-def _selected_points(points: bpy.types.bpy_prop_collection) -> list[list[float]]:
-    """Positions of the selected points of a lattice, read together: one by one takes three times as long."""
-    positions, selected = np.empty(3 * len(points), np.float32), np.empty(len(points), bool)
-    points.foreach_get("co_deform", positions)
-    points.foreach_get("select", selected)
-    found: list[list[float]] = positions.reshape(-1, 3)[selected].tolist()
-    return found
 
 
 def _selected_on(spline: bpy.types.Spline) -> Iterator[tuple[float, ...]]:

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import multiprocessing
-import resource
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from blend_fixtures.scenes.detection_steps import growing
+from stiv.batch.peak_memory import peak_bytes
 
 from .measurement import measure
 
@@ -29,7 +29,7 @@ class Size:
 
 
 def _held() -> float:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return peak_bytes() / 2**20
 
 
 def one_size(cuts: int, threads: int, repeats: int) -> Size:

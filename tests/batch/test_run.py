@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The lock of a job, the peak memory of a worker, and signals that end a batch, on Windows too."""
+"""The lock of a job, and signals that end a batch, on Windows too."""
 
 from __future__ import annotations
 
-import ctypes
 import signal
 import sys
 import types
@@ -12,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from stiv import InputError
-from stiv.batch import run, worker
+from stiv.batch import run
 from stiv.command_line import batch, program
 from tests.batch.jobs import write_job
 
@@ -31,26 +30,6 @@ def test_the_lock_of_a_job_on_windows_is_that_of_its_c_runtime(tmp_path: Path, m
         assert locked == [(2, 1)]
         with pytest.raises(InputError, match="another process is running this job"), run._locked(tmp_path, "lock"):
             pass
-
-
-def test_the_peak_memory_on_windows_is_that_of_the_working_set(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Kernel:
-        GetCurrentProcess = staticmethod(lambda: 7)
-
-        @staticmethod
-        def K32GetProcessMemoryInfo(process: ctypes.c_void_p, counters: object, size: int) -> int:  # noqa: N802
-            assert (process.value, size) == (7, 72)
-            # size and page faults, then the peak of the working set
-            ctypes.memmove(counters, bytes(8) + (123_456_789).to_bytes(8, "little") + bytes(56), size)
-            return 1
-
-    monkeypatch.setattr(ctypes, "CDLL", lambda name: Kernel() if name == "kernel32" else None)
-    monkeypatch.setattr(sys, "platform", "win32")
-    assert worker._peak_megabytes() == 123.5
-
-
-def test_the_peak_memory_is_known_on_this_system() -> None:
-    assert worker._peak_megabytes() > 5
 
 
 @pytest.mark.parametrize("name", sorted({"SIGINT", "SIGTERM", "SIGBREAK"} & set(dir(signal))))

@@ -9,7 +9,6 @@ or absent.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import io
 import json
 import os
@@ -19,6 +18,8 @@ import threading
 import time
 from collections.abc import Callable
 from typing import Any, TextIO
+
+from stiv.batch.peak_memory import peak_bytes
 
 MARK = "stiv-worker:"
 MESSAGE = 2000  # characters of a command's output that a record holds
@@ -46,7 +47,7 @@ def run_command(run: Run, arguments: list[str]) -> dict[str, Any]:
         "exit_code": code,
         "message": shortened(said.getvalue().strip()),
         "seconds": round(time.perf_counter() - begin, 3),
-        "peak_megabytes": _peak_megabytes(),
+        "peak_megabytes": round(peak_bytes() / 1e6, 1),
     }
 
 
@@ -67,22 +68,3 @@ def _read_requests(stream: TextIO, requests: queue.Queue[dict[str, Any]]) -> Non
 def _reply(out: TextIO, message: dict[str, Any]) -> None:
     out.write(f"\n{MARK}{json.dumps(message)}\n")
     out.flush()
-
-
-def _peak_megabytes() -> float:
-    if sys.platform == "win32":
-        return round(_peak_on_windows() / 1e6, 1)
-    import resource
-
-    unit = 1 if sys.platform == "darwin" else 1024
-    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6, 1)
-
-
-def _peak_on_windows() -> int:
-    """The peak of the working set in bytes, from PROCESS_MEMORY_COUNTERS: two 32-bit fields, then nine of 64 bits."""
-    kernel = ctypes.CDLL("kernel32")
-    kernel.GetCurrentProcess.restype = ctypes.c_void_p
-    process = ctypes.c_void_p(kernel.GetCurrentProcess())
-    counters = (ctypes.c_uint64 * 9)()
-    known = kernel.K32GetProcessMemoryInfo(process, ctypes.byref(counters), ctypes.sizeof(counters))
-    return int(counters[1]) if known else 0

@@ -43,6 +43,7 @@ from stiv.blender.repair.separation import SeparationReport, separate, separate_
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
+from stiv.blender.scene.lattice_reading import read_selected_lattice_points
 from stiv.blender.scene.modifier_stack import UnsupportedStackError
 from stiv.blender.scene.pose_bones import moved_bones, select_bones
 from stiv.blender.scene.references import SceneChangedError
@@ -148,6 +149,7 @@ __all__ = [
     "place",
     "poses_surface",
     "push_apart",
+    "read_selected_lattice_points",
     "read_snap_targets",
     "read_state",
     "read_surface",

@@ -17,6 +17,11 @@ def read_lattice_points(lattice: bpy.types.Lattice) -> Singles:
     return read_collection(lattice.points, "co_deform", 3, np.float32)
 
 
+def read_selected_lattice_points(lattice: bpy.types.Lattice) -> Singles:
+    """Deformed points that are selected, (k, 3), in the lattice's frame."""
+    return np.asarray(read_lattice_points(lattice)[read_collection(lattice.points, "select", 1, np.bool_)])
+
+
 def read_rest_lattice_points(lattice: bpy.types.Lattice) -> Singles:
     """Points at rest, (m, 3), in the lattice's frame.
 
