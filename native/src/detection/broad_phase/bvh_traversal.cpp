@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detection/broad_phase/bvh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -33,9 +34,10 @@ struct TreeView {
     }
   }
 
-  std::array<const Bvh::Node*, most_levels> nodes{};
-  std::array<const PackedBox*, most_levels> boxes{};
-  std::array<const Index*, most_levels> groups{};
+  // Not initialized: a step has hundreds of short tasks.
+  std::array<const Bvh::Node*, most_levels> nodes;
+  std::array<const PackedBox*, most_levels> boxes;
+  std::array<const Index*, most_levels> groups;
   const Index* order;
   const Index* corners;
   Index corner_size;
@@ -58,15 +60,23 @@ struct Traversal {
     return first == Bvh::mixed || second == Bvh::mixed || meets->meet(first, second);
   }
 
+  /// Whether the children of both nodes have the same groups as they.
+  bool has_uniform_groups(const Bvh::Task& pair) const {
+    return group(pair) != Bvh::mixed && other_group(pair) != Bvh::mixed;
+  }
+
   /// Of boxes of the first node, in the frame of the second.
   BoxGrowth growth(const Bvh::Task& pair) const { return frames->growth(group(pair), other_group(pair)); }
 
-  /// Makes room for the pairs of two blocks.
-  void reserve() const {
-    constexpr std::size_t most = Bvh::width * Bvh::width + Bvh::width;
-    if (found->count + most > found->first.size()) grow(*found);
+  /// Makes room for the pairs of some primitives with a block each.
+  void reserve(std::size_t primitives) const {
+    const std::size_t most = found->count + (primitives + 1) * Bvh::width;
+    if (most > found->first.size()) grow(*found, most);
   }
-  static void grow(PairBuffer& buffer);
+  static void grow(PairBuffer& buffer, std::size_t most);
+
+  /// Passes on the pairs if they are many. False if no more are wanted.
+  bool goes_on() const { return found->count < found->limit || found->full(*found); }
 };
 
 }  // namespace stiv
@@ -77,6 +87,7 @@ struct Traversal {
 #define HWY_TARGET_INCLUDE "detection/broad_phase/bvh_traversal.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
+#include "hwy/cache_control.h"
 #include "vector/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -171,39 +182,113 @@ HWY_INLINE FloatMask apart_lanes(const Index* own, const Index* others, std::siz
   return mask;
 }
 
-/// `a` is the first block as it is in the frame of the other.
+// Pairs are listed before they are compared: loops over the few children of one pair would end at a branch that no
+// processor can predict.
+
+/// Up to `most` pairs of nodes, blocks or primitives.
+template <std::size_t most>
+struct PairList {
+  static constexpr std::size_t capacity = most;
+
+  std::array<Index, most + width> first, second;
+  std::size_t count = 0;
+
+  void add(Index node, Index other) {
+    first[count] = node;
+    second[count++] = other;
+  }
+
+  /// The children of a node that are among `bits`, each with the other one.
+  HWY_INLINE void add_children(Index node, unsigned bits, Index other) {
+    const Ints i;
+    const hn::Rebind<std::uint8_t, Ints> bytes;
+    for (std::size_t lane = 0; lane < width; lane += hn::Lanes(i)) {
+      const auto lanes = hn::PromoteTo(i, hn::LoadU(bytes, lanes_of_bits[bits].data() + lane));
+      hn::StoreU(hn::Add(hn::Set(i, node * Bvh::width), lanes), i, first.data() + count + lane);
+      hn::StoreU(hn::Set(i, other), i, second.data() + count + lane);
+    }
+    count += static_cast<std::size_t>(std::popcount(bits));
+  }
+};
+
+using ParentPairs = PairList<32>;
+constexpr std::size_t some_blocks = 64;
+using BlockPairs = PairList<some_blocks + ParentPairs::capacity * width * width>;
+
+/// Moves the children of listed pairs, whose children are blocks, to a list of pairs of blocks.
+HWY_INLINE void list_blocks(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
+  PairList<ParentPairs::capacity * width> rows;
+  for (std::size_t k = 0; k < parents.count; ++k)
+    rows.add_children(parents.first[k],
+                      meeting_children(t.a.nodes[1][parents.first[k]], t.b.boxes[1][parents.second[k]]),
+                      parents.second[k]);
+  parents.count = 0;
+  for (std::size_t row = 0; row < rows.count; ++row) {
+    const Index block = rows.first[row], other = rows.second[row];
+    const unsigned others = meeting_children(t.b.nodes[1][other], t.a.boxes[0][block]);
+    const bool same = t.same_tree && block / Bvh::width == other;
+    blocks.add_children(other, same ? others & ~0U << block % Bvh::width : others, block);
+  }
+}
+
+/// Passes on the primitives of a block that meet the one in lane `k` of `a`: the first block, as it is in the frame of
+/// the other.
 template <Index size_a, Index size_b>
-void meet_blocks(const Traversal& t, Index block, Index other, const Bvh::Node& a) {
+HWY_INLINE std::size_t meet_row(const Traversal& t, const Bvh::Node& a, Index block, std::size_t k, Index other,
+                                std::size_t count) {
   const Floats d;
   const Ints i;
   const Bvh::Node& b = t.b.nodes[0][other];
-  unsigned left = meeting_children(a, t.b.boxes[0][other]);
-  if (left == 0) return;
-  t.reserve();
-  Index* const first = t.found->first.data();
-  Index* const second = t.found->second.data();
-  std::size_t count = t.found->count;
-  const bool within = t.same_tree && block == other;
   const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(other) * Bvh::width;
-  for (; left != 0; left &= left - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(left));
-    const auto primitive = hn::Set(i, t.a.order[static_cast<std::size_t>(block) * width + k]);
-    for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
-      FloatMask mask = meeting_lanes(b, child(a, k), lane);
-      if constexpr (size_a > 0)
-        mask = apart_lanes<size_a, size_b>(t.a.corners + static_cast<std::size_t>(block) * width * size_a + k,
-                                           t.b.corners + static_cast<std::size_t>(other) * width * size_b, lane, mask);
-      if (within) {
-        const auto number = hn::Iota(i, static_cast<std::int32_t>(lane));
-        mask = hn::And(mask, hn::RebindMask(d, hn::Gt(number, hn::Set(i, static_cast<std::int32_t>(k)))));
-      }
-      hn::StoreU(primitive, i, first + count);
-      // Not CompressStore: straight to memory, some processors take a hundred times longer.
-      hn::StoreU(compressed(hn::LoadU(i, order + lane), mask), i, second + count);
-      count += hn::CountTrue(d, mask);
-    }
+  const auto primitive = hn::Set(i, t.a.order[static_cast<std::size_t>(block) * width + k]);
+  // Within one block, only the primitives behind it: each pair once.
+  const auto least = hn::Set(i, t.same_tree && block == other ? static_cast<std::int32_t>(k) : -1);
+  for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
+    FloatMask mask = meeting_lanes(b, child(a, k), lane);
+    if constexpr (size_a > 0)
+      mask = apart_lanes<size_a, size_b>(t.a.corners + static_cast<std::size_t>(block) * width * size_a + k,
+                                         t.b.corners + static_cast<std::size_t>(other) * width * size_b, lane, mask);
+    mask = hn::And(mask, hn::RebindMask(d, hn::Gt(hn::Iota(i, static_cast<std::int32_t>(lane)), least)));
+    hn::StoreU(primitive, i, t.found->first.data() + count);
+    // Not CompressStore: straight to memory, some processors take a hundred times longer.
+    hn::StoreU(compressed(hn::LoadU(i, order + lane), mask), i, t.found->second.data() + count);
+    count += hn::CountTrue(d, mask);
   }
+  return count;
+}
+
+template <Index size_a, Index size_b>
+void meet_grown_blocks(const Traversal& t, Index block, Index other, const Bvh::Node& a) {
+  t.reserve(width);
+  std::size_t count = t.found->count;
+  for (unsigned left = meeting_children(a, t.b.boxes[0][other]); left != 0; left &= left - 1)
+    count = meet_row<size_a, size_b>(t, a, block, static_cast<std::size_t>(std::countr_zero(left)), other, count);
   t.found->count = count;
+}
+
+/// Compares listed blocks, of which the second ones are those of the first tree, and empties the lists. False if the
+/// traversal ends.
+template <Index size_a, Index size_b>
+bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
+  list_blocks(t, parents, blocks);
+  for (std::size_t begin = 0; begin < blocks.count; begin += some_blocks) {
+    PairList<some_blocks * width> rows;
+    for (std::size_t k = begin; k < std::min(begin + some_blocks, blocks.count); ++k) {
+      const Index block = blocks.second[k], other = blocks.first[k];
+      rows.add_children(block, meeting_children(t.a.nodes[0][block], t.b.boxes[0][other]), other);
+    }
+    t.reserve(rows.count);
+    std::size_t count = t.found->count;
+    for (std::size_t row = 0; row < rows.count; ++row) {
+      const Index block = rows.first[row] / Bvh::width;
+      count = meet_row<size_a, size_b>(t, t.a.nodes[0][block], block,
+                                       static_cast<std::size_t>(rows.first[row] % Bvh::width), rows.second[row], count);
+    }
+    t.found->count = count;
+    if (!t.goes_on()) return false;
+  }
+  blocks.count = 0;
+  return true;
 }
 
 /// Boxes of a pair of nodes, each as the other one's frame sees it.
@@ -215,18 +300,13 @@ struct FramedBoxes {
   HWY_INLINE PackedBox second(const PackedBox& box) const { return grow ? grown(box, opposite) : box; }
 };
 
-/// Passes on the primitives of two nodes if they are blocks, else puts pairs of children onto the stack.
-template <Index size_a, Index size_b, bool grow>
+/// Puts pairs of children of two nodes onto the stack, unless both are blocks.
+template <bool grow>
 HWY_INLINE void meet_nodes(const Traversal& t, const Bvh::Task& pair, const FramedBoxes<grow>& framed, Bvh::Task* stack,
                            std::size_t& top) {
   const auto level = static_cast<std::size_t>(pair.level), other_level = static_cast<std::size_t>(pair.other_level);
   const Bvh::Node &node = t.a.nodes[level][pair.node], &other = t.b.nodes[other_level][pair.other_node];
-  if (level == 0 && other_level == 0) {
-    if constexpr (grow)
-      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node, grown_children(node, framed.growth));
-    else
-      meet_blocks<size_a, size_b>(t, pair.node, pair.other_node, node);
-  } else if (level > other_level) {
+  if (level > other_level) {
     unsigned left = meeting_children(node, framed.second(t.b.boxes[other_level][pair.other_node]));
     for (; left != 0; left &= left - 1)
       stack[top++] = {pair.level - 1, pair.node * Bvh::width + std::countr_zero(left), pair.other_level,
@@ -255,18 +335,34 @@ void descend(const Traversal& t, const Bvh::Task& root) {
   // Each step down leaves at most 63 other pairs behind, and there are at most 22 steps. Not initialized: clearing it
   // for each task would take longer than some tasks.
   std::array<Bvh::Task, 1536> stack;
+  ParentPairs parents;
+  BlockPairs blocks;
   std::size_t top = 0;
   stack[top++] = root;
   while (top > 0) {
     const Bvh::Task pair = stack[--top];
     if (!t.groups_meet(pair)) continue;
     const BoxGrowth growth = t.frames == nullptr ? BoxGrowth() : t.growth(pair);
-    if (t.frames == nullptr || growth.is_none)
-      meet_nodes<size_a, size_b>(t, pair, FramedBoxes<false>(), stack.data(), top);
-    else
-      meet_nodes<size_a, size_b>(t, pair, FramedBoxes<true>{growth, growth.opposite()}, stack.data(), top);
-    if (pair.level + pair.other_level == 0 && t.found->count >= t.found->limit && !t.found->full(*t.found)) return;
+    const bool grows = t.frames != nullptr && !growth.is_none;
+    if (pair.level == 1 && pair.other_level == 1 && !grows && t.has_uniform_groups(pair)) {
+      parents.add(pair.node, pair.other_node);
+    } else if (pair.level + pair.other_level > 0) {
+      if (grows)
+        meet_nodes(t, pair, FramedBoxes<true>{growth, growth.opposite()}, stack.data(), top);
+      else
+        meet_nodes(t, pair, FramedBoxes<false>(), stack.data(), top);
+      continue;
+    } else if (grows) {
+      meet_grown_blocks<size_a, size_b>(t, pair.node, pair.other_node,
+                                        grown_children(t.a.nodes[0][pair.node], growth));
+      if (!t.goes_on()) return;
+    } else {
+      blocks.add(pair.other_node, pair.node);
+    }
+    const bool many = parents.count == ParentPairs::capacity || blocks.count == some_blocks;
+    if (many && !meet_listed<size_a, size_b>(t, parents, blocks)) return;
   }
+  meet_listed<size_a, size_b>(t, parents, blocks);
 }
 
 void traverse_trees(const Traversal& traversal, const Bvh::Task& task) {
@@ -287,8 +383,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void Traversal::grow(PairBuffer& buffer) {
-  buffer.first.resize(2 * buffer.first.size() + 1024);
+void Traversal::grow(PairBuffer& buffer, std::size_t most) {
+  buffer.first.resize(2 * most);
   buffer.second.resize(buffer.first.size());
 }
 
