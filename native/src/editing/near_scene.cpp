@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "deformation/beside_obstacles.hpp"
-
 namespace stiv {
 
 namespace {
@@ -60,9 +58,9 @@ class NearSceneBuilder {
     vertices_ += static_cast<Index>(obstacle.positions().rows());
   }
 
-  NearScene finish(std::shared_ptr<const Deformation> deformation) {
+  NearScene finish() {
     scene_.surface = std::make_shared<Surface>(std::move(definition_));
-    scene_.deformation = make_beside_obstacles(std::move(deformation), std::move(positions_));
+    scene_.obstacles = std::move(positions_);
     return std::move(scene_);
   }
 
@@ -95,11 +93,11 @@ class NearSceneBuilder {
 
 }  // namespace
 
-NearScene near_scene(const Surface& surface, std::shared_ptr<const Deformation> deformation, const Obstacles& obstacles,
-                     const Eigen::AlignedBox3d& box, const Execution& execution) {
+NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
+                     const Execution& execution) {
   NearSceneBuilder builder(surface, box, execution);
   for (const auto& obstacle : obstacles) builder.add(*obstacle);
-  return builder.finish(std::move(deformation));
+  return builder.finish();
 }
 
 }  // namespace stiv
