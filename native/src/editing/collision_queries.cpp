@@ -35,11 +35,12 @@ std::shared_ptr<const Surface> without_pairs(const Surface& surface, const BodyP
 
 }  // namespace
 
-CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options)
+CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditContext& context)
     : surface(std::move(guarded)),
-      detector(surface, {.broad_phase = options.broad_phase}),
-      cache(detector),
+      detector(surface, {.broad_phase = context.options().broad_phase}),
+      cache(detector, static_cast<Index>(context.obstacles().rows())),
       intersections(surface) {
+  const EditOptions& options = context.options();
   if (options.narrow_phase != NarrowPhase::conservative)
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
 }
@@ -50,7 +51,7 @@ CollisionQueries::CollisionQueries(const EditContext& context)
       end_(context.obstacles()),
       centred_start_(context.centred_obstacles()),
       centred_end_(context.centred_obstacles()),
-      guard_(std::make_unique<Guard>(context.shared_surface(), context.options())),
+      guard_(std::make_unique<Guard>(context.shared_surface(), context)),
       excluded_(context.shared_surface(), context.options().excluded),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
@@ -68,14 +69,20 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
   if (overlap_ && !is_first && overlap_->is_deeper(q, execution))
     throw StartIntersectsError("bodies that may overlap would overlap more than at the start", {});
   guard_pairs_apart_at(surface, execution);
-  StaticPairs found = guard_->intersections.find_all(q, execution);
+  const Positions& centred = context_.centred(surface, centred_start_, execution);
+  StaticPairs found;
+  execution.for_chunks(2, 1, [&](Index, Index, Index task) {  // both build trees, mostly on one thread
+    if (task == 0)
+      found = guard_->intersections.find_all(q, execution);
+    else
+      guard_->detector.prepare(centred, execution);
+  });
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (!found.empty()) {
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
   }
-  guard_->detector.prepare(context_.centred(surface, centred_start_, execution), execution);
 }
 
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.
@@ -85,8 +92,7 @@ void CollisionQueries::guard_pairs_apart_at(const Positions& accepted, Execution
   const std::vector<unsigned char>& overlapping = overlap_->overlapping(start_.with_rest(accepted), execution);
   if (overlapping == overlapping_) return;
   overlapping_ = overlapping;
-  guard_ =
-      std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_.options());
+  guard_ = std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_);
 }
 
 std::optional<Events> CollisionQueries::find(const Positions& from, const Positions& to, PairLimit limit,

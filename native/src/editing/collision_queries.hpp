@@ -60,7 +60,7 @@ class CollisionQueries {
  private:
   /// The tests of a surface without the pairs of bodies that overlap now.
   struct Guard {
-    Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options);
+    Guard(std::shared_ptr<const Surface> guarded, const EditContext& context);
     Guard(const Guard&) = delete;  // the cache refers to the detector
     Guard& operator=(const Guard&) = delete;
 

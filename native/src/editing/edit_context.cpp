@@ -68,20 +68,12 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obsta
   check_controls(start, "controls");
   const Positions q = deformation_->surface_in_range(start, execution);
   check_positions(q);
-  set_centre(q);
+  if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
+  centred_obstacles_ = centred(obstacles_);
   SceneRows rows(centred_obstacles_);
   centred(q, rows, execution);
   reference_ = std::move(rows.with_room_for(static_cast<Index>(q.rows())));
   set_proximity(q, start);
-}
-
-void EditContext::set_centre(const Positions& start) {
-  Eigen::AlignedBox3d bounds;
-  for (const Positions* rows : std::array<const Positions*, 2>{&start, &obstacles_})
-    if (rows->rows() > 0)
-      bounds.extend(Eigen::AlignedBox3d(rows->colwise().minCoeff().transpose(), rows->colwise().maxCoeff().transpose()));
-  if (!bounds.isEmpty()) centre_ = ((bounds.min() + bounds.max()) / 2).transpose();
-  centred_obstacles_ = centred(obstacles_);
 }
 
 void EditContext::set_proximity(const Positions& start, const Controls& controls) {

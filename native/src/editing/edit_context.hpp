@@ -81,7 +81,7 @@ class EditContext {
   }
   /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
-  /// Relative to the center of the start: smaller coordinates round less.
+  /// Relative to the center of the start without the obstacles: smaller coordinates round less.
   Positions centred(const PositionsView& q) const;
   /// The same for a surface, with the obstacles.
   const Positions& centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const;
@@ -90,7 +90,6 @@ class EditContext {
 
  private:
   void set_proximity(const Positions& start, const Controls& controls);
-  void set_centre(const Positions& start);
 
   std::shared_ptr<const Surface> surface_;
   Positions obstacles_, centred_obstacles_;
