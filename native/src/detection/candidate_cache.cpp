@@ -58,7 +58,9 @@ void CandidateCache::prune(const PositionsView& start, const PositionsView& end,
                            const Execution& execution) {
   search_.check_step({start, end, proximity});
   const FloatingPointScope floating_point;
-  steps_.update(start, end, execution);
+  const auto count = static_cast<Index>(start.rows());
+  steps_.update_first(has_resting_steps_ ? count - resting_ : count, start, end, execution);
+  has_resting_steps_ = true;
   const ClosePairs searched = search_.take_close_pairs(execution);
   const FrameMotions motions = search_.frame_motions(start, end);
   ClosePairs kept, added;

@@ -23,7 +23,10 @@ class CandidateCache {
   using PlaceVertices = std::function<Rows(std::span<const Index> vertices)>;
 
   /// The detector must outlive the cache.
-  explicit CandidateCache(Detector& detector) : search_(*detector.search_) {}
+  /// @param resting the last vertices, this many, have the same positions in all steps of the detector and the cache
+  explicit CandidateCache(Detector& detector, Index resting = 0) : search_(*detector.search_), resting_(resting) {
+    search_.set_resting(resting);
+  }
 
   /// The events of a step among the cached candidates. `place` gives the step of their vertices, in ascending order; it
   /// is not called if nothing is cached.
@@ -57,6 +60,8 @@ class CandidateCache {
   ClosePairs pairs_;
   std::vector<Index> vertices_;  ///< of all pairs, ascending
   VertexSteps steps_;
+  Index resting_;
+  bool has_resting_steps_ = false;  ///< of all resting vertices
 };
 
 }  // namespace stiv

@@ -28,6 +28,9 @@ class PairSearch {
 
   void prepare(const PositionsView& start, const Execution& execution) { source_->prepare(start, execution); }
 
+  /// As CandidateSource.
+  void set_resting(Index count) { source_->set_resting(count); }
+
   /// Nothing if a step is refused.
   /// @throws InputError for a step or a proximity that does not fit, as the others
   std::optional<Events> find(const Step& given, PairLimit limit, Execution& execution);

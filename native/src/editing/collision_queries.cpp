@@ -13,6 +13,12 @@ namespace stiv {
 
 namespace {
 
+/// The vertices of a surface among those of the scene, ascending, in which those of obstacles follow.
+std::span<const Index> before_obstacles(std::span<const Index> vertices, const Positions& surface) {
+  const auto end = std::lower_bound(vertices.begin(), vertices.end(), static_cast<Index>(surface.rows()));
+  return vertices.first(static_cast<std::size_t>(end - vertices.begin()));
+}
+
 double first_time(const Events& events) {
   double first = never;
   for (const Event& event : events) first = std::min(first, event.time);
@@ -29,18 +35,23 @@ std::shared_ptr<const Surface> without_pairs(const Surface& surface, const BodyP
 
 }  // namespace
 
-CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options)
+CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditContext& context)
     : surface(std::move(guarded)),
-      detector(surface, {.broad_phase = options.broad_phase}),
-      cache(detector),
+      detector(surface, {.broad_phase = context.options().broad_phase}),
+      cache(detector, static_cast<Index>(context.obstacles().rows())),
       intersections(surface) {
+  const EditOptions& options = context.options();
   if (options.narrow_phase != NarrowPhase::conservative)
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
 }
 
 CollisionQueries::CollisionQueries(const EditContext& context)
     : context_(context),
-      guard_(std::make_unique<Guard>(context.shared_surface(), context.options())),
+      start_(context.obstacles()),
+      end_(context.obstacles()),
+      centred_start_(context.centred_obstacles()),
+      centred_end_(context.centred_obstacles()),
+      guard_(std::make_unique<Guard>(context.shared_surface(), context)),
       excluded_(context.shared_surface(), context.options().excluded),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
@@ -50,32 +61,38 @@ CollisionQueries::CollisionQueries(const EditContext& context)
   overlapping_.assign(overlap_->pairs().size(), 0);
 }
 
-void CollisionQueries::check_start(const Positions& q, Execution& execution) {
+void CollisionQueries::check_start(const Positions& surface, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
+  const Positions& q = start_.with_rest(surface);
   const bool is_first = overlap_ && !overlap_->begun();
   if (is_first) overlap_->begin(q, execution);
   if (overlap_ && !is_first && overlap_->is_deeper(q, execution))
     throw StartIntersectsError("bodies that may overlap would overlap more than at the start", {});
-  guard_pairs_apart_at(q, execution);
-  StaticPairs found = guard_->intersections.find_all(q, execution);
+  guard_pairs_apart_at(surface, execution);
+  const Positions& centred = context_.centred(surface, centred_start_, execution);
+  StaticPairs found;
+  execution.for_chunks(2, 1, [&](Index, Index, Index task) {  // both build trees, mostly on one thread
+    if (task == 0)
+      found = guard_->intersections.find_all(q, execution);
+    else
+      guard_->detector.prepare(centred, execution);
+  });
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (!found.empty()) {
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
   }
-  guard_->detector.prepare(context_.centred(q, execution), execution);
 }
 
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.
 void CollisionQueries::guard_pairs_apart_at(const Positions& accepted, Execution& execution) {
   if (!overlap_ || (guarded_at_.rows() == accepted.rows() && guarded_at_ == accepted)) return;
   guarded_at_ = accepted;
-  const std::vector<unsigned char>& overlapping = overlap_->overlapping(accepted, execution);
+  const std::vector<unsigned char>& overlapping = overlap_->overlapping(start_.with_rest(accepted), execution);
   if (overlapping == overlapping_) return;
   overlapping_ = overlapping;
-  guard_ =
-      std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_.options());
+  guard_ = std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_);
 }
 
 std::optional<Events> CollisionQueries::find(const Positions& from, const Positions& to, PairLimit limit,
@@ -83,8 +100,25 @@ std::optional<Events> CollisionQueries::find(const Positions& from, const Positi
   const ScopedTimer timer(execution.timings.detection);
   guard_pairs_apart_at(from, execution);
   Detector& detector = guard_->round_detector ? *guard_->round_detector : guard_->detector;
-  return find_not_excluded(detector, context_.centred(from, execution), context_.centred(to, execution),
-                           context_.round_proximity(), limit, execution);
+  return find_not_excluded(detector, context_.centred(from, centred_start_, execution),
+                           context_.centred(to, centred_end_, execution), context_.round_proximity(), limit, execution);
+}
+
+/// Rows of a surface and of the obstacles after it.
+Positions CollisionQueries::rows_with_obstacles(const Positions& q, std::span<const Index> vertices) const {
+  const Index own = static_cast<Index>(q.rows());
+  Positions some(static_cast<Index>(vertices.size()), 3);
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    some.row(static_cast<Index>(k)) =
+        vertices[k] < own ? q.row(vertices[k]) : context_.obstacles().row(vertices[k] - own);
+  return some;
+}
+
+/// Of all vertices.
+std::vector<unsigned char> CollisionQueries::moved(const PositionsView& from, const PositionsView& to) const {
+  std::vector<unsigned char> moved = moved_vertices(from, to);
+  moved.resize(at(context_.surface().vertex_count()), 0);
+  return moved;
 }
 
 Events CollisionQueries::find_cached(const Positions& from, State& to, Execution& execution) {
@@ -93,10 +127,12 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Execution
   double placing = 0;
   const auto place = [&](std::span<const Index> vertices) {
     const ScopedTimer timer(placing);
-    Positions end = context_.deformation().surface_rows(to.controls, vertices, execution);
+    const std::span<const Index> own = before_obstacles(vertices, from);
+    Positions end = context_.deformation().surface_rows(to.controls, own, execution);
     flush_below_range(end);
-    put_rows(to.surface, vertices, end);
-    return CandidateCache::Rows{context_.centred(rows_of(from, vertices)), context_.centred(end)};
+    put_rows(to.surface, own, end);
+    return CandidateCache::Rows{context_.centred(rows_with_obstacles(from, vertices)),
+                                context_.centred(rows_with_obstacles(to.surface, vertices))};
   };
   Events events;
   {
@@ -113,8 +149,8 @@ void CollisionQueries::prune_cache(const Positions& from, const Positions& to, E
   if (guard_->round_detector) return;
   const ScopedTimer timer(execution.timings.detection);
   guard_pairs_apart_at(from, execution);
-  guard_->cache.prune(context_.centred(from, execution), context_.centred(to, execution), context_.round_proximity(),
-                      execution);
+  guard_->cache.prune(context_.centred(from, centred_start_, execution), context_.centred(to, centred_end_, execution),
+                      context_.round_proximity(), execution);
 }
 
 std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, const Positions& from,
@@ -136,7 +172,8 @@ std::optional<double> CollisionQueries::earliest_time(const Positions& from, con
   const ScopedTimer timer(execution.timings.acceptance);
   guard_pairs_apart_at(from, execution);
   const Proximity& proximity = context_.proximity();
-  const Positions start = context_.centred(from, execution), end = context_.centred(to, execution);
+  const Positions& start = context_.centred(from, centred_start_, execution);
+  const Positions& end = context_.centred(to, centred_end_, execution);
   if (!excluded_.empty()) {
     const auto events = find_not_excluded(guard_->detector, start, end, proximity, limit, execution);
     return events ? std::optional(first_time(*events)) : std::nullopt;
@@ -149,16 +186,18 @@ double CollisionQueries::free_fraction(const Positions& from, const Positions& t
   const ScopedTimer timer(execution.timings.acceptance);
   guard_pairs_apart_at(from, execution);
   if (!passes_static_test(from, to, execution)) return 0.5;
-  return overlap_ ? overlap_->free_fraction(from, to, execution) : 1;
+  return overlap_ ? overlap_->free_fraction(start_.with_rest(from), end_.with_rest(to), execution) : 1;
 }
 
 bool CollisionQueries::passes_static_test(const Positions& from, const Positions& to, Execution& execution) {
-  if (excluded_.empty()) return guard_->intersections.is_free(to, moved_vertices(from, to), execution);
-  StaticPairs found = guard_->intersections.find_all(to, execution);
+  const Positions& end = end_.with_rest(to);
+  if (excluded_.empty()) return guard_->intersections.is_free(end, moved(from, to), execution);
+  StaticPairs found = guard_->intersections.find_all(end, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
-  if (!found.empty() || all.size() > guard_->intersections.find(from, execution).size()) return false;
-  return !depth_->is_deeper(to, all);
+  if (!found.empty() || all.size() > guard_->intersections.find(start_.with_rest(from), execution).size())
+    return false;
+  return !depth_->is_deeper(end, all);
 }
 
 bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution) {
@@ -166,11 +205,12 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
   Proximity touching;
   touching.separation = context_.proximity().separation;
   touching.by_bodies = &no_separations_;
-  const Positions start = context_.centred(from, execution), end = context_.centred(to, execution);
+  const Positions& start = context_.centred(from, centred_start_, execution);
+  const Positions& end = context_.centred(to, centred_end_, execution);
   // As most steps are no longer than rounding, the last search has mostly found all pairs that can touch.
   std::optional<double> first = guard_->cache.earliest_contact(start, end, touching, execution);
   if (!first) first = guard_->detector.earliest_time(start, end, touching, execution);
-  return *first == never && guard_->intersections.is_free(to, moved_vertices(from, to), execution);
+  return *first == never && guard_->intersections.is_free(end_.with_rest(to), moved(from, to), execution);
 }
 
 }  // namespace stiv

@@ -3,6 +3,9 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "detection/candidate_cache.hpp"
 #include "editing/edit_context.hpp"
@@ -15,7 +18,8 @@
 namespace stiv {
 
 /// The collision tests of a session: continuous detection, with its cached candidates, and the exact static test.
-/// Excluded pairs are left out. Caches speed up queries, and decide which events the rounds find first.
+/// Excluded pairs are left out. Caches speed up queries, and decide which events the rounds find first. Positions are
+/// given without those of obstacles.
 class CollisionQueries {
  public:
   /// The context must outlive the queries.
@@ -26,7 +30,7 @@ class CollisionQueries {
   /// The first surface that is checked is the start of the session. Builds the trees from it, so that the first edit
   /// need not.
   /// @throws StartIntersectsError
-  void check_start(const Positions& q, Execution& execution);
+  void check_start(const Positions& surface, Execution& execution);
 
   /// Events of a step, with the proximity of the rounds; nothing if the step exceeds the pair limit.
   std::optional<Events> find(const Positions& from, const Positions& to, PairLimit limit, Execution& execution);
@@ -35,6 +39,10 @@ class CollisionQueries {
   /// Prunes cached candidates that the step does not bring close. Called when rounds toward another goal begin.
   void prune_cache(const Positions& from, const Positions& to, Execution& execution);
   void clear_cache() { guard_->cache.clear(); }
+  /// A step with the obstacles. Valid until the next query.
+  std::pair<const Positions&, const Positions&> with_obstacles(const Positions& from, const Positions& to) {
+    return {start_.with_rest(from), end_.with_rest(to)};
+  }
 
   /// Does `find` without events prove the step clear?
   bool rounds_prove_clearance() const;
@@ -52,7 +60,7 @@ class CollisionQueries {
  private:
   /// The tests of a surface without the pairs of bodies that overlap now.
   struct Guard {
-    Guard(std::shared_ptr<const Surface> guarded, const EditOptions& options);
+    Guard(std::shared_ptr<const Surface> guarded, const EditContext& context);
     Guard(const Guard&) = delete;  // the cache refers to the detector
     Guard& operator=(const Guard&) = delete;
 
@@ -68,7 +76,11 @@ class CollisionQueries {
   std::optional<Events> find_not_excluded(Detector& detector, const Positions& from, const Positions& to,
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;
 
+  Positions rows_with_obstacles(const Positions& q, std::span<const Index> vertices) const;
+  std::vector<unsigned char> moved(const PositionsView& from, const PositionsView& to) const;
+
   const EditContext& context_;
+  SceneRows start_, end_, centred_start_, centred_end_;  // of the last query
   std::unique_ptr<Guard> guard_;
   ExcludedPairs excluded_;
   std::optional<DepthWatch> depth_;      ///< of excluded pairs, if there are any

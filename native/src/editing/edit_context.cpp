@@ -12,10 +12,10 @@ namespace stiv {
 
 namespace {
 
-std::shared_ptr<const Surface> checked(std::shared_ptr<const Surface> surface,
+std::shared_ptr<const Surface> checked(std::shared_ptr<const Surface> surface, const Positions& obstacles,
                                        const std::shared_ptr<const Deformation>& deformation) {
   if (!surface || !deformation) throw InputError("a surface and a deformation are needed");
-  check_fit(*surface, *deformation);
+  check_fit(*surface, *deformation, static_cast<Index>(obstacles.rows()));
   return surface;
 }
 
@@ -52,10 +52,12 @@ std::vector<Index> rows_without_length(const Deformation& deformation) {
 
 }  // namespace
 
-EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                         const Controls& start, EditOptions options, const Execution& execution)
-    : surface_(checked(std::move(surface), deformation)),
-      moving_part_(surface_),
+EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obstacles,
+                         std::shared_ptr<const Deformation> deformation, const Controls& start, EditOptions options,
+                         const Execution& execution)
+    : surface_(checked(std::move(surface), obstacles, deformation)),
+      obstacles_(std::move(obstacles)),
+      moving_part_(surface_, obstacles_),
       deformation_(std::move(deformation)),
       options_(checked(std::move(options), deformation_->control_count())),
       limits_(deformation_->scalar_rows(), options_.storage),
@@ -65,9 +67,12 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr
   check_overlapping(*surface_, options_.overlapping);
   check_controls(start, "controls");
   const Positions q = deformation_->surface_in_range(start, execution);
-  surface_->check_positions(q);
+  check_positions(q);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
-  reference_ = centred(q);
+  centred_obstacles_ = centred(obstacles_);
+  SceneRows rows(centred_obstacles_);
+  centred(q, rows, execution);
+  reference_ = std::move(rows.with_room_for(static_cast<Index>(q.rows())));
   set_proximity(q, start);
 }
 
@@ -144,14 +149,26 @@ Positions EditContext::surface_at(const Controls& controls, Execution& execution
   return deformation_->surface_in_range(controls, execution);
 }
 
-Positions EditContext::centred(const PositionsView& q, const Execution& execution) const {
+Positions EditContext::centred(const PositionsView& q) const {
+  Positions about_centre = q.rowwise() - centre_;
+  flush_below_range(about_centre);
+  return about_centre;
+}
+
+const Positions& EditContext::centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const {
   constexpr Index rows_per_chunk = 8192;
-  Positions about_centre(q.rows(), 3);
+  Positions& about_centre = rows.with_room_for(static_cast<Index>(q.rows()));
   execution.for_chunks(static_cast<Index>(q.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
     about_centre.middleRows(begin, end - begin) = q.middleRows(begin, end - begin).rowwise() - centre_;
     flush_below_range(about_centre.middleRows(begin, end - begin));
   });
   return about_centre;
+}
+
+void EditContext::check_positions(const PositionsView& q) const {
+  if (obstacles_.rows() == 0 || q.rows() + obstacles_.rows() != surface_->vertex_count())
+    return surface_->check_positions(q);
+  for (Index vertex = 0; vertex < q.rows(); ++vertex) surface_->check_position(vertex, q.row(vertex));
 }
 
 }  // namespace stiv

@@ -9,6 +9,7 @@
 
 #include "editing/control_limits.hpp"
 #include "editing/moving_part.hpp"
+#include "editing/scene_rows.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/options.hpp"
 #include "stiv/execution.hpp"
@@ -16,7 +17,7 @@
 
 namespace stiv {
 
-/// Controls and their surface, in world coordinates.
+/// Controls and their surface, in world coordinates; without the obstacles.
 struct State {
   Controls controls;
   Positions surface;
@@ -25,15 +26,21 @@ struct State {
 /// The validated input of a session, and data derived from it once. Only the weights and the metric can change.
 class EditContext {
  public:
+  /// @param obstacles the last vertices of the surface, (k, 3), which are not the deformation's and never move
   /// @throws InputError for shapes and values that do not fit
-  EditContext(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-              const Controls& start, EditOptions options, const Execution& execution);
+  EditContext(std::shared_ptr<const Surface> surface, Positions obstacles,
+              std::shared_ptr<const Deformation> deformation, const Controls& start, EditOptions options,
+              const Execution& execution);
   EditContext(const EditContext&) = delete;  // proximities point into it
   EditContext& operator=(const EditContext&) = delete;
 
+  /// With the obstacles.
   const Surface& surface() const { return *surface_; }
   const std::shared_ptr<const Surface>& shared_surface() const { return surface_; }
   const Deformation& deformation() const { return *deformation_; }
+  const Positions& obstacles() const { return obstacles_; }
+  /// Relative to the center, as `centred`.
+  const Positions& centred_obstacles() const { return centred_obstacles_; }
   const Metric& metric() const { return *metric_; }
   static constexpr int tight_levels = 3;
   /// The metric with a tenth of the damping, or a hundredth and so on for further levels. Factored at its first use.
@@ -74,13 +81,18 @@ class EditContext {
   }
   /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
-  /// Relative to the center of the start: smaller coordinates round less.
-  Positions centred(const PositionsView& q, const Execution& execution = Execution(1)) const;
+  /// Relative to the center of the start without the obstacles: smaller coordinates round less.
+  Positions centred(const PositionsView& q) const;
+  /// The same for a surface, with the obstacles.
+  const Positions& centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const;
+  /// @throws InputError if a surface, without the obstacles, has another shape or coordinates out of range
+  void check_positions(const PositionsView& q) const;
 
  private:
   void set_proximity(const Positions& start, const Controls& controls);
 
   std::shared_ptr<const Surface> surface_;
+  Positions obstacles_, centred_obstacles_;
   MovingPart moving_part_;
   std::shared_ptr<const Deformation> deformation_;
   EditOptions options_;
@@ -94,7 +106,7 @@ class EditContext {
   double least_separation_ = 0;
   std::optional<BodySeparations> body_separations_;
   std::optional<BodyPairSet> overlapping_;
-  Positions reference_;  ///< the start, centered
+  Positions reference_;  ///< the start with the obstacles, centered
   Proximity proximity_, round_proximity_;
 };
 

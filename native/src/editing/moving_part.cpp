@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "editing/scene_rows.hpp"
 #include "stiv/volumes/relative.hpp"
 
 namespace stiv {
@@ -21,8 +22,10 @@ void MovingPart::Range::include(Index element) {
   end = element + 1;
 }
 
-MovingPart::MovingPart(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {
-  const Index rows = surface_->vertex_count(), triangles = static_cast<Index>(surface_->triangles().rows());
+MovingPart::MovingPart(std::shared_ptr<const Surface> surface, const Positions& obstacles)
+    : surface_(std::move(surface)), obstacles_(obstacles) {
+  const Index rows = surface_->vertex_count() - static_cast<Index>(obstacles_.rows()),
+              triangles = static_cast<Index>(surface_->triangles().rows());
   for (Index vertex = 0; vertex < rows; ++vertex)
     if (!surface_->is_fixed(vertex)) rows_.include(vertex);
   for (Index triangle = 0; triangle < triangles; ++triangle)
@@ -44,8 +47,10 @@ double MovingPart::longest_displacement(const Positions& from, const Positions& 
 Eigen::VectorXd MovingPart::region_areas(const Positions& q) const {
   if (areas_of_rest_.size() == 0) {
     areas_of_rest_ = Eigen::VectorXd::Zero(surface_->vertex_count());
-    surface_->add_vertex_areas(q, 0, triangles_.first, areas_of_rest_);
-    surface_->add_vertex_areas(q, triangles_.end, static_cast<Index>(surface_->triangles().rows()), areas_of_rest_);
+    SceneRows rows(obstacles_);
+    const Positions& whole = rows.with_rest(q);
+    surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_);
+    surface_->add_vertex_areas(whole, triangles_.end, static_cast<Index>(surface_->triangles().rows()), areas_of_rest_);
   }
   Eigen::VectorXd areas = areas_of_rest_;
   surface_->add_vertex_areas(q, triangles_.first, triangles_.end, areas);

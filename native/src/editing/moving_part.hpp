@@ -8,10 +8,11 @@
 namespace stiv {
 
 /// The part of a surface that may move: from the first to the last element of bodies that are not fixed. Two states of
-/// a session differ nowhere else. In large scenes it is small.
+/// a session differ nowhere else. In large scenes it is small. Positions are given without those of obstacles.
 class MovingPart {
  public:
-  explicit MovingPart(std::shared_ptr<const Surface> surface);
+  /// @param obstacles positions of the last vertices, (k, 3), which must outlive this
+  MovingPart(std::shared_ptr<const Surface> surface, const Positions& obstacles);
 
   /// 1/2 |a - b|^2. (mathematics.md, Eq. 4)
   double energy(const Positions& a, const Positions& b) const;
@@ -29,6 +30,7 @@ class MovingPart {
   };
 
   std::shared_ptr<const Surface> surface_;
+  const Positions& obstacles_;
   Range rows_, triangles_;
   mutable Eigen::VectorXd areas_of_rest_;
 };

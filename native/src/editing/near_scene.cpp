@@ -2,9 +2,8 @@
 #include "editing/near_scene.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
-
-#include "deformation/beside_obstacles.hpp"
 
 namespace stiv {
 
@@ -16,24 +15,36 @@ struct UsedVertices {
   Triangles triangles;
 };
 
+/// The least and the greatest vertex of some triangles, of which there is at least one.
+std::pair<Index, Index> vertex_range(const Obstacle& obstacle, const std::vector<Index>& triangles) {
+  Index first = std::numeric_limits<Index>::max(), last = 0;
+  for (const Index triangle : triangles)
+    for (const Index corner : obstacle.triangles().row(triangle)) {
+      first = std::min(first, corner);
+      last = std::max(last, corner);
+    }
+  return {first, last};
+}
+
 UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& triangles) {
   UsedVertices used;
   used.triangles.resize(static_cast<Index>(triangles.size()), 3);
   if (triangles.empty()) return used;
-  const auto count = at(obstacle.positions().rows());
+  const auto [first, last] = vertex_range(obstacle, triangles);
+  const auto count = at(last - first) + 1;
   std::vector<unsigned char> marks(count, 0);
   for (const Index triangle : triangles)
-    for (const Index corner : obstacle.triangles().row(triangle)) marks[at(corner)] = 1;
+    for (const Index corner : obstacle.triangles().row(triangle)) marks[at(corner - first)] = 1;
   // Written only where a vertex is used, so that the memory of the others is never touched.
   const std::unique_ptr<Index[]> places(new Index[count]);
-  for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    if (marks[vertex] == 0) continue;
-    places[vertex] = static_cast<Index>(used.vertices.size());
-    used.vertices.push_back(static_cast<Index>(vertex));
+  for (std::size_t k = 0; k < count; ++k) {
+    if (marks[k] == 0) continue;
+    places[k] = static_cast<Index>(used.vertices.size());
+    used.vertices.push_back(first + static_cast<Index>(k));
   }
   for (std::size_t row = 0; row < triangles.size(); ++row)
     for (Index k = 0; k < 3; ++k)
-      used.triangles(static_cast<Index>(row), k) = places[at(obstacle.triangles()(triangles[row], k))];
+      used.triangles(static_cast<Index>(row), k) = places[at(obstacle.triangles()(triangles[row], k) - first)];
   return used;
 }
 
@@ -60,9 +71,9 @@ class NearSceneBuilder {
     vertices_ += static_cast<Index>(obstacle.positions().rows());
   }
 
-  NearScene finish(std::shared_ptr<const Deformation> deformation) {
+  NearScene finish() {
     scene_.surface = std::make_shared<Surface>(std::move(definition_));
-    scene_.deformation = make_beside_obstacles(std::move(deformation), std::move(positions_));
+    scene_.obstacles = std::move(positions_);
     return std::move(scene_);
   }
 
@@ -95,11 +106,11 @@ class NearSceneBuilder {
 
 }  // namespace
 
-NearScene near_scene(const Surface& surface, std::shared_ptr<const Deformation> deformation, const Obstacles& obstacles,
-                     const Eigen::AlignedBox3d& box, const Execution& execution) {
+NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
+                     const Execution& execution) {
   NearSceneBuilder builder(surface, box, execution);
   for (const auto& obstacle : obstacles) builder.add(*obstacle);
-  return builder.finish(std::move(deformation));
+  return builder.finish();
 }
 
 }  // namespace stiv

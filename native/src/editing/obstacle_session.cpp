@@ -7,6 +7,7 @@
 
 #include "editing/motion_box.hpp"
 #include "editing/near_scene.hpp"
+#include "editing/scene_rows.hpp"
 #include "editing/validation.hpp"
 #include "stiv/error.hpp"
 
@@ -73,7 +74,6 @@ class ObstacleSession final : public SessionImplementation {
       open(around(bounds), controls, goal, execution);
     goal_ = goal;
     motion_.setZero();
-    keep_surface();
   }
 
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
@@ -87,29 +87,26 @@ class ObstacleSession final : public SessionImplementation {
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
     bounds.extend(moving_bounds(*surface_, end));
     const auto test = [&](Near& near) {
-      Positions from = near.session->surface(), to = from;
-      from.topRows(start.rows()) = start;
-      to.topRows(end.rows()) = end;
-      return near.session->is_step_free(from, to, execution);
+      return near.session->is_step_free(start, end, execution);
     };
     if (is_inside(bounds)) return test(*near_);
     return test(*make_near(grown(bounds, margin()), start_, start_, execution));
   }
 
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
-    const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, own_surface_);
+    const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, surface());
     auto nearest = with_scene_numbers(near_->session->least_distance(pairs), near_->scene);
     // A triangle outside of the box may be closer than the nearest one inside.
     if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
     const Execution execution(options_.threads);
     const Eigen::AlignedBox3d box = nearest && !bounds.isEmpty() ? grown(bounds, nearest->distance) : whole_space();
-    const NearScene scene = near_scene(*surface_, deformation_, obstacles_, box, execution);
-    const Positions q = scene.deformation->surface_in_range(controls(), execution);
-    return with_scene_numbers(LeastDistance(scene.surface).find(q, pairs), scene);
+    const NearScene scene = near_scene(*surface_, obstacles_, box, execution);
+    SceneRows rows(scene.obstacles);
+    return with_scene_numbers(LeastDistance(scene.surface).find(rows.with_rest(surface()), pairs), scene);
   }
 
   const Controls& controls() const override { return near_->session->controls(); }
-  const Positions& surface() const override { return own_surface_; }
+  const Positions& surface() const override { return near_->session->surface(); }
   double separation() const override { return near_->session->separation(); }
   const Surface& topology() const override { return *surface_; }
 
@@ -136,10 +133,10 @@ class ObstacleSession final : public SessionImplementation {
 
   std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal,
                                   Execution& execution) const {
-    NearScene scene = near_scene(*surface_, deformation_, obstacles_, box, execution);
+    NearScene scene = near_scene(*surface_, obstacles_, box, execution);
     return with_scene_numbers(scene, accepted, [&] {
       auto session =
-          make_surface_session(scene.surface, scene.deformation, start_, options_, accepted, goal, execution);
+          make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_, accepted, goal, execution);
       return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
     });
   }
@@ -149,14 +146,13 @@ class ObstacleSession final : public SessionImplementation {
   void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
     near_ = make_near(box, accepted, goal, execution);
     box_ = box;
-    keep_surface();
   }
 
   /// Makes a call, and again in other boxes while its path leaves the box.
   template <class Call>
   EditResult carry_out(const Controls& goal, Execution& execution, const Call& call) {
     const Controls before = controls(), goal_before = goal_;
-    const Eigen::AlignedBox3d start = moving_bounds(*surface_, own_surface_);
+    const Eigen::AlignedBox3d start = moving_bounds(*surface_, surface());
     Eigen::AlignedBox3d bounds = start;
     if (!start.isEmpty()) bounds.extend(start.translated(motion_));  // where the same motion again would lead
     if (!is_inside(bounds)) reopen(around(bounds), before, goal_before, execution);
@@ -167,9 +163,8 @@ class ObstacleSession final : public SessionImplementation {
       result = call();  // returns at once if it was cancelled
     }
     if (result.status != EditStatus::cancelled) goal_ = goal;
-    keep_surface();
-    if (!start.isEmpty()) motion_ = moving_bounds(*surface_, own_surface_).center() - start.center();
-    return as_own(std::move(result));
+    if (!start.isEmpty()) motion_ = moving_bounds(*surface_, surface()).center() - start.center();
+    return with_scene_numbers(std::move(result));
   }
 
   /// Opens a session within a call, or restores the open one if that is cancelled. The time budget of the call must not
@@ -188,17 +183,13 @@ class ObstacleSession final : public SessionImplementation {
   /// Bounds of all states of a result. Between them, the surface moves linearly.
   Eigen::AlignedBox3d bounds_of(const EditResult& result) const {
     const Execution execution(options_.threads);
-    Eigen::AlignedBox3d bounds = moving_bounds(*surface_, result.surface.topRows(surface_->vertex_count()));
+    Eigen::AlignedBox3d bounds = moving_bounds(*surface_, result.surface);
     for (std::size_t k = 0; k + 1 < result.path.size(); ++k)
       bounds.extend(moving_bounds(*surface_, deformation_->surface_in_range(result.path[k], execution)));
     return bounds;
   }
 
-  void keep_surface() { own_surface_ = near_->session->surface().topRows(surface_->vertex_count()); }
-
-  /// The result with the surface of this session, and the numbers of all obstacles' vertices.
-  EditResult as_own(EditResult result) const {
-    result.surface = own_surface_;
+  EditResult with_scene_numbers(EditResult result) const {
     const Index first = surface_->vertex_count();
     for (Event& event : result.events)
       for (Index& vertex : event.vertices)
@@ -226,8 +217,9 @@ class ObstacleSession final : public SessionImplementation {
       return work();
     } catch (StartIntersectsError& error) {
       Execution execution(options_.threads);
-      StaticPairs found =
-          IntersectionTest(scene.surface).find_all(scene.deformation->surface_in_range(controls, execution), execution);
+      SceneRows rows(scene.obstacles);
+      StaticPairs found = IntersectionTest(scene.surface)
+                              .find_all(rows.with_rest(deformation_->surface_in_range(controls, execution)), execution);
       found.faces = std::move(error.pairs);
       const auto name_face = [&](Index face) { return describe_face(face, scene); };
       const std::string message = describe(*scene.surface, found, name_face);
@@ -255,7 +247,6 @@ class ObstacleSession final : public SessionImplementation {
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
   Eigen::AlignedBox3d box_;
   std::unique_ptr<Near> near_;
-  Positions own_surface_;  ///< accepted, without the obstacles
 };
 
 }  // namespace

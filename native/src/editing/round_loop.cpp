@@ -26,6 +26,14 @@ constexpr int rounds_before_giving_up = 6;
 /// Halvings of a step to where there is a surface; after the last one, the accepted state is the candidate.
 constexpr int max_halvings = 16;
 
+/// Removes the vertices of obstacles, which come last.
+void leave_out_obstacles(SparseField& field, Index first) {
+  const auto end = std::lower_bound(field.index.begin(), field.index.end(), first);
+  const auto count = static_cast<std::size_t>(end - field.index.begin());
+  field.index.resize(count);
+  field.value.resize(count);
+}
+
 /// The rounds to resume, or new ones.
 RoundProgress& progress_toward(EditCall& call, const Controls& goal, Projection projection) {
   std::optional<RoundProgress>& progress = call.progress;
@@ -95,11 +103,11 @@ bool RoundLoop::constrain() {
   ++call_.execution.counters.rounds;
   if (constraints.size() > max_constraints(call_.context) / 4) constraints.drop_inactive();
   if (areas_.size() == 0) areas_ = call_.context.region_areas(call_.accepted.surface);
-  const RoundVolumes volumes =
-      volumes_of_round(call_.context, {*progress_.events, call_.accepted.surface, outcome_.candidate.surface, areas_},
-                       progress_.round, constraints.size(), call_.execution);
+  const auto [start, end] = call_.queries.with_obstacles(call_.accepted.surface, outcome_.candidate.surface);
+  RoundVolumes volumes = volumes_of_round(call_.context, {*progress_.events, start, end, areas_}, progress_.round,
+                                                constraints.size(), call_.execution);
   outcome_.patches = volumes.patches;
-  std::vector<ControlConstraint> rows = linearised(volumes.stivs);
+  std::vector<ControlConstraint> rows = linearised(std::move(volumes.stivs));
   if (rows.empty()) {
     outcome_.events = *progress_.events;  // a call that resumes these rounds needs them again
     place_surface();
@@ -113,8 +121,9 @@ bool RoundLoop::constrain() {
   return true;
 }
 
-std::vector<ControlConstraint> RoundLoop::linearised(const std::vector<Stiv>& stivs) const {
+std::vector<ControlConstraint> RoundLoop::linearised(std::vector<Stiv> stivs) const {
   const ScopedTimer timer(call_.execution.timings.response);
+  for (Stiv& stiv : stivs) leave_out_obstacles(stiv.gradient, call_.context.deformation().vertex_count());
   return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, ready_metric(call_),
                              call_.accepted.controls, &call_.execution);
 }

@@ -29,10 +29,12 @@ enum class FollowedGoal {
 
 class SurfaceSession final : public SessionImplementation {
  public:
-  SurfaceSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
-                 const Controls& start, EditOptions options, const Controls& accepted, const Controls& goal,
-                 Execution& execution)
-      : context_(std::move(surface), std::move(deformation), start, std::move(options), execution), queries_(context_) {
+  SurfaceSession(std::shared_ptr<const Surface> surface, Positions obstacles,
+                 std::shared_ptr<const Deformation> deformation, const Controls& start, EditOptions options,
+                 const Controls& accepted, const Controls& goal, Execution& execution)
+      : context_(std::move(surface), std::move(obstacles), std::move(deformation), start, std::move(options),
+                 execution),
+        queries_(context_) {
     execution.check();
     restore(accepted, goal, execution);
   }
@@ -122,15 +124,16 @@ class SurfaceSession final : public SessionImplementation {
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     const FloatingPointScope floating_point;
-    context_.surface().check_positions(start);
-    context_.surface().check_positions(end);
+    context_.check_positions(start);
+    context_.check_positions(end);
     if (start == end && end == accepted_.surface) return true;
     return queries_.is_step_free(start, end, execution);
   }
 
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     if (!least_distance_) least_distance_.emplace(context_.shared_surface());
-    return least_distance_->find(accepted_.surface, pairs);
+    SceneRows rows(context_.obstacles());
+    return least_distance_->find(rows.with_rest(accepted_.surface), pairs);
   }
 
   const Controls& controls() const override { return accepted_.controls; }
@@ -264,7 +267,7 @@ class SurfaceSession final : public SessionImplementation {
       const Controls aim = context_.limits().nearest(goal);
       target = last_feasible(context_, accepted_, aim, call.execution);
       call.report.goal_is_infeasible = target.controls != aim;
-      context_.surface().check_positions(target.surface);
+      context_.check_positions(target.surface);
       if (!context_.is_empty() && target.controls != accepted_.controls)
         work(call, {target.controls, target.surface, false});
       goal_ = goal;
@@ -301,24 +304,25 @@ class SurfaceSession final : public SessionImplementation {
 }  // namespace
 
 std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
+                                                            Positions obstacles,
                                                             std::shared_ptr<const Deformation> deformation,
                                                             const Controls& start, EditOptions options,
                                                             const Controls& accepted, const Controls& goal,
                                                             Execution& execution) {
-  return std::make_unique<SurfaceSession>(std::move(surface), std::move(deformation), start, std::move(options),
-                                          accepted, goal, execution);
+  return std::make_unique<SurfaceSession>(std::move(surface), std::move(obstacles), std::move(deformation), start,
+                                          std::move(options), accepted, goal, execution);
 }
 
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options) {
   Execution execution(std::max(0, options.threads));  // a negative number is reported with the other options
-  implementation_ = make_surface_session(std::move(surface), std::move(deformation), controls, std::move(options),
-                                         controls, controls, execution);
+  implementation_ = make_surface_session(std::move(surface), Positions(0, 3), std::move(deformation), controls,
+                                         std::move(options), controls, controls, execution);
 }
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options, Execution& execution)
-    : implementation_(make_surface_session(std::move(surface), std::move(deformation), controls, std::move(options),
-                                           controls, controls, execution)) {}
+    : implementation_(make_surface_session(std::move(surface), Positions(0, 3), std::move(deformation), controls,
+                                           std::move(options), controls, controls, execution)) {}
 EditSession::EditSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
                          const Controls& controls, EditOptions options, Obstacles obstacles, Execution& execution)
     : implementation_(make_obstacle_session(std::move(surface), std::move(deformation), controls, std::move(options),

@@ -28,9 +28,12 @@ class SessionImplementation {
   virtual const Surface& topology() const = 0;
 };
 
-/// A session without obstacles, with an accepted state and the goal of the call before, as after a restore.
+/// A session in one box, with an accepted state and the goal of the call before, as after a restore. Positions are
+/// given without those of obstacles.
+/// @param obstacles positions of the last vertices of the surface, (k, 3)
 /// @throws as EditSession; StartIntersectsError is about the accepted state
 std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
+                                                            Positions obstacles,
                                                             std::shared_ptr<const Deformation> deformation,
                                                             const Controls& start, EditOptions options,
                                                             const Controls& accepted, const Controls& goal,

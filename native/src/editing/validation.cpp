@@ -43,8 +43,8 @@ void check_storage(const std::vector<StorageFrame>& frames, Index control_count)
 
 }  // namespace
 
-void check_fit(const Surface& surface, const Deformation& deformation) {
-  require(surface.vertex_count() == deformation.vertex_count(),
+void check_fit(const Surface& surface, const Deformation& deformation, Index obstacle_vertices) {
+  require(surface.vertex_count() == deformation.vertex_count() + obstacle_vertices,
           "the deformation gives " + std::to_string(deformation.vertex_count()) + " vertices, the surface has " +
               std::to_string(surface.vertex_count()));
 }

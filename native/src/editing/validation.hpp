@@ -12,7 +12,7 @@
 namespace stiv {
 
 /// @throws InputError if surface and deformation, or the options and the number of controls, do not fit together
-void check_fit(const Surface& surface, const Deformation& deformation);
+void check_fit(const Surface& surface, const Deformation& deformation, Index obstacle_vertices = 0);
 void check_options(const EditOptions& options, Index control_count);
 void check_overlapping(const Surface& surface, const std::vector<std::pair<Index, Index>>& overlapping);
 

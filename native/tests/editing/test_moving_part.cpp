@@ -26,13 +26,15 @@ struct Scene {
   }
 };
 
+const Positions no_obstacles = Positions(0, 3);
+
 }  // namespace
 
 TEST_CASE("moving part: distances and areas have the bits of whole surfaces") {
   for (const Index size : {3, 7, 11})
     for (const int moving : {0, 1, 2}) {
       const Scene scene(size, 3, moving);
-      const MovingPart part(scene.surface);
+      const MovingPart part(scene.surface, no_obstacles);
       CHECK(part.energy(scene.start, scene.end) == 0.5 * (scene.start - scene.end).squaredNorm());
       CHECK(part.energy(scene.start, scene.end) > 0);
       CHECK(part.longest_displacement(scene.start, scene.end) == (scene.end - scene.start).rowwise().norm().maxCoeff());
@@ -43,10 +45,10 @@ TEST_CASE("moving part: distances and areas have the bits of whole surfaces") {
 
 TEST_CASE("moving part: of fixed bodies alone, and of no vertices") {
   const Scene fixed(3, 2, -1);
-  CHECK(MovingPart(fixed.surface).energy(fixed.start, fixed.end) == 0);
-  CHECK(MovingPart(fixed.surface).longest_displacement(fixed.start, fixed.end) == 0);
-  CHECK(MovingPart(fixed.surface).region_areas(fixed.start) == region_areas(*fixed.surface, fixed.start));
-  const MovingPart none(std::make_shared<const Surface>(SurfaceDefinition{}));
+  CHECK(MovingPart(fixed.surface, no_obstacles).energy(fixed.start, fixed.end) == 0);
+  CHECK(MovingPart(fixed.surface, no_obstacles).longest_displacement(fixed.start, fixed.end) == 0);
+  CHECK(MovingPart(fixed.surface, no_obstacles).region_areas(fixed.start) == region_areas(*fixed.surface, fixed.start));
+  const MovingPart none(std::make_shared<const Surface>(SurfaceDefinition{}), no_obstacles);
   CHECK(none.longest_displacement(Positions(0, 3), Positions(0, 3)) == 0);
   CHECK(none.region_areas(Positions(0, 3)).size() == 0);
 }

@@ -47,7 +47,7 @@ struct Run {
 Run run(const Scene& scene, const StatePredicate& is_diverging) {
   EditOptions options;
   options.max_rounds = 40;
-  const EditContext context(scene.surface, scene.deformation, scene.controls, options, Execution(1));
+  const EditContext context(scene.surface, Positions(0, 3), scene.deformation, scene.controls, options, Execution(1));
   CollisionQueries queries(context);
   Execution execution(1);
   State accepted{scene.controls, context.surface_at(scene.controls, execution)};

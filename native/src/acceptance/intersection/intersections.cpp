@@ -22,6 +22,16 @@ GroupRelations pairs_of_bodies(const Surface& surface) {
   return {GroupTable(count, std::move(tested)), {}};
 }
 
+/// Triangles of bodies that are tested against themselves. Of the others, no pair of neighbors is a candidate.
+CornerList corners_within_tested_bodies(const Surface& surface, const CornerList& triangles) {
+  CornerList some;
+  for (const auto& corners : triangles) {
+    const Index body = surface.body_of(corners[0]);
+    if (surface.bodies_meet(body, body)) some.push_back(corners);
+  }
+  return some;
+}
+
 /// Searches for intersections of two kinds of primitives, or of one kind with itself.
 class Search {
  public:
@@ -98,7 +108,7 @@ class IntersectionTest::Implementation {
         triangles_(*surface_, triangle_corners(*surface_)),
         loose_edges_(*surface_, loose_edge_corners(*surface_)),
         loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
-        stars_(triangles_.all_corners(), surface_->vertex_count()),
+        stars_(corners_within_tested_bodies(*surface_, triangles_.all_corners()), surface_->vertex_count()),
         bodies_(pairs_of_bodies(*surface_)) {}
 
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
@@ -124,11 +134,19 @@ class IntersectionTest::Implementation {
     return Search(*surface_, first, triangles_, bodies_, q, placed_->points()).all(execution);
   }
 
+  void check_positions(const PositionsView& q, const Execution& execution) const {
+    constexpr Index chunk_size = 8192;
+    if (q.rows() != surface_->vertex_count()) surface_->check_positions(q);
+    execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
+      for (Index vertex = begin; vertex < end; ++vertex) surface_->check_position(vertex, q.row(vertex));
+    });
+  }
+
   using Kinds = std::vector<Primitives*>;
 
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
-    surface_->check_positions(q);
+    check_positions(q, execution);
     std::optional<PlacedVertices> placed = std::exchange(placed_, std::nullopt);  // this may be cancelled
     if (!placed) placed.emplace(*surface_);
     placed->update(q, moved, execution);

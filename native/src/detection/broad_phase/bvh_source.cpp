@@ -49,6 +49,8 @@ class BvhSource final : public CandidateSource {
     vertices_.drop_curve();
   }
 
+  void set_resting(Index count) override { swept_.set_resting(count); }
+
   void update(const Step& step, const Execution& execution) override {
     separation_ = step.proximity.separation;
     // If this is cancelled, the next step starts from scratch.

@@ -30,6 +30,8 @@ class CandidateSource {
   virtual ~CandidateSource() = default;
   /// Does the part of the first update that depends on its start alone.
   virtual void prepare(const PositionsView&, const Execution&) {}
+  /// Promises that the last vertices, this many, have the same positions in all steps.
+  virtual void set_resting(Index) {}
   /// @throws InputError as Surface::check_positions, except for the shape
   virtual void update(const Step& step, const Execution& execution) = 0;
   /// Takes a short step from or to the surface of the last update if the candidates then contain every pair that

@@ -65,12 +65,12 @@ bool SweptVertices::has_other_frame(const Step& step, Index vertex) const {
 
 /// Vertices whose step differs from that of their box, or whose frame does but not the common one; ascending.
 std::vector<Index> SweptVertices::changed_in(const Step& step, const Execution& execution) const {
-  const Index count = surface_.vertex_count();
   if (!complete_) {
-    std::vector<Index> all(static_cast<std::size_t>(count));
+    std::vector<Index> all(static_cast<std::size_t>(surface_.vertex_count()));
     std::iota(all.begin(), all.end(), 0);
     return all;
   }
+  const Index count = surface_.vertex_count() - resting_;
   const bool frames_differ = step.motions.common == motions_.common && step.motions != motions_;
   std::vector<std::vector<Index>> parts(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {

@@ -19,6 +19,9 @@ class SweptVertices {
  public:
   explicit SweptVertices(const Surface& surface) : surface_(surface) {}
 
+  /// As CandidateSource.
+  void set_resting(Index count) { resting_ = count; }
+
   /// Whether boxes that contain the step may be reused.
   enum class Reuse { allowed, forbidden };
 
@@ -86,6 +89,7 @@ class SweptVertices {
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;
+  Index resting_ = 0;  ///< vertices
   Frame frame_;
   FrameMotions motions_;
   Positions start_, end_;  // of the step for which each box was computed

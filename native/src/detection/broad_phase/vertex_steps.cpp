@@ -15,9 +15,9 @@ void VertexSteps::take(const PositionsView& start, const PositionsView& end, Ind
   rows_[vertex] = {{from[0], from[1], from[2], 0}, {to[0], to[1], to[2], 0}};
 }
 
-void VertexSteps::update(const PositionsView& start, const PositionsView& end, const Execution& execution) {
-  const auto count = static_cast<Index>(start.rows());
-  rows_.resize(static_cast<std::size_t>(count));
+void VertexSteps::update_first(Index count, const PositionsView& start, const PositionsView& end,
+                               const Execution& execution) {
+  rows_.resize(static_cast<std::size_t>(start.rows()));
   execution.for_chunks(count, chunk_size, [&](Index first, Index last, Index) {
     for (Index vertex = first; vertex < last; ++vertex) take(start, end, vertex, vertex);
   });

@@ -18,7 +18,11 @@ struct alignas(64) VertexStep {
 class VertexSteps {
  public:
   /// Sets the step of all vertices. Rows of `start` and `end` are positions, (N, 3).
-  void update(const PositionsView& start, const PositionsView& end, const Execution& execution);
+  void update(const PositionsView& start, const PositionsView& end, const Execution& execution) {
+    update_first(static_cast<Index>(start.rows()), start, end, execution);
+  }
+  /// The same for the first vertices.
+  void update_first(Index count, const PositionsView& start, const PositionsView& end, const Execution& execution);
   /// Updates some vertices.
   void update(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
               const Execution& execution);

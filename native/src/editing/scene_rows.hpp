@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stiv/types.hpp"
+
+namespace stiv {
+
+/// Positions of a surface, followed by rows that never change: those of obstacles. Only the rows of the surface are
+/// copied from call to call.
+class SceneRows {
+ public:
+  /// @param rest the rows after the surface's, (k, 3), which must outlive this
+  explicit SceneRows(const Positions& rest) : rest_(rest) {}
+
+  /// All rows, until the next call; those given if no others follow.
+  const Positions& with_rest(const Positions& q) { return rest_.rows() == 0 ? q : copied(q); }
+  PositionsView with_rest(const PositionsView& q) { return rest_.rows() == 0 ? q : PositionsView(copied(q)); }
+
+  /// All rows, of which the first `count` are to be written.
+  Positions& with_room_for(Index count) {
+    if (rows_.rows() == count + rest_.rows()) return rows_;
+    rows_.resize(count + rest_.rows(), 3);
+    rows_.bottomRows(rest_.rows()) = rest_;
+    return rows_;
+  }
+
+ private:
+  const Positions& copied(const PositionsView& q) {
+    Positions& rows = with_room_for(static_cast<Index>(q.rows()));
+    rows.topRows(q.rows()) = q;
+    return rows;
+  }
+
+  const Positions& rest_;
+  Positions rows_;
+};
+
+}  // namespace stiv
