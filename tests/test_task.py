@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -41,6 +44,20 @@ def test_steps_give_the_same_bits_at_once_and_as_jobs(edit: families.Edit) -> No
     assert turns == 2
     assert task.progress.done
     assert np.array_equal(in_jobs.surface, at_once.surface)
+
+
+def test_a_task_that_is_done_is_freed_without_a_collection(edit: families.Edit) -> None:
+    """Freeing the results of many solves at once would take as long as a frame."""
+    task = Task(halfway_and_back(session_of(edit), edit))
+    freed = weakref.ref(task)
+    gc.disable()
+    try:
+        while not task.advance(1.0):
+            pass
+        del task
+        assert freed() is None
+    finally:
+        gc.enable()
 
 
 def test_a_task_without_time_never_waits_and_ends_nevertheless(edit: families.Edit) -> None:

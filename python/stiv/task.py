@@ -133,6 +133,7 @@ class Task(Generic[Result]):
     def _step(self) -> bool:
         """Take the next step and start its call; returns whether there is one."""
         self._job, resume = None, self._resume
+        self._resume = partial(next, self._steps)  # no reference to itself remains, which would wait for a collection
         try:
             call = resume()
         except StopIteration as end:
@@ -149,7 +150,7 @@ class Task(Generic[Result]):
             return True
         if self._cancelled:
             job.cancel()
-        self._resume = lambda: _outcome(self._steps, job.result)()
+        self._resume = partial(_continue, self._steps, job)
         return True
 
 
@@ -158,6 +159,10 @@ def _run(call: Call[Any] | float | None, execution: dict[str, Any]) -> Any:
         return call.run(**execution)
     cancel = execution.get("cancel")
     return cancel is not None and cancel.cancelled
+
+
+def _continue(steps: Steps[Any], job: Job[Any]) -> Call[Any] | float | None:
+    return _outcome(steps, job.result)()
 
 
 def _outcome(steps: Steps[Any], result: Callable[[], Any]) -> Callable[[], Call[Any] | float | None]:

@@ -50,16 +50,23 @@ class Verifier:
     """Tests Blender's evaluation against accepted surfaces of an `assembly`."""
 
     def __init__(
-        self, assembly: Assembly, is_step_free: StepTest, threads: int = 0, excluded: Exclusions | None = None
+        self,
+        assembly: Assembly,
+        is_step_free: StepTest,
+        threads: int = 0,
+        excluded: Exclusions | None = None,
+        names_pairs: bool = True,
     ) -> None:
         """Test the meshes of an assembly; threads 0 uses all cores. Excluded pairs may intersect.
 
-        is_step_free: stiv.StepCheck.is_free of its surface, or the method of an EditSession.
+        is_step_free: stiv.StepCheck.is_free of its surface, or the method of an EditSession. names_pairs: find the
+        pairs that intersect if a step is not free, which takes longer than the test.
         """
         self.assembly = assembly
         self._threads = threads
         self._is_step_free = is_step_free
         self._excluded = excluded or Exclusions()
+        self._names_pairs = names_pairs
         self._diagonals = BothDiagonals(assembly, threads)
 
     def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
@@ -102,7 +109,7 @@ class Verifier:
             if pairs:
                 return self._failure(pairs)
         elif not self._is_step_free(accepted, shown):
-            return self._failure(find_face_pairs(self.assembly, shown, self._threads))
+            return self._failure(find_face_pairs(self.assembly, shown, self._threads) if self._names_pairs else ())
         flips = self._find_flips(context, assembly, placed, opened, shown)
         return self._verify_flips(flips, shown) if flips else Verification(True)
 
@@ -239,7 +246,7 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
         control_set = slice(assembly.starts[number], assembly.starts[number + 1])
         whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
         difference = float(np.abs(meshes[number] - whole).max(initial=0.0))
-        if not difference <= evaluation_tolerance(accepted[control_set]):
+        if difference and not difference <= evaluation_tolerance(accepted[control_set]):  # mostly 0 for obstacles
             return f"{mesh.owner.name}: Blender shows it {difference:.3g} away from the solved position"
     return ""
 
