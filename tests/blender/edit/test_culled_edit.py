@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from building import edit_mode
 from numpy.testing import assert_allclose, assert_array_equal
 
 pytest.importorskip("bpy")
@@ -290,18 +291,19 @@ def test_a_state_that_blender_shows_elsewhere_fails_beside_the_session(ground: A
 
 
 def test_a_second_drag_reads_nothing_again_and_uses_the_same_session(ground: Any) -> None:
+    edit_mode(ground)
     first = begin_culled_edit(bpy.context, EditSettings(), "move")
     (obstacle,), session = first.assembly.obstacles, first._solver.session
     first.drag(below(0.3))
     assert first.write().passed
     first.finish()
     second = begin_culled_edit(bpy.context, EditSettings(), "move")
-    assert second.assembly.obstacles == (obstacle,) and second._solver.session is session
+    assert second.assembly.obstacles[0] is obstacle and second._solver.session is session
+    second.finish()
     bpy.data.objects["Ground"].data.vertices[0].co.z += 0.01
     bpy.data.objects["Ground"].data.update()
-    second.finish()
     third = begin_culled_edit(bpy.context, EditSettings(), "move")
-    assert third.assembly.obstacles != (obstacle,) and third._solver.session is not session
+    assert third.assembly.obstacles[0] is not obstacle and third._solver.session is not session
 
 
 def test_what_only_the_viewport_shows_alike_belongs_to_a_guarded_surface(ground: Any) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection
 from typing import Any
 
@@ -31,10 +32,11 @@ def read_static_meshes(
     """
     global _latest
     found: dict[tuple[ObjectReference, str, int], StaticMesh] = {}
+    counts: Counter[ObjectReference] = Counter()
     for instance, owner, source in OpenEvaluations(context).instances(SHOWN, lambda ob: ob.name in names):
         reference = ObjectReference.of(owner)
-        number = sum(key[0] == reference for key in found) if instance.is_instance else 0
-        key = (reference, source.name, number)
+        counts[reference] += 1
+        key = (reference, source.name, counts[reference])
         reader = _Reader(instance.object.data, as_matrix(instance.matrix_world))
         known = _latest.get(key)
         if known is None or known.shown_in != shown_in or not reader.agrees_with(known):
