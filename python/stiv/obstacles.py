@@ -40,6 +40,6 @@ class Obstacle:
         return np.asarray(self.native.triangles)
 
     def triangles_near(self, low: ArrayLike, high: ArrayLike) -> Indices:
-        """Return the numbers of the triangles, ascending, whose bounds touch the box from `low` to `high`, (3,) each."""
+        """Return the triangles, ascending, whose bounds touch the box from `low` to `high`, (3,) each."""
         found: Indices = self.native.triangles_near(as_reals(low, "low", (3,)), as_reals(high, "high", (3,)))
         return found

@@ -97,7 +97,9 @@ def test_the_separation_holds_toward_obstacles(row: Any) -> None:
 
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM])
 @pytest.mark.parametrize("steps", [1, 7, 60])
-def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(row: Any, steps: int, settings: EditSettings) -> None:
+def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(
+    row: Any, steps: int, settings: EditSettings
+) -> None:
     found = []
     for begin in (lambda: begin_culled_edit(bpy.context, settings, "move"), whole(settings)):
         edit = begin()

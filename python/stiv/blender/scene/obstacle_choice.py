@@ -15,9 +15,7 @@ from stiv.blender.settings import EditSettings
 MIN_FACES = 50_000  # of all obstacles; in smaller scenes, the surface of the edit includes them
 
 
-def find_obstacles(
-    context: bpy.types.Context, moving_names: Collection[str], settings: EditSettings
-) -> frozenset[str]:
+def find_obstacles(context: bpy.types.Context, moving_names: Collection[str], settings: EditSettings) -> frozenset[str]:
     """Find the names of the objects that certainly stay as they are, and that no setting names; empty if they are few.
 
     moving_names: of the objects that move. Only independent meshes are obstacles. Objects with parents, children,
