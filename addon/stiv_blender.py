@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from stiv.blender import *  # noqa: F403
     from stiv.checks.findings import untested_text as untested_text
 
-    Edit = BlenderEdit | CulledEdit  # noqa: F405
+    Edit = BlenderEdit  # noqa: F405
     Reshaping = BlenderContraction | BlenderExpansion | BlenderRepair | LayoutTask  # noqa: F405
 else:
 

@@ -215,7 +215,16 @@ void bind_obstacle(py::module_& module) {
              const py::gil_scoped_release unlocked;
              return std::make_shared<Obstacle>(std::move(name), std::move(positions), std::move(triangles));
            }),
-           py::arg("name"), py::arg("positions"), py::arg("triangles"));
+           py::arg("name"), py::arg("positions"), py::arg("triangles"))
+      .def_property_readonly("positions", &Obstacle::positions)  // views
+      .def_property_readonly("triangles", &Obstacle::triangles)
+      .def(
+          "triangles_near",
+          [](const Obstacle& obstacle, const Vector3& low, const Vector3& high) {
+            const std::vector<Index> near = obstacle.triangles_near({low, high}, Execution(0));
+            return py::array_t<Index>(static_cast<py::ssize_t>(near.size()), near.data());
+          },
+          py::arg("low"), py::arg("high"));
 }
 
 void bind_options(py::module_& module) {

@@ -286,6 +286,13 @@ class Obstacle:
         positions: Annotated[ArrayLike, float64, "[m, 3]"],
         triangles: Annotated[ArrayLike, int32, "[m, 3]"],
     ) -> None: ...
+    def triangles_near(
+        self, low: Annotated[ArrayLike, float64, "[3, 1]"], high: Annotated[ArrayLike, float64, "[3, 1]"]
+    ) -> NDArray[int32]: ...
+    @property
+    def positions(self) -> Annotated[NDArray[float64], "[m, 3]"]: ...
+    @property
+    def triangles(self) -> Annotated[NDArray[int32], "[m, 3]"]: ...
 
 class CancelToken:
     """

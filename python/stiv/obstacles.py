@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from stiv import _native
-from stiv.arrays import as_indices, as_reals
+from stiv.arrays import Floats, Indices, as_indices, as_reals
 
 
 class Obstacle:
@@ -27,3 +28,18 @@ class Obstacle:
         positions, corners = as_reals(vertices, "vertices", (None, 3)), as_indices(triangles, "triangles", (None, 3))
         self.name, self.vertex_count, self.triangle_count = name, len(positions), len(corners)
         self.native = _native.Obstacle(name, positions, corners)
+
+    @property
+    def vertices(self) -> Floats:
+        """World positions, (n, 3), read-only."""
+        return np.asarray(self.native.positions)
+
+    @property
+    def triangles(self) -> Indices:
+        """Vertex indices, (f, 3), read-only."""
+        return np.asarray(self.native.triangles)
+
+    def triangles_near(self, low: ArrayLike, high: ArrayLike) -> Indices:
+        """Return the triangles, ascending, whose bounds touch the box from `low` to `high`, (3,) each."""
+        found: Indices = self.native.triangles_near(as_reals(low, "low", (3,)), as_reals(high, "high", (3,)))
+        return found

@@ -8,7 +8,7 @@ from stiv.blender.controls.motion import Alignment, Influence, Motion
 from stiv.blender.controls.participants import may_have_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
-from stiv.blender.edit.culled_edit import CulledEdit, begin_culled_edit, begin_culled_steps
+from stiv.blender.edit.culled_edit import begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
 from stiv.blender.edit.results import is_cut_by_topology
@@ -70,7 +70,6 @@ __all__ = [
     "Changes",
     "ContactRegion",
     "ContractionSettings",
-    "CulledEdit",
     "Drop",
     "DropSettings",
     "EditSettings",

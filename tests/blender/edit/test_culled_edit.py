@@ -1,21 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distant obstacles are left out of a drag, and loaded before anything can touch them."""
+"""In large scenes, what certainly stays is an obstacle beside the surface; edits end as in a surface of everything."""
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from building import edit_mode
 from numpy.testing import assert_allclose, assert_array_equal
 
 pytest.importorskip("bpy")
 
 import bpy
 
-from stiv.blender import BlenderEdit, EditSettings, SceneChangedError, begin_culled_edit, check_scene
+import stiv
+from stiv.blender import (
+    BlenderEdit,
+    EditSettings,
+    SceneChangedError,
+    begin_culled_edit,
+    check_scene,
+    contact_region,
+)
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.culled_edit import names_of
-from stiv.blender.scene import culling
+from stiv.blender.scene import obstacle_choice
+from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.verify.scene_check import nearest_pair
 
 DEFORM = EditSettings(object_response="deform")
@@ -23,7 +33,7 @@ DEFORM = EditSettings(object_response="deform")
 
 @pytest.fixture(autouse=True)
 def every_scene_is_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(culling, "MIN_FACES", 0)
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 0)
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
@@ -56,23 +66,24 @@ def along_x(distance: float) -> np.ndarray:
     return matrix
 
 
-def left_out(settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008 (frozen)
-    found = culling.find_culling_box(bpy.context, names_of(find_participants(bpy.context, settings)), settings)
-    return set() if found is None else set(found.left_out)
+def obstacles(settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008 (frozen)
+    participants = names_of(find_participants(bpy.context, settings))
+    return set(obstacle_choice.find_obstacles(bpy.context, participants, settings))
 
 
-def test_distant_obstacles_are_left_out(row: Any) -> None:
-    assert left_out() == {"Wall"}
+def test_independent_objects_are_obstacles_beside_the_surface(row: Any) -> None:
+    assert obstacles() == {"Wall", "Neighbour"}
     edit = begin_culled_edit(bpy.context, EditSettings(), "move")
-    assert {mesh.owner.name for mesh in edit.assembly.meshes} == {"Box", "Neighbour"}
-    assert edit.drag(along_x(0.5)).status == "reached" and not edit.has_all_obstacles
+    assert names(edit) == ["Box"] and {each.owner.name for each in edit.assembly.obstacles} == {"Wall", "Neighbour"}
+    assert edit.drag(along_x(0.5)).status == "reached" and edit.write().passed
+    whole_summary = whole(EditSettings())().summary
+    assert set(edit.summary.participants) == set(whole_summary.participants)
+    assert edit.summary.triangles == whole_summary.triangles
 
 
-def test_the_box_allows_for_the_separation(row: Any) -> None:
+def test_the_separation_holds_toward_obstacles(row: Any) -> None:
     """The wall begins 9.5 away from the box."""
     roles = {"Neighbour": "ignored"}
-    assert left_out(EditSettings(separation=1.0)) >= {"Wall"}
-    assert "Wall" not in left_out(EditSettings(separation=5.0))
     for separation in (1.0, 4.0, 9.0):
         settings = EditSettings(separation=separation, roles=roles)
         edit = begin_culled_edit(bpy.context, settings, "move")
@@ -86,7 +97,9 @@ def test_the_box_allows_for_the_separation(row: Any) -> None:
 
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM])
 @pytest.mark.parametrize("steps", [1, 7, 60])
-def test_a_drag_toward_a_culled_obstacle_ends_as_without_culling(row: Any, steps: int, settings: EditSettings) -> None:
+def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(
+    row: Any, steps: int, settings: EditSettings
+) -> None:
     found = []
     for begin in (lambda: begin_culled_edit(bpy.context, settings, "move"), whole(settings)):
         edit = begin()
@@ -104,20 +117,6 @@ def test_a_drag_toward_a_culled_obstacle_ends_as_without_culling(row: Any, steps
     assert found[0][:, 0].max() < 10
     assert found[0][:, 0].max() > 9.9
     assert_allclose(found[0], found[1], atol=0.02)
-
-
-def test_only_approached_obstacles_are_loaded(row: Any) -> None:
-    box("Ground", 0, y=60, size=20)
-    select(row)
-    assert left_out() == {"Wall", "Ground"}
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
-    for step in range(1, 50):
-        edit.drag(along_x(0.2 * step))
-        edit.write()
-    assert "Wall" in names(edit) and "Ground" not in names(edit)
-    assert row.location.x > 9.3 and check_scene(bpy.context).pairs == ()
-    edit.restore()
-    assert row.location.x == 0
 
 
 def whole(settings: EditSettings) -> Callable[[], BlenderEdit]:
@@ -139,7 +138,7 @@ def test_everything_is_restored_after_long_drags(row: Any) -> None:
         assert_array_equal([np.array(ob.matrix_world) for ob in bpy.data.objects], before)
 
 
-def test_starts_are_the_same_with_and_without_culling(row: Any) -> None:
+def test_starts_are_the_same_with_and_without_obstacles(row: Any) -> None:
     near, all_of_it = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert near.start_digest == all_of_it.start_digest
     row.location.x = 0.25
@@ -147,7 +146,7 @@ def test_starts_are_the_same_with_and_without_culling(row: Any) -> None:
     assert whole(EditSettings())().start_digest != near.start_digest
 
 
-def test_collisions_off_and_on_again_outside_the_box(row: Any) -> None:
+def test_collisions_off_and_on_again_far_away(row: Any) -> None:
     edit = begin_culled_edit(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     edit.write()
@@ -162,7 +161,7 @@ def test_collisions_off_and_on_again_outside_the_box(row: Any) -> None:
 
 
 @pytest.mark.parametrize("tie", ["parent", "child", "modifier", "constraint", "settings"])
-def test_dependent_obstacles_are_never_culled(row: Any, tie: str) -> None:
+def test_what_depends_on_others_belongs_to_the_surface(row: Any, tie: str) -> None:
     wall, settings = bpy.data.objects["Wall"], EditSettings()
     if tie == "parent":
         wall.parent = bpy.data.objects["Neighbour"]
@@ -175,18 +174,17 @@ def test_dependent_obstacles_are_never_culled(row: Any, tie: str) -> None:
     else:
         settings = EditSettings(roles={"Wall": "rigid"})
     bpy.context.view_layer.update()
-    assert "Wall" not in left_out(settings)
+    assert "Wall" not in obstacles(settings)
 
 
-def test_small_scenes_are_not_culled(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(culling, "MIN_FACES", 1000)
-    assert isinstance(begin_culled_edit(bpy.context, EditSettings(), "move"), BlenderEdit)
+def test_small_scenes_have_no_obstacles(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 1000)
+    assert begin_culled_edit(bpy.context, EditSettings(), "move").assembly.obstacles == ()
 
 
 @pytest.fixture
-def ground(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A ball above one end of a long wavy ground, of which only a part is loaded at first."""
-    monkeypatch.setattr(culling, "MIN_CROPPED_FACES", 100)
+def ground() -> Any:
+    """A ball above one end of a long wavy ground, of which only a part is near at first."""
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=80, y_subdivisions=20, size=2)
     below = bpy.context.object
     below.name, below.scale = "Ground", (20, 5, 1)
@@ -202,11 +200,12 @@ def moved(edit: Any, name: str) -> np.ndarray:
     return edit.surface[edit.assembly.vertices(names(edit).index(name))]
 
 
-def test_a_large_obstacle_is_cropped(ground: Any) -> None:
+def test_states_are_tested_against_the_near_part_of_an_obstacle(ground: Any) -> None:
     edit, entire = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
-    assert not edit.has_all_obstacles and edit.start_digest == entire.start_digest
-    part, all_of_it = (each.assembly.meshes[names(each).index("Ground")] for each in (edit, entire))
-    assert 0 < len(part.triangles) < 0.5 * len(all_of_it.triangles)
+    assert edit.start_digest == entire.start_digest
+    near = near_assembly(edit.assembly, edit.surface).assembly
+    part, all_of_it = near.meshes[1], entire.assembly.meshes[names(entire).index("Ground")]
+    assert part.owner == all_of_it.owner and 0 < len(part.triangles) < 0.2 * len(all_of_it.triangles)
     matrix = np.eye(4)
     matrix[2, 3] = -0.8
     for each in (edit, entire):
@@ -226,6 +225,100 @@ def test_a_drag_along_a_large_obstacle_touches_all_of_it(ground: Any, steps: int
     assert moved(edit, "Ball")[:, 2].min() > -0.35
     edit.restore()
     assert ground.location.x == -15
+
+
+def below(distance: float, x: float = 0.0) -> np.ndarray:
+    matrix = along_x(x)
+    matrix[2, 3] = -distance
+    return matrix
+
+
+def test_contacts_and_distances_are_those_of_a_surface_of_everything(ground: Any) -> None:
+    shown = []
+    for edit in (begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()):
+        result = edit.drag(below(0.8))
+        result = result if len(result.events) else edit.drag(below(0.9))
+        region, distance = contact_region(edit.assembly, result), edit.least_distance()
+        assert region.closest is not None and distance is not None
+        shown.append((region, distance, edit.surface))
+        assert distance.bodies == ("Ball", "Ground") or distance.bodies == ("Ground", "Ball")
+        edit.restore()
+    (ours, near, _), (theirs, far, _) = shown
+    assert len(ours.triangles) > 0
+    assert_allclose(ours.closest, theirs.closest, atol=0.02)
+    assert near.distance == pytest.approx(far.distance, abs=1e-3)
+
+
+def test_a_start_inside_of_an_obstacle_names_both_objects_and_faces(ground: Any) -> None:
+    ground.location.z = 0.2
+    bpy.context.view_layer.update()
+    found = []
+    for begin in (lambda: begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())):
+        with pytest.raises(stiv.StartIntersectsError) as refused:
+            begin()
+        found.append(refused.value.objects)
+    assert found[0] == found[1]
+    assert found[0][0][:2] == ("Ball", "Ground")
+
+
+@pytest.mark.parametrize("kind", ["edge", "vertex"])
+def test_loose_elements_of_obstacles_collide(row: Any, kind: str) -> None:
+    """A drag down onto a loose edge, or a loose vertex, below the middle of the box."""
+    data = bpy.data.meshes.new("Wire")
+    ends = [(-2, 0.1, -1), (2, 0.1, -1)] if kind == "edge" else [(0.1, 0.1, -1)]
+    data.from_pydata([*ends, (50, 0, 0), (51, 0, 0), (50, 1, 0)], [(0, 1)] if kind == "edge" else [], [])
+    bpy.context.collection.objects.link(bpy.data.objects.new("Wire", data))
+    select(row)
+    assert "Wire" in obstacles()
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    for depth in (0.3, 0.45, 0.55):
+        result = edit.drag(below(depth))
+        assert edit.write().passed and check_scene(bpy.context).pairs == ()
+    assert result.status != "reached" and moved(edit, "Box")[:, 2].min() >= -1
+
+
+def test_a_state_that_blender_shows_elsewhere_fails_beside_the_session(ground: Any) -> None:
+    """As the add-on writes, while a job uses the session: the ground is moved into the ball behind the edit's back."""
+    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit.drag(below(0.3))
+    taken = edit.take_state()
+    assert taken is not None
+    assert edit.write_taken(taken) is not None
+    edit.drag(below(0.4))
+    taken = edit.take_state()
+    assert taken is not None
+    bpy.data.objects["Ground"].location.z += 1.0
+    bpy.context.view_layer.update()
+    assert edit.write_taken(taken) is None
+
+
+def test_a_second_drag_reads_nothing_again_and_uses_the_same_session(ground: Any) -> None:
+    edit_mode(ground)
+    first = begin_culled_edit(bpy.context, EditSettings(), "move")
+    (obstacle,), session = first.assembly.obstacles, first._solver.session
+    first.drag(below(0.3))
+    assert first.write().passed
+    first.finish()
+    second = begin_culled_edit(bpy.context, EditSettings(), "move")
+    assert second.assembly.obstacles[0] is obstacle and second._solver.session is session
+    second.finish()
+    bpy.data.objects["Ground"].data.vertices[0].co.z += 0.01
+    bpy.data.objects["Ground"].data.update()
+    third = begin_culled_edit(bpy.context, EditSettings(), "move")
+    assert third.assembly.obstacles[0] is not obstacle and third._solver.session is not session
+
+
+def test_what_only_the_viewport_shows_alike_belongs_to_a_guarded_surface(ground: Any) -> None:
+    below = bpy.data.objects["Ground"]
+    for settings, expected in ((EditSettings(guard="both"), set()), (EditSettings(guard="viewport"), {"Ground"})):
+        below.hide_render = True
+        assert obstacles(settings) == expected
+        below.hide_render = False
+        assert obstacles(settings) == {"Ground"}
+        modifier = below.modifiers.new("Finer", "SUBSURF")
+        modifier.levels, modifier.render_levels = 0, 1
+        assert obstacles(settings) == expected
+        below.modifiers.clear()
 
 
 def test_an_obstacle_that_changes_its_size_during_a_drag_ends_it(ground: Any) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stiv.blender.scene.arrays import Flags, Floats, Indices
-from stiv.blender.scene.culling import CroppedMesh
+from stiv.blender.scene.cropped_mesh import CroppedMesh
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends

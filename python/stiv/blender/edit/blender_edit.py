@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -26,8 +26,8 @@ from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.culling import CullingBox
 from stiv.blender.scene.exclusions import intersection_notes
+from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
@@ -80,13 +80,13 @@ class BlenderEdit:
         kind: str,
         participants: Sequence[Participant],
         adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
-        culling: CullingBox | None = None,
+        obstacles: Collection[str] = (),
     ) -> BlenderEdit:
         """Begin with given participants. `adapt` may change the weights and goal rule of each control set.
 
-        Obstacles outside the `culling` box are left out.
+        obstacles: names of objects that are obstacles beside the surface, of `find_obstacles`.
         """
-        return run(cls.begin_with_steps(context, settings, kind, participants, adapt, culling))
+        return run(cls.begin_with_steps(context, settings, kind, participants, adapt, obstacles))
 
     @classmethod
     def begin_with_steps(
@@ -96,11 +96,11 @@ class BlenderEdit:
         kind: str,
         participants: Sequence[Participant],
         adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
-        culling: CullingBox | None = None,
+        obstacles: Collection[str] = (),
     ) -> Steps[BlenderEdit]:
         """Steps of `begin_with`."""
         with kept_twins():
-            edit = cls(take_snapshot(context, settings, kind, participants, adapt, culling))
+            edit = cls(take_snapshot(context, settings, kind, participants, adapt, obstacles))
             yield from edit._solver.start()
         return edit
 
@@ -159,18 +159,22 @@ class BlenderEdit:
                 return self.surface
 
     def least_distance(self) -> stiv.LeastDistance | None:
-        """Least distance between objects in the accepted state, without culled obstacles; None without a session.
+        """Least distance between objects in the accepted state, without distant obstacles; None without a session.
 
         While a job uses the session, that of the state that was taken last.
         """
         if not self._solver.has_session:
             return None
         try:
-            return self._solver.session.least_distance()
+            if not self.assembly.obstacles:
+                return self._solver.session.least_distance()
+            surface = self._solver.session.surface
         except stiv.InputError:
             if self._taken is None:
                 raise
-            return stiv.least_distance(self._taken.surface, self.assembly.surface)
+            surface = self._taken.surface
+        near = near_assembly(self.assembly, surface)
+        return stiv.least_distance(near.extended(surface), near.assembly.surface)
 
     @property
     def assembly(self) -> Assembly:
@@ -252,7 +256,7 @@ class BlenderEdit:
             self._solver.restart_from(present, self._goal)
             reason = self._writer.write_and_verify(present).message
         except stiv.StartIntersectsError as error:
-            reason = f"{intersecting_objects(error.pairs, self.assembly.surface)} intersect here"
+            reason = f"{intersecting_objects(error.pairs, self.assembly)} intersect here"
         if not reason:
             return ""
         if last_accepted is None:

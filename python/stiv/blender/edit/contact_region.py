@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.near_assembly import NearAssembly, near_assembly
 
 MAX_POINTS = 32  # contacts; an even selection fades out if there are more
 MAX_TRIANGLES = 3000
@@ -44,7 +45,9 @@ NO_REGION = ContactRegion(np.empty((0, 3, 3)), np.empty((0, 3)))
 
 def contact_region(assembly: Assembly, result: stiv.EditResult) -> ContactRegion:
     """The region for the contacts of a result, at its surface; no session is needed."""
-    surface, events = result.surface, result.events
+    near = near_assembly(assembly, result.surface)
+    assembly, surface = near.assembly, near.extended(result.surface)
+    events = _of_assembly(near, result.events)
     if len(events) == 0:
         return NO_REGION
     meshes = _meshes_of(assembly, events.vertices)
@@ -68,6 +71,18 @@ def contact_region(assembly: Assembly, result: stiv.EditResult) -> ContactRegion
     triangles = _triangles_with(marked, assembly)
     triangles = triangles[:: len(triangles) // MAX_TRIANGLES + 1]
     return ContactRegion(surface[triangles], marked[triangles].astype(np.float64), closest)
+
+
+def _of_assembly(near: NearAssembly, events: stiv.Events) -> stiv.Events:
+    """The events near the surface, with vertices of the near assembly."""
+    if not near.obstacles:
+        return events
+    vertices = near.vertices_of(events.vertices)
+    held = (vertices >= 0).all(axis=1)
+    return stiv.Events(
+        events.kind[held], vertices[held], events.time[held], events.weights[held], events.normal[held],
+        events.start_distance[held],
+    )  # fmt: skip
 
 
 def _sides(events: stiv.Events, surface: Floats) -> Floats:

@@ -10,7 +10,6 @@ import numpy as np
 
 import stiv
 from stiv.blender.edit.blender_edit import BlenderEdit
-from stiv.blender.edit.culled_edit import CulledEdit
 from stiv.blender.scene.arrays import Floats, Indices, transform_points
 
 MAX_TRIANGLES = 20000  # larger objects are shown as a box, which costs nothing
@@ -42,11 +41,11 @@ class Ghost:
 class GhostSource:
     """Ghosts of one edit; the triangles are chosen once."""
 
-    def __init__(self, edit: BlenderEdit | CulledEdit) -> None:
+    def __init__(self, edit: BlenderEdit) -> None:
         self._edit = edit
         self._assembly = edit.assembly
 
-    def belongs_to(self, edit: BlenderEdit | CulledEdit) -> bool:
+    def belongs_to(self, edit: BlenderEdit) -> bool:
         """Whether the ghosts are those of this edit, with its present triangles."""
         return self._edit is edit and self._assembly is edit.assembly
 

@@ -14,6 +14,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.scene.arrays import Floats, diagonal_of, digest
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.shared_surface import are_equal
+from stiv.blender.scene.static_mesh import StaticMesh
 
 LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separation is a part of its diagonal
 
@@ -26,6 +27,7 @@ class SessionInputs:
     fingerprint: of the options and the positions of all vertices that no control moves.
     deformations: of the control sets; equal ones are the same objects, because they are cached by their inputs.
     diagonal: of the moving vertices.
+    obstacles: equal ones are the same objects, because their reading is cached.
     """
 
     surface: stiv.Surface
@@ -33,6 +35,7 @@ class SessionInputs:
     deformations: tuple[stiv.Deformation, ...]
     diagonal: float
     options: stiv.EditOptions
+    obstacles: tuple[StaticMesh, ...]
 
     @classmethod
     def of(cls, assembly: Assembly, control_sets: Sequence[ControlSet], options: stiv.EditOptions) -> SessionInputs:
@@ -43,13 +46,13 @@ class SessionInputs:
         diagonal = diagonal_of(positions.take(vertices, axis=0))
         chosen = astuple(replace(options, weights=None, weight_axes=None))
         fingerprint = digest(moving, positions[~moving], *_flat(chosen))
-        return cls(assembly.surface, fingerprint, tuple(each.deformation for each in control_sets), diagonal, options)
+        deformations = tuple(each.deformation for each in control_sets)
+        return cls(assembly.surface, fingerprint, deformations, diagonal, options, assembly.obstacles)
 
     def agree_with(self, other: SessionInputs) -> bool:
         """Would both make the same session, up to the weights of the response?"""
         growth = max(self.diagonal, other.diagonal) <= LARGEST_GROWTH * min(self.diagonal, other.diagonal)
-        same = len(self.deformations) == len(other.deformations)
-        same = same and all(a is b for a, b in zip(self.deformations, other.deformations, strict=True))
+        same = _are_same(self.deformations, other.deformations) and _are_same(self.obstacles, other.obstacles)
         return growth and same and self.fingerprint == other.fingerprint and are_equal(self.surface, other.surface)
 
 
@@ -79,6 +82,10 @@ def take_session(inputs: SessionInputs, controls: Floats) -> tuple[stiv.EditSess
     except (stiv.InfeasibleError, stiv.StartIntersectsError):
         return None
     return session, deformation
+
+
+def _are_same(ours: Sequence[object], theirs: Sequence[object]) -> bool:
+    return len(ours) == len(theirs) and all(a is b for a, b in zip(ours, theirs, strict=True))
 
 
 def _weighs_alike(a: stiv.EditOptions, b: stiv.EditOptions) -> bool:

@@ -11,6 +11,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.points import to_single
 from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.scene.arrays import Floats, Indices, transform_points
+from stiv.blender.scene.assembly import Assembly
 
 
 def merge_results(results: Sequence[stiv.EditResult]) -> stiv.EditResult:
@@ -69,8 +70,7 @@ def _rows(width: int) -> Floats:
     return np.empty((0, width))
 
 
-def intersecting_objects(pairs: Indices, surface: stiv.Surface) -> str:
-    """Names of the objects in pairs of triangles, (k, 2), of a surface; "surfaces" if it has no bodies."""
-    vertices = surface.triangles[np.unique(pairs)][:, 0]
-    names = {surface.bodies[int(body)].name for body in np.unique(np.asarray(surface.vertex_body)[vertices])}
+def intersecting_objects(pairs: Indices, assembly: Assembly) -> str:
+    """Names of the objects in pairs of triangles, (k, 2), of an assembly; "surfaces" if there are none."""
+    names = {assembly.face(triangle).object for triangle in np.unique(pairs).tolist()}
     return ", ".join(sorted(names)) if names else "surfaces"

@@ -77,8 +77,9 @@ def make_session(
     """
     try:
         session: stiv.EditSession = yield Call(
-            open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options
-        )
+            open_session, stiv.EditSession.start, assembly.surface, deformation, controls, options,
+            [each.obstacle for each in assembly.obstacles],
+        )  # fmt: skip
         return session
     except stiv.StartIntersectsError as error:
         raise ObjectsIntersectError(error, assembly) from error

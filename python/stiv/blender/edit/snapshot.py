@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The state of the scene at the start of an edit: surfaces, control sets and settings."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,11 +15,11 @@ from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.culling import CullingBox
 from stiv.blender.scene.dependencies import find_dependents
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.exclusions import drop_stale
 from stiv.blender.scene.guarded_evaluations import Guard, read_guarded_scene
+from stiv.blender.scene.static_reading import read_static_meshes
 from stiv.blender.scene.strand_reading import surface_of
 from stiv.blender.settings import EditSettings
 
@@ -29,7 +29,7 @@ class EditSnapshot:
     """A scene read for an edit. It holds no references to Blender's data, which undo would invalidate.
 
     Attributes:
-        assembly: all surfaces.
+        assembly: all surfaces, with the obstacles beside them.
         control_sets: the moving and yielding ones, in the order of the controls.
         settings: without stale exclusions.
         guard: the evaluations that stay free of intersections.
@@ -61,22 +61,16 @@ def take_snapshot(
     kind: str,
     participants: Sequence[Participant],
     adapt: Callable[[ControlSet], ControlSet],
-    culling: CullingBox | None,
+    obstacles: Collection[str],
 ) -> EditSnapshot:
     """Read the scene for an edit of this kind; changes nothing. Raises InputError.
 
-    adapt: may replace each control set. culling: obstacles outside the box are not read; None: all are read.
+    adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface.
     """
-    left_out = frozenset() if culling is None else culling.left_out
     if settings.guard == "auto" and any(each.role == "bones" and _is_animated(each) for each in participants):
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not the present pose
-    scene, guard = read_guarded_scene(
-        context,
-        settings,
-        lambda name: settings.participates(name) and name not in left_out,
-        lambda name: None if culling is None else culling.box_of(name),
-        strands=True,
-    )
+    scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
+    beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     found, groups = make_control_sets(context, participants, solid, settings, kind)
     control_sets = tuple(adapt(mirror_controls(each, solid)) for each in found)
@@ -90,6 +84,7 @@ def take_snapshot(
     still, carried = _static_strands(context, scene.meshes, moving)
     meshes = [*divided, *still]
     assembly = assemble_with_controls(meshes, control_sets, [group.members for group in groups], settings)
+    assembly = replace(assembly, obstacles=beside)
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)

@@ -16,6 +16,7 @@ from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.near_assembly import NearAssembly, near_assembly
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification, Verifier
 
@@ -67,7 +68,8 @@ class StateWriter:
         self._start = stack_controls([each.controls for each in control_sets])
         self._solver = solver
         self._settings = settings
-        self._verifier = self._new_verifier()
+        self._near: NearAssembly | None = None
+        self._verifier: Verifier | None = None
         self._verifier_beside: Verifier | None = None
         self._shown: tuple[Trail, Floats] | None = None  # since the last state that passed, and its surface
 
@@ -80,7 +82,7 @@ class StateWriter:
         if self._solver.trail is not taken.trail:
             return False
         self.write(taken.controls)
-        if not self._beside().verify(bpy.context, taken.surface).passed:
+        if not self._is_free_beside(taken.surface):
             return False
         self._solver.trail = Trail(taken.controls, taken.goal)
         self._shown = self._solver.trail, taken.surface
@@ -95,7 +97,7 @@ class StateWriter:
             return False
         trail, surface = self._shown
         self.write(trail.written)
-        return self._beside().verify(bpy.context, surface).passed
+        return self._is_free_beside(surface)
 
     def write_accepted(self, goal: Floats) -> WriteReport:
         """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
@@ -129,31 +131,41 @@ class StateWriter:
 
     def verify(self, accepted: Floats) -> Verification:
         """Test Blender's present evaluation against a surface, (N, 3), that is free of intersections."""
-        if not self._verifier.tests(self._solver.assembly, self._solver.excluded):
-            self._verifier = self._new_verifier()
-        return self._verifier.verify(bpy.context, accepted)
+        near = self._near_of(accepted)
+        if self._verifier is None or not self._verifier.tests(near.assembly, self._solver.excluded):
+            self._verifier = self._new_verifier(near)
+        return self._verifier.verify(bpy.context, near.extended(accepted))
 
     def write(self, controls: Floats) -> None:
         """Write controls, (m, 3), and update Blender's evaluation; nothing is tested."""
         write_controls(self._solver.control_sets, controls, self._start)
 
-    def _new_verifier(self) -> Verifier:
+    def _near_of(self, surface: Floats) -> NearAssembly:
+        """The assembly near a surface, (N, 3)."""
+        self._near = near_assembly(self._solver.assembly, surface)
+        return self._near
+
+    def _new_verifier(self, near: NearAssembly) -> Verifier:
+        count = len(near.whole.positions)
+
         def is_step_free(start: Floats, end: Floats) -> bool:
-            return self._solver.session.is_step_free(start, end)
+            return self._solver.session.is_step_free(start[:count], end[:count])  # the session reads the obstacles
 
-        return Verifier(self._solver.assembly, is_step_free, self._settings.threads, self._solver.excluded)
+        return Verifier(near.assembly, is_step_free, self._settings.threads, self._solver.excluded)
 
-    def _beside(self) -> Verifier:
-        """A verifier that does not use the session. It tests the state that is shown exactly, and not the path to it.
+    def _is_free_beside(self, accepted: Floats) -> bool:
+        """Test what Blender shows exactly without the session, and not the path to it.
 
         That path is as long as rounding, and leads nowhere: solves continue from the accepted state.
         """
-        assembly, excluded = self._solver.assembly, self._solver.excluded
-        if self._verifier_beside is None or not self._verifier_beside.tests(assembly, excluded):
+        near, excluded = self._near_of(accepted), self._solver.excluded
+        if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded):
             threads = max(1, (self._settings.threads or os.cpu_count() or 1) - 1)  # the solve needs one
-            check = stiv.StepCheck(assembly.surface, threads)
-            self._verifier_beside = Verifier(assembly, check.is_end_free, threads, excluded, names_pairs=False)
-        return self._verifier_beside
+            check = stiv.StepCheck(near.assembly.surface, threads)
+            self._verifier_beside = Verifier(
+                near.assembly, check.is_end_free, threads, excluded, names_pairs=False
+            )
+        return self._verifier_beside.verify(bpy.context, near.extended(accepted)).passed
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         states = self._solver.trail.states()

@@ -45,11 +45,14 @@ def summarise(assembly: Assembly, control_sets: Sequence[ControlSet], hidden: in
     for index, mesh in enumerate(assembly.meshes):
         key = (mesh.owner.name, roles.get(index, "obstacle"))
         counts[key] = counts.get(key, 0) + len(mesh.triangles)
+    for static in assembly.obstacles:
+        key = (static.owner.name, "obstacle")
+        counts[key] = counts.get(key, 0) + static.triangle_count
     return Summary(
         tuple(ParticipantSummary(name, role, count) for (name, role), count in counts.items()),
         hidden,
         sum(len(each.controls) for each in control_sets),
-        len(assembly.surface.triangles),
+        sum(counts.values()),
         guard.choice,
         (
             *((guard.reason,) if guard.reason else ()),

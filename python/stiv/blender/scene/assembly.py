@@ -11,6 +11,7 @@ from stiv.blender.scene.arrays import Floats, Indices, Singles
 from stiv.blender.scene.elements import Element
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.shared_surface import make_surface
+from stiv.blender.scene.static_mesh import StaticMesh
 from stiv.seams import Seams, find_seams
 
 ROUNDING = 2.0**-19  # of an object's extent; Blender computes the copies of a seam separately, in single precision
@@ -29,6 +30,7 @@ class Assembly:
         surface: connectivity and bodies; one body for each owner, mobility and set of evaluations.
         positions: world positions when the scene was read, (N, 3).
         seams: for each mesh, the vertices that are merged in the surface; None if none are.
+        obstacles: beside the surface. Their triangles are numbered after those of the surface.
     """
 
     meshes: tuple[VisibleMesh, ...]
@@ -36,6 +38,7 @@ class Assembly:
     surface: stiv.Surface
     positions: Floats
     seams: tuple[Seams | None, ...]
+    obstacles: tuple[StaticMesh, ...] = ()
 
     def vertices(self, mesh: int) -> Indices:
         """Vertex of the surface for each vertex of a mesh, (n,)."""
@@ -54,7 +57,10 @@ class Assembly:
         return _renumber([mesh.triangles for mesh in meshes], self.starts, self.seams, 3)
 
     def face(self, triangle: int) -> Element:
-        """The face of a triangle of the surface."""
+        """The face of a triangle of the surface or an obstacle."""
+        number = triangle - len(self.surface.triangles)
+        if number >= 0:
+            return self._element_beside(number)
         mesh, number = self._locate(triangle, [len(each.triangles) for each in self.meshes])
         return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
@@ -71,6 +77,14 @@ class Assembly:
             return Element(mesh.owner.name, "strand", int(mesh.strands[number]), mesh.read_from)
         first = number if seams is None else int(seams.first[number])
         return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_from, mesh.part)
+
+    def _element_beside(self, number: int) -> Element:
+        """The element of a triangle of all obstacles."""
+        for static in self.obstacles:
+            if number < static.obstacle.triangle_count:
+                return static.element(number)
+            number -= static.obstacle.triangle_count
+        raise IndexError("no obstacle has this triangle")
 
     def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
         ends = np.cumsum(sizes)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, extents, transform_points
-from stiv.blender.scene.culling import CroppedMesh, read_cropped_mesh
+from stiv.blender.scene.cropped_mesh import CroppedMesh
 from stiv.blender.scene.evaluations import (
     EVALUATIONS,
     RENDER,
@@ -28,6 +28,7 @@ from stiv.blender.scene.mesh_reading import (
     read_loose_numbers,
     read_positions,
     read_triangles,
+    view_positions,
 )
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
 from stiv.blender.scene.references import ObjectReference
@@ -62,6 +63,7 @@ class VisibleMesh:
         read_from: the evaluation from which it was read.
         shown_in: the evaluations that show exactly this mesh.
         also_in: those of them that Blender evaluates apart.
+        static: whether it is a part of an obstacle beside the surface.
         strands: strand of each vertex, (n,), of curves and hair; None for meshes.
         rooted_in: names of the objects that carry the strands, and are not tested against them.
         part: number of the part, if a mesh is divided into several that follow each other.
@@ -82,6 +84,7 @@ class VisibleMesh:
     rooted_in: frozenset[str] = frozenset()
     part: int = 0
     also_in: frozenset[str] = frozenset()
+    static: bool = False
 
     @property
     def is_instance(self) -> bool:
@@ -145,11 +148,11 @@ class EvaluatedPositions:
 def read_scene(
     context: bpy.types.Context,
     accept: Callable[[str], bool] = lambda name: True,
-    box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
     evaluations: Collection[str] = (SHOWN,),
     strands: bool = False,
+    static: Collection[str] = (),
 ) -> EvaluatedScene:
-    """Read every mesh whose owner's name is accepted; `box_of` gives the world box to which an object is cropped.
+    """Read every mesh whose owner's name is accepted; those of `static` owners are left out, but not their hair.
 
     evaluations: those to read. A mesh that several of them share is returned once. Curves, text, surfaces, metaballs
     and instances are read as meshes. Local view applies if the context has a 3D view, except to the render. strands:
@@ -172,9 +175,12 @@ def read_scene(
                 exists = opened.shown_in(read_from, owner.session_uid)
                 return bool(exists) and accept(owner.name) and (read_from == RENDER or is_shown(owner))
 
-            for instance, owner, source in opened.instances(read_from, is_wanted):
+            def is_surface(owner: bpy.types.Object, is_wanted: Any = is_wanted) -> bool:
+                return owner.name not in static and bool(is_wanted(owner))
+
+            for instance, owner, source in opened.instances(read_from, is_surface):
                 shown_in = opened.shown_in(read_from, owner.session_uid)
-                meshes.append(_read_mesh(instance, owner, source, box_of(owner.name), read_from, shown_in))
+                meshes.append(_read_mesh(instance, owner, source, read_from, shown_in))
             if strands:
                 found += _read_strands(context, opened, read_from, is_wanted)
         if strands:
@@ -183,14 +189,18 @@ def read_scene(
 
 
 def read_positions_of(
-    owners: frozenset[int], opened: OpenEvaluations, read_from: str = SHOWN
+    owners: frozenset[int], opened: OpenEvaluations, read_from: str = SHOWN, static: frozenset[int] = frozenset()
 ) -> list[EvaluatedPositions]:
-    """Read only the positions of the given owners (session numbers), in the order of `read_scene`; much faster."""
+    """Read only the positions of the given owners (session numbers), in the order of `read_scene`; much faster.
+
+    Those of `static` owners are views, valid until Blender evaluates again.
+    """
     placed = []
     for instance, owner, _ in opened.instances(read_from, lambda ob: ob.session_uid in owners):
         with evaluated_mesh(instance.object) as mesh:
             matrix = as_matrix(instance.matrix_world)
-            placed.append(EvaluatedPositions(ObjectReference.of(owner), read_positions(mesh), matrix))
+            local = view_positions(mesh) if owner.session_uid in static else read_positions(mesh)
+            placed.append(EvaluatedPositions(ObjectReference.of(owner), local, matrix))
     return placed
 
 
@@ -198,24 +208,18 @@ def _read_mesh(
     instance: bpy.types.DepsgraphObjectInstance,
     shown_by: bpy.types.Object,
     data_of: bpy.types.Object,
-    box: tuple[Floats, Floats] | None,
     read_from: str,
     shown_in: frozenset[str],
 ) -> VisibleMesh:
-    owner, source, cropped = ObjectReference.of(shown_by), data_of.name, None
     matrix = as_matrix(instance.matrix_world)
     with evaluated_mesh(instance.object) as mesh:
-        if box is not None:
-            cropped = read_cropped_mesh(mesh, matrix, *box)
-            data = (cropped.local, matrix, cropped.triangles, cropped.faces, cropped.loose_edges, cropped.loose_numbers)
-        else:
-            triangles, faces = read_triangles(mesh)
-            loose = read_loose_numbers(mesh)
-            edges = read_edges(mesh)[loose] if len(loose) else np.empty((0, 2), np.int32)
-            data = (read_positions(mesh), matrix, triangles, faces, edges, loose)
-    found = VisibleMesh(owner, source, *data, cropped, read_from, shown_in)
-    _check_finite(found)
-    return found
+        triangles, faces = read_triangles(mesh)
+        loose = read_loose_numbers(mesh)
+        edges = read_edges(mesh)[loose] if len(loose) else np.empty((0, 2), np.int32)
+        local = read_positions(mesh)
+    check_finite_positions(shown_by.name, matrix, local)
+    owner = ObjectReference.of(shown_by)
+    return VisibleMesh(owner, data_of.name, local, matrix, triangles, faces, edges, loose, None, read_from, shown_in)
 
 
 def _read_strands(
@@ -269,13 +273,14 @@ def _find_roots(owner: bpy.types.Object) -> frozenset[str]:
     return frozenset(found)
 
 
-def _check_finite(mesh: VisibleMesh) -> None:
-    if not np.isfinite(mesh.matrix).all():
-        raise InputError(f"{mesh.owner.name}: its transform is not finite; clear its location and scale")
-    finite = np.isfinite(mesh.local)
+def check_finite_positions(name: str, matrix: Floats, local: Singles) -> None:
+    """Raise InputError if an object's placement, (4, 4), or one of its positions, (n, 3), is not finite."""
+    if not np.isfinite(matrix).all():
+        raise InputError(f"{name}: its transform is not finite; clear its location and scale")
+    finite = np.isfinite(local)
     if not finite.all():
-        vertex = mesh.vertex_number(int(np.argmin(finite.all(axis=1))))
-        raise InputError(f"{mesh.owner.name}: vertex {vertex} has a coordinate that is not finite; delete it")
+        vertex = int(np.argmin(finite.all(axis=1)))
+        raise InputError(f"{name}: vertex {vertex} has a coordinate that is not finite; delete it")
 
 
 def _count_hidden(context: bpy.types.Context, evaluations: Collection[str]) -> int:

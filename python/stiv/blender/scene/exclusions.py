@@ -14,6 +14,7 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import PART, Element, FacePair
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
+from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.settings import Exclusions, FaceKey
 
 _MOST_CHARACTERS = 80  # of a message in Blender
@@ -121,8 +122,9 @@ def excluded_bodies(excluded: Exclusions, assembly: Assembly) -> list[tuple[str 
 
 def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> bool:
     """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
-    found = stiv.find_intersections(q, assembly.surface, threads=threads)
-    return all(_is_excluded(excluded, assembly.face(a), assembly.face(b)) for a, b in found.tolist())
+    near = near_assembly(assembly, q)
+    found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
+    return all(_is_excluded(excluded, near.assembly.face(a), near.assembly.face(b)) for a, b in found.tolist())
 
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 
-from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.evaluated_scene import EvaluatedScene, VisibleMesh, read_scene
 from stiv.blender.scene.evaluation_differences import find_differences
 from stiv.blender.scene.evaluations import (
@@ -68,12 +67,12 @@ def read_guarded_scene(
     context: bpy.types.Context,
     settings: EditSettings,
     accept: Callable[[str], bool] | None = None,
-    box_of: Callable[[str], tuple[Floats, Floats] | None] = lambda name: None,
     strands: bool = False,
+    static: Collection[str] = (),
 ) -> tuple[EvaluatedScene, Guard]:
     """Read the guarded evaluations (see `read_scene`) of all participants; equal meshes of both modes are merged."""
     guard = choose_guard(context, settings)
-    scene = read_scene(context, accept or settings.participates, box_of, guard.evaluations, strands)
+    scene = read_scene(context, accept or settings.participates, guard.evaluations, strands, static)
     scene = replace(scene, meshes=merge_modes(scene.meshes, context.scene))
     if settings.guard != "auto" or guard.choice == "viewport":
         return scene, guard

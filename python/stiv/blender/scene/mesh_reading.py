@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads Blender's meshes as arrays."""
 
+import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles, read_collection
 from stiv.blender.scene.shape_keys import read_mix
@@ -37,6 +39,37 @@ def read_positions(mesh: bpy.types.Mesh) -> Singles:
     if attribute is None:
         return read_collection(mesh.vertices, "co", 3, np.float32)
     return read_collection(attribute.data, "vector", 3, np.float32)
+
+
+def view_positions(mesh: bpy.types.Mesh) -> Singles:
+    """As `read_positions`, where Blender stores them: read-only, valid until Blender evaluates again."""
+    attribute = mesh.attributes.get("position")
+    return read_positions(mesh) if attribute is None else _view(attribute.data, "vector", 3, np.float32)
+
+
+def view_corner_vertices(mesh: bpy.types.Mesh) -> Indices:
+    """As `read_corner_vertices`, where Blender stores them, like `view_positions`."""
+    attribute = mesh.attributes.get(".corner_vert")
+    return read_corner_vertices(mesh) if attribute is None else _view(attribute.data, "value", 1, np.int32)
+
+
+def view_corner_edges(mesh: bpy.types.Mesh) -> Indices:
+    """The edge of each corner of all faces, stacked, where Blender stores them, like `view_positions`."""
+    attribute = mesh.attributes.get(".corner_edge")
+    if attribute is None:
+        return read_collection(mesh.loops, "edge_index", 1, np.int32)
+    return _view(attribute.data, "value", 1, np.int32)
+
+
+def _view(items: Any, name: str, width: int, dtype: type) -> NDArray[Any]:
+    """The values of an attribute in Blender's memory; a copy if they do not follow each other there."""
+    count, size = len(items), width * np.dtype(dtype).itemsize
+    first = items[0].as_pointer() if count else 0
+    if count == 0 or items[count - 1].as_pointer() - first != (count - 1) * size:
+        return read_collection(items, name, width, dtype)
+    values: NDArray[Any] = np.frombuffer((ctypes.c_char * (count * size)).from_address(first), dtype)
+    values.setflags(write=False)
+    return values if width == 1 else values.reshape(-1, width)
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:

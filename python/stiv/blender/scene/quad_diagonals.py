@@ -8,15 +8,12 @@ triangulation takes several times longer than this test.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles
-
-if TYPE_CHECKING:  # it reads cropped meshes, which uses this module
-    from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 
 CLEAR = 1e-3  # cosine of the angle between the halves above which rounding cannot decide
 # Height of a half above the diagonal, in the largest coordinate, above which it cannot either: where Blender knows the

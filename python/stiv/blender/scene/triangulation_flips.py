@@ -19,6 +19,7 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_triangles
+from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.scene.open_evaluations import OpenEvaluations
 
 BENT = 0.7  # cosine of the angle between the halves of a quad; below it both triangulations are kept free
@@ -101,10 +102,11 @@ def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
     flips = [flip for number in range(len(assembly.meshes)) if (flip := _bent_quads(assembly, number)) is not None]
     while flips:
         extended = add_triangles(assembly, flips)
-        pairs = stiv.find_intersections(assembly.positions, extended.surface, threads=threads)
+        near = near_assembly(extended, extended.positions)
+        pairs = stiv.find_intersections(near.assembly.positions, near.assembly.surface, threads=threads)
         if len(pairs) == 0:
             return extended
-        intersecting = {each for pair in pairs for each in map(extended.face, pair.tolist())}
+        intersecting = {each for pair in pairs for each in map(near.assembly.face, pair.tolist())}
         left = [flip for each in flips if len((flip := _drop_intersecting(each, intersecting, assembly)).faces)]
         if sum(len(flip.faces) for flip in left) == sum(len(flip.faces) for flip in flips):
             return extended  # other faces intersect; the session reports them

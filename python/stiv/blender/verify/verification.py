@@ -200,10 +200,13 @@ def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> Placed:
     """
     placed: list[EvaluatedPositions] = []
     meshes = [mesh for mesh in assembly.meshes if mesh.strands is None]
-    for read_from in dict.fromkeys(mesh.read_from for mesh in meshes):
+    static = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.static)
+    for read_from in dict.fromkeys(mesh.read_from for mesh in meshes if not mesh.static):
         owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_from == read_from)
         if read_from in opened.read_from:
-            placed += read_positions_of(owners, opened, read_from)
+            placed += read_positions_of(owners - static, opened, read_from)
+    if static:  # parts of obstacles, after all other meshes
+        placed += read_positions_of(static, opened, static=static)
     firsts = np.cumsum([mesh.part == 0 for mesh in meshes]) - 1  # parts of a mesh follow each other
     if max(firsts, default=-1) + 1 == len(placed):
         placed = [placed[first] for first in firsts]
