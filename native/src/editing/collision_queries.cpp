@@ -69,20 +69,14 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
   if (overlap_ && !is_first && overlap_->is_deeper(q, execution))
     throw StartIntersectsError("bodies that may overlap would overlap more than at the start", {});
   guard_pairs_apart_at(surface, execution);
-  const Positions& centred = context_.centred(surface, centred_start_, execution);
-  StaticPairs found;
-  execution.for_chunks(2, 1, [&](Index, Index, Index task) {  // both build trees, mostly on one thread
-    if (task == 0)
-      found = guard_->intersections.find_all(q, execution);
-    else
-      guard_->detector.prepare(centred, execution);
-  });
+  StaticPairs found = guard_->intersections.find_all(q, execution);
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
   found.faces = excluded_.others(found.faces);
   if (!found.empty()) {
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
   }
+  guard_->detector.prepare(context_.centred(surface, centred_start_, execution), execution);
 }
 
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.

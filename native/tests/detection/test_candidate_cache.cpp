@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <set>
+#include <span>
 
 #include "detection/broad_phase/relevance.hpp"
 #include "detection/scenes.hpp"
+#include "position_rows.hpp"
 
 using namespace stiv;
 
@@ -28,6 +31,12 @@ std::set<std::array<Index, 4>> cached_pairs(const Surface& surface, CandidateCac
   for (const EventKind kind : kinds)
     for (const Candidate& pair : cache.candidates(kind, Execution(1))) pairs.insert(vertices_of(surface, kind, pair));
   return pairs;
+}
+
+std::map<std::array<Index, 4>, double> times_of(const Events& events) {
+  std::map<std::array<Index, 4>, double> times;
+  for (const Event& event : events) times[event.vertices] = event.time;
+  return times;
 }
 
 /// A surface in which each coordinate differs by up to `reach`.
@@ -98,6 +107,31 @@ TEST_CASE("candidate cache: pruning leaves the pairs that meet during the step, 
     CHECK(after.count(event.vertices) == before.count(event.vertices));
   }
   CHECK(met > 20);
+}
+
+TEST_CASE("candidate cache: resting vertices change no events and no candidates") {
+  constexpr Index size = 9, resting = size * size;
+  const MovingScene scene = stirred_sheets(size, 3, 0.06, 3);
+  const Positions rest = scene.start.bottomRows(resting);
+  Detector detector(scene.surface), other(scene.surface);
+  CandidateCache cache(detector, resting), expected(other);
+  Execution execution(2);
+  std::size_t events = 0;
+  for (const double fraction : {1.0, 0.3, 1.5, -0.5, 1.0}) {
+    Positions end = scene.start + fraction * (scene.end - scene.start);
+    end.bottomRows(resting) = rest;
+    const auto place = [&](std::span<const Index> vertices) {
+      return CandidateCache::Rows{rows_of(scene.start, vertices), rows_of(end, vertices)};
+    };
+    CHECK(times_of(cache.find(place, proximity, execution)) == times_of(expected.find(place, proximity, execution)));
+    const Events found = detector.find(scene.start, end, proximity, execution);
+    CHECK(times_of(found) == times_of(other.find(scene.start, end, proximity, execution)));
+    cache.prune(scene.start, end, proximity, execution);
+    expected.prune(scene.start, end, proximity, execution);
+    CHECK(cached_pairs(*scene.surface, cache) == cached_pairs(*scene.surface, expected));
+    events += found.size();
+  }
+  CHECK(events > 100);
 }
 
 TEST_CASE("candidate cache: short steps from either end of a search have the contacts of a new detector") {

@@ -78,14 +78,44 @@ TEST_CASE("obstacle session: one edit to the other end of an obstacle, far beyon
   CHECK(scene.is_clear(result.surface));
 }
 
-TEST_CASE("obstacle session: the same bits for any number of threads") {
+TEST_CASE("obstacle session: the same bits for any number of threads, in boxes that are left and entered again") {
   const PlateOverWall scene;
-  EditSession first = scene.session(1), second = scene.session(2);
-  for (int tick = 1; tick <= 12; ++tick) {
-    Execution one(1), two(2);
-    const Controls goal = moved(scene.controls, 1, Vector3(0.4 * tick, 0, -0.1 * tick));
-    CHECK(first.drag(goal, one).controls == second.drag(goal, two).controls);
+  EditSession one = scene.session(1), two = scene.session(2), four = scene.session(4);
+  constexpr int turn = 16, ticks = 34;
+  for (int tick = 1; tick <= ticks; ++tick) {
+    const int distance = tick <= turn ? tick : 2 * turn - tick;  // the last ticks lead beyond the start
+    const Controls goal = moved(scene.controls, 1, Vector3(0.5 * distance, 0.1 * distance, -0.04 * distance));
+    const auto drag = [&](EditSession& session, int threads) {
+      Execution execution(threads);
+      return session.drag(goal, execution);
+    };
+    const EditResult result = drag(one, 1);
+    CHECK(drag(two, 2).controls == result.controls);
+    CHECK(drag(four, 4).controls == result.controls);
+    CHECK(scene.is_clear(result.surface));
+    if (tick == turn) CHECK(result.surface(0, 0) > scene.plate(0, 0) + 7);
+    if (tick == ticks) CHECK(result.status == EditStatus::reached);
   }
+}
+
+TEST_CASE("obstacle session: a call that is cancelled at any time, also while it opens a box, changes nothing") {
+  const PlateOverWall scene;
+  int cancelled = 0, ended = 0;
+  for (int polls = 1; polls < 20000 && ended == 0; polls *= 2) {
+    EditSession session = scene.session();
+    Execution near(1), far(1), again(1);
+    const Controls before = session.drag(moved(scene.controls, 1, Vector3(0.3, 0, -0.3)), near).controls;
+    int polled = 0;
+    far.cancel_when([&] { return ++polled > polls; });
+    const EditResult result = session.drag(moved(scene.controls, 1, Vector3(9, 0, -2)), far);
+    ++(result.status == EditStatus::cancelled ? cancelled : ended);
+    CHECK((result.status != EditStatus::cancelled || session.controls() == before));
+    const EditResult next = session.drag(moved(scene.controls, 1, Vector3(12, 0, -1)), again);
+    CHECK(next.surface(0, 0) > scene.plate(0, 0) + 11);
+    CHECK(scene.is_clear(next.surface));
+  }
+  CHECK(cancelled > 5);
+  CHECK(ended == 1);
 }
 
 TEST_CASE("obstacle session: a cancelled call changes nothing, though its path left the box") {

@@ -20,6 +20,7 @@ PackedBox box_of(const std::array<Index, 3>& corners, const std::vector<PackedBo
 
 CornerList triangle_corners(const Surface& surface) {
   CornerList corners;
+  corners.reserve(at(static_cast<Index>(surface.triangles().rows())));
   for (const auto& row : surface.triangles().rowwise()) corners.push_back({row[0], row[1], row[2]});
   return corners;
 }
@@ -42,6 +43,7 @@ CornerList loose_vertex_corners(const Surface& surface) {
 
 Primitives::Primitives(const Surface& surface, CornerList corners)
     : corners_(std::move(corners)), changed_(surface.bodies().size(), 1) {
+  bodies_.reserve(corners_.size());
   for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
 }
 
@@ -51,8 +53,10 @@ void Primitives::note_changes(const std::vector<unsigned char>& bodies) {
 
 void Primitives::update(const std::vector<PackedBox>& vertices, const Execution& execution) {
   if (!tree_) {
-    std::vector<Bounds> boxes;
-    for (const auto& corners : corners_) boxes.push_back(box_of(corners, vertices).bounds());
+    std::vector<Bounds> boxes(corners_.size());
+    execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
+      for (Index k = begin; k < end; ++k) boxes[at(k)] = box_of(corners(k), vertices).bounds();
+    });
     tree_.emplace(centres_of(boxes), bodies_, CornerRows(), execution);
   }
   const auto box_of_primitive = [&](Index primitive) { return box_of(corners(primitive), vertices); };

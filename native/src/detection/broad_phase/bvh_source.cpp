@@ -44,8 +44,12 @@ class BvhSource final : public CandidateSource {
 
   void prepare(const PositionsView& start, const Execution& execution) override {
     vertices_.prepare(start, execution);
-    edges_.prepare(start, execution);
-    faces_.prepare(start, execution);
+    execution.for_chunks(2, 1, [&](Index, Index, Index kind) {  // most of a tree is built on one thread
+      if (kind == 0)
+        edges_.prepare(start, execution);
+      else
+        faces_.prepare(start, execution);
+    });
     vertices_.drop_curve();
   }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "detection/broad_phase/block_order.hpp"
@@ -29,7 +30,7 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one, so that memory does not
     // grow late in a session.
-    if (tree_) {
+    if (std::exchange(has_boxes_, true)) {
       if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
       tree_->prepare_refit_some();
     }
@@ -171,6 +172,7 @@ class PrimitiveTree {
   const PrimitiveTree<1>* vertices_;
   Curve curve_;
   std::optional<Bvh> tree_;
+  bool has_boxes_ = false;
   double spread_ = 0;  // when the tree was built
   std::optional<VertexIncidence> incidence_;
 };
