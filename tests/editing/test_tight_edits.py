@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tight edits end closer to their goals, at the optimum that a dense quadratic program has."""
+"""Tight edits end closer to their goals, at optima that other methods find."""
 
 from __future__ import annotations
 
@@ -59,6 +59,52 @@ def test_a_tight_edit_of_a_lattice_ends_at_the_optimum_of_a_quadratic_program(de
     least = least_energy(deformation, controls, goal, rows)
     assert tight.energy < smooth.energy
     assert tight.energy == pytest.approx(least, rel=2e-4)
+    assert len(stiv.find_intersections(tight.surface, surface)) == 0
+
+
+def least_energy_of_turns(vertices: np.ndarray, goal: np.ndarray, floor: float) -> float:
+    """The least energy of a rigid body above a floor, by random changes of its rotation.
+
+    Each rotation has one best translation: that to the goal, lifted until the lowest vertex is above the floor.
+    """
+    rigid = stiv.rigid(vertices)
+    target = rigid.surface(goal)
+
+    def energy(turn: np.ndarray) -> float:
+        turned = rigid.surface(np.array([goal[0], turn]))
+        lift = (target - turned).mean(axis=0)
+        lift[2] = max(lift[2], floor - turned[:, 2].min())
+        return float(0.5 * ((turned + lift - target) ** 2).sum())
+
+    def descend(chance: np.random.Generator) -> float:
+        turn, least, scale = goal[1], energy(goal[1]), 0.3
+        while scale > 1e-6:
+            for other in turn + scale * chance.normal(size=(30, 3)):
+                if energy(other) < least:
+                    turn, least = other, energy(other)
+                    break
+            else:
+                scale *= 0.7
+        return least
+
+    return min(descend(np.random.default_rng(seed)) for seed in range(6))
+
+
+def test_a_tight_edit_turns_a_rigid_body_as_far_as_its_floor_allows() -> None:
+    ball, floor = icosphere(2, 0.3), triangulated(grid(6, 6, 6, 6)).moved((0, 0, -0.5))
+    vertices = ball.vertices * (1.6, 1, 0.7)
+    count = len(vertices)
+    triangles = np.vstack([triangulated(ball).triangles(), floor.triangles() + count])
+    bodies = [stiv.Body("Egg", "rigid"), stiv.Body("Floor", "fixed")]
+    owner = np.repeat([0, 1], [count, len(floor.vertices)])
+    surface = stiv.Surface(triangles, vertex_count=len(owner), vertex_body=owner, bodies=bodies)
+    whole = np.vstack([vertices, floor.vertices])
+    deformation = stiv.concatenate([(stiv.rigid(vertices), np.arange(count))], whole)
+    rest = stiv.rigid_rest_controls(vertices)
+    goal = rest + np.array([(0.1, 0.0, -0.6), (0.1, 1.5, 0.2)])
+    options = stiv.EditOptions(tight=True, separation=1e-6, threads=1)
+    tight = stiv.edit(surface, deformation, rest, goal, options)
+    assert tight.energy == pytest.approx(least_energy_of_turns(vertices, goal, -0.5), rel=5e-3)
     assert len(stiv.find_intersections(tight.surface, surface)) == 0
 
 

@@ -82,9 +82,7 @@ class SurfaceSession final : public SessionImplementation {
         run_sub_edits_by_steps(call, aim);
       else
         edit_toward(call, aim);
-      if (!context_.options().tight) return;
-      if (is_near) refine(call, aim);
-      tighten(call, aim, tightening_);
+      if (context_.options().tight) tighten(call, aim, tightening_);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
     trail_.begin(accepted_.controls);

@@ -12,9 +12,10 @@ namespace stiv {
 
 namespace {
 
+constexpr int max_settlings = 12;
 constexpr int max_pulls = 100;
 constexpr int poor_pulls_before_next_level = 2;  // in a row
-constexpr double least_gain = 1e-4;              // relative drop of the energy; below it a pull or a level is poor
+constexpr double least_gain = 1e-4;  // relative drop of the energy; below it a settling, pull or level is poor
 constexpr double smallest_part = 1.0 / 64;
 
 class Tightening {
@@ -71,8 +72,9 @@ double Tightening::pull() {
   return 1 - energy_now() / before;
 }
 
-/// Pulls until two in a row are poor. The part of the step is halved where the surface or the contacts are not linear
-/// enough for all of it. Returns whether the level lowered the energy enough for another one.
+/// Pulls until two are poor without a good one between them. The part of the step is halved where the surface or the
+/// contacts are not linear enough for all of it; a pull that gains nothing is poor only if its part is the smallest.
+/// Returns whether the level lowered the energy enough for another one.
 bool Tightening::run_level() {
   call_.metric = &call_.context.tight_metric(progress_.level);
   while (progress_.poor_pulls < poor_pulls_before_next_level && progress_.pulls < max_pulls) {
@@ -81,7 +83,10 @@ bool Tightening::run_level() {
     const double gain = pull();
     ++progress_.pulls;
     progress_.gain += gain;
-    progress_.poor_pulls = gain < least_gain ? progress_.poor_pulls + 1 : 0;
+    if (gain >= least_gain)
+      progress_.poor_pulls = 0;
+    else if (gain > 0 || progress_.part == smallest_part)
+      ++progress_.poor_pulls;
     progress_.part = gain > 0 ? std::min(1.0, 2 * progress_.part) : std::max(smallest_part, progress_.part / 2);
   }
   return progress_.gain >= least_gain && progress_.pulls < max_pulls;
@@ -97,13 +102,28 @@ void Tightening::run() {
   }
 }
 
+/// Settling ends after poor pulls, but the way between obstacles may be long. Tightening has bounds around the state
+/// from which it begins, so it begins where settling gains nothing more.
+void settle_to_the_end(EditCall& call, const Aim& aim) {
+  const PullLimits limits{.pulls = 2 * call.context.options().max_sub_edits,
+                          .poor_pulls = poor_pulls_before_end(call.execution)};
+  const auto energy_now = [&] { return call.context.energy(call.accepted.surface, aim.surface); };
+  for (int k = 0; k < max_settlings; ++k) {
+    const double before = energy_now();
+    pull_until_settled(call, aim, limits);
+    if (!(energy_now() < (1 - least_gain) * before)) return;
+  }
+}
+
 }  // namespace
 
 void tighten(EditCall& call, const Aim& aim, std::optional<TighteningProgress>& progress) {
-  if (!progress || progress->goal != aim.controls)
+  const bool was_blocked = call.report.blocked;
+  if (!progress || progress->goal != aim.controls) {
+    settle_to_the_end(call, aim);
     progress = TighteningProgress{aim.controls,
                                   ControlBox(call.context, call.accepted, {aim.controls, aim.surface}, call.execution)};
-  const bool was_blocked = call.report.blocked;
+  }
   EditCall tight = call;
   tight.box = &progress->box;
   Tightening(tight, aim, *progress).run();
