@@ -189,8 +189,7 @@ bool CollisionQueries::passes_static_test(const Positions& from, const Positions
   StaticPairs found = guard_->intersections.find_all(end, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
-  if (!found.empty() || all.size() > guard_->intersections.find(start_.with_rest(from), execution).size())
-    return false;
+  if (!found.empty() || all.size() > guard_->intersections.find(start_.with_rest(from), execution).size()) return false;
   return !depth_->is_deeper(end, all);
 }
 

@@ -86,9 +86,7 @@ class ObstacleSession final : public SessionImplementation {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
     bounds.extend(moving_bounds(*surface_, end));
-    const auto test = [&](Near& near) {
-      return near.session->is_step_free(start, end, execution);
-    };
+    const auto test = [&](Near& near) { return near.session->is_step_free(start, end, execution); };
     if (is_inside(bounds)) return test(*near_);
     return test(*make_near(grown(bounds, margin()), start_, start_, execution));
   }
@@ -135,8 +133,8 @@ class ObstacleSession final : public SessionImplementation {
                                   Execution& execution) const {
     NearScene scene = near_scene(*surface_, obstacles_, box, execution);
     return with_scene_numbers(scene, accepted, [&] {
-      auto session =
-          make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_, accepted, goal, execution);
+      auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_, accepted,
+                                          goal, execution);
       return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
     });
   }

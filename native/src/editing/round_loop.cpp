@@ -105,7 +105,7 @@ bool RoundLoop::constrain() {
   if (areas_.size() == 0) areas_ = call_.context.region_areas(call_.accepted.surface);
   const auto [start, end] = call_.queries.with_obstacles(call_.accepted.surface, outcome_.candidate.surface);
   RoundVolumes volumes = volumes_of_round(call_.context, {*progress_.events, start, end, areas_}, progress_.round,
-                                                constraints.size(), call_.execution);
+                                          constraints.size(), call_.execution);
   outcome_.patches = volumes.patches;
   std::vector<ControlConstraint> rows = linearised(std::move(volumes.stivs));
   if (rows.empty()) {

@@ -301,8 +301,7 @@ class SurfaceSession final : public SessionImplementation {
 
 }  // namespace
 
-std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
-                                                            Positions obstacles,
+std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface, Positions obstacles,
                                                             std::shared_ptr<const Deformation> deformation,
                                                             const Controls& start, EditOptions options,
                                                             const Controls& accepted, const Controls& goal,

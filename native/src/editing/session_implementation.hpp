@@ -32,8 +32,7 @@ class SessionImplementation {
 /// given without those of obstacles.
 /// @param obstacles positions of the last vertices of the surface, (k, 3)
 /// @throws as EditSession; StartIntersectsError is about the accepted state
-std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface,
-                                                            Positions obstacles,
+std::unique_ptr<SessionImplementation> make_surface_session(std::shared_ptr<const Surface> surface, Positions obstacles,
                                                             std::shared_ptr<const Deformation> deformation,
                                                             const Controls& start, EditOptions options,
                                                             const Controls& accepted, const Controls& goal,

@@ -353,8 +353,7 @@ void descend(const Traversal& t, const Bvh::Task& root) {
         meet_nodes(t, pair, FramedBoxes<false>(), stack.data(), top);
       continue;
     } else if (grows) {
-      meet_grown_blocks<size_a, size_b>(t, pair.node, pair.other_node,
-                                        grown_children(t.a.nodes[0][pair.node], growth));
+      meet_grown_blocks<size_a, size_b>(t, pair.node, pair.other_node, grown_children(t.a.nodes[0][pair.node], growth));
       if (!t.goes_on()) return;
     } else {
       blocks.add(pair.other_node, pair.node);
