@@ -76,7 +76,7 @@ struct Traversal {
   static void grow(PairBuffer& buffer, std::size_t most);
 
   /// Passes on the pairs if they are many. False if no more are wanted.
-  bool goes_on() const { return found->count < found->limit || found->full(*found); }
+  bool wants_more() const { return found->count < found->limit || found->full(*found); }
 };
 
 }  // namespace stiv
@@ -285,7 +285,7 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
                                        static_cast<std::size_t>(rows.first[row] % Bvh::width), rows.second[row], count);
     }
     t.found->count = count;
-    if (!t.goes_on()) return false;
+    if (!t.wants_more()) return false;
   }
   blocks.count = 0;
   return true;
@@ -354,7 +354,7 @@ void descend(const Traversal& t, const Bvh::Task& root) {
       continue;
     } else if (grows) {
       meet_grown_blocks<size_a, size_b>(t, pair.node, pair.other_node, grown_children(t.a.nodes[0][pair.node], growth));
-      if (!t.goes_on()) return;
+      if (!t.wants_more()) return;
     } else {
       blocks.add(pair.other_node, pair.node);
     }

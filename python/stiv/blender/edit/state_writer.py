@@ -162,9 +162,7 @@ class StateWriter:
         if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded):
             threads = max(1, (self._settings.threads or os.cpu_count() or 1) - 1)  # the solve needs one
             check = stiv.StepCheck(near.assembly.surface, threads)
-            self._verifier_beside = Verifier(
-                near.assembly, check.is_end_free, threads, excluded, names_pairs=False
-            )
+            self._verifier_beside = Verifier(near.assembly, check.is_end_free, threads, excluded, names_pairs=False)
         return self._verifier_beside.verify(bpy.context, near.extended(accepted)).passed
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:

@@ -67,7 +67,8 @@ def _view(items: Any, name: str, width: int, dtype: type) -> NDArray[Any]:
     first = items[0].as_pointer() if count else 0
     if count == 0 or items[count - 1].as_pointer() - first != (count - 1) * size:
         return read_collection(items, name, width, dtype)
-    values: NDArray[Any] = np.frombuffer((ctypes.c_char * (count * size)).from_address(first), dtype)
+    memory = memoryview((ctypes.c_char * (count * size)).from_address(first))
+    values: NDArray[Any] = np.frombuffer(memory, np.dtype(dtype))
     values.setflags(write=False)
     return values if width == 1 else values.reshape(-1, width)
 

@@ -153,5 +153,6 @@ def _read_rows(mesh: bpy.types.Mesh, rows: Any) -> Indices:
     mesh.calc_loop_triangles()
     held = mesh.loop_triangles
     if len(rows) > SINGLE_READS * len(held):
-        return read_collection(held, "vertices", 3, np.int32)[rows]
+        found: Indices = read_collection(held, "vertices", 3, np.int32)[rows]
+        return found
     return np.array([held[row].vertices[:] for row in rows.tolist()], np.int32).reshape(-1, 3)
