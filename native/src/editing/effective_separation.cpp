@@ -83,15 +83,17 @@ double effective_separation(double asked, const MovingExtent& extent, double lea
   return asked;
 }
 
+void check_body(Index body, std::size_t bodies) {
+  if (body < 0 || at(body) >= bodies)
+    throw InputError("pair_separations: there is no body " + std::to_string(body) + ", only 0.." +
+                     std::to_string(bodies - 1));
+}
+
 BodySeparations body_separations(const Surface& surface, const std::vector<BodyPairSeparation>& asked,
                                  double separation, const MovingExtent& extent, double least) {
-  const auto bodies = static_cast<Index>(surface.bodies().size());
   BodySeparations separations(surface.bodies().size(), separation);
   for (const BodyPairSeparation& pair : asked) {
-    for (const Index body : {pair.first, pair.second})
-      if (body < 0 || body >= bodies)
-        throw InputError("pair_separations: there is no body " + std::to_string(body) + ", only 0.." +
-                         std::to_string(bodies - 1));
+    for (const Index body : {pair.first, pair.second}) check_body(body, surface.bodies().size());
     check_can_be_kept(pair.separation, extent, least);
     separations.set(pair.first, pair.second, pair.separation);
   }

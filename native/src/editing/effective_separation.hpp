@@ -27,6 +27,9 @@ double least_separation(const MovingExtent& extent, const Controls& p, const std
 /// @throws InputError if the request is negative, not finite or below the least possible, which the message names
 double effective_separation(double asked, const MovingExtent& extent, double least);
 
+/// @throws InputError if a body of a requested pair does not exist
+void check_body(Index body, std::size_t bodies);
+
 /// The separations of all pairs of bodies: `separation`, except for the requested pairs.
 /// @throws InputError if a body does not exist, or as effective_separation; 0 is too small here, not automatic
 BodySeparations body_separations(const Surface& surface, const std::vector<BodyPairSeparation>& asked,

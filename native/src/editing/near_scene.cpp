@@ -56,19 +56,15 @@ class NearSceneBuilder {
         box_(box),
         execution_(execution),
         vertices_(surface.vertex_count()),
-        triangles_(static_cast<Index>(surface.triangles().rows())) {}
+        triangles_(static_cast<Index>(surface.triangles().rows())),
+        body_(static_cast<Index>(surface.bodies().size())) {}
 
-  void add(const Obstacle& obstacle) {
+  void add(const Obstacle& obstacle, const std::vector<Index>& named) {
     const std::vector<Index> near = box_.isEmpty() ? std::vector<Index>() : obstacle.triangles_near(box_, execution_);
-    const UsedVertices used = used_vertices(obstacle, near);
-    append_triangles(used.triangles);
-    append_positions(obstacle, used.vertices);
-    definition_.vertex_body.resize(at(definition_.vertex_count), static_cast<Index>(definition_.bodies.size()));
-    definition_.bodies.push_back({obstacle.name(), Mobility::fixed});
-    append_numbers(near, triangles_, scene_.obstacle_triangles);
-    append_numbers(used.vertices, vertices_, scene_.obstacle_vertices);
+    if (!near.empty() || std::find(named.begin(), named.end(), body_) != named.end()) append(obstacle, near);
     triangles_ += static_cast<Index>(obstacle.triangles().rows());
     vertices_ += static_cast<Index>(obstacle.positions().rows());
+    ++body_;
   }
 
   NearScene finish() {
@@ -78,6 +74,17 @@ class NearSceneBuilder {
   }
 
  private:
+  void append(const Obstacle& obstacle, const std::vector<Index>& near) {
+    const UsedVertices used = used_vertices(obstacle, near);
+    append_triangles(used.triangles);
+    append_positions(obstacle, used.vertices);
+    definition_.vertex_body.resize(at(definition_.vertex_count), static_cast<Index>(definition_.bodies.size()));
+    definition_.bodies.push_back({obstacle.name(), Mobility::fixed});
+    append_numbers(near, triangles_, scene_.obstacle_triangles);
+    append_numbers(used.vertices, vertices_, scene_.obstacle_vertices);
+    scene_.obstacle_bodies.push_back(body_);
+  }
+
   void append_triangles(const Triangles& added) {
     const Index before = static_cast<Index>(definition_.triangles.rows());
     definition_.triangles.conservativeResize(before + added.rows(), 3);
@@ -100,6 +107,7 @@ class NearSceneBuilder {
   const Eigen::AlignedBox3d& box_;
   const Execution& execution_;
   Index vertices_, triangles_;  // of the surface and the obstacles so far
+  Index body_;                  // number of the next obstacle
   Positions positions_ = Positions(0, 3);
   NearScene scene_;
 };
@@ -107,9 +115,9 @@ class NearSceneBuilder {
 }  // namespace
 
 NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
-                     const Execution& execution) {
+                     const std::vector<Index>& named, const Execution& execution) {
   NearSceneBuilder builder(surface, box, execution);
-  for (const auto& obstacle : obstacles) builder.add(*obstacle);
+  for (const auto& obstacle : obstacles) builder.add(*obstacle, named);
   return builder.finish();
 }
 

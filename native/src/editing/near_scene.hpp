@@ -10,16 +10,20 @@
 
 namespace stiv {
 
-/// A surface and the triangles of obstacles near a box, as one surface. Each obstacle is a fixed body after the bodies
-/// of the surface, even if none of its triangles is near.
+/// A surface and the triangles of obstacles near a box, as one surface. Each obstacle with such triangles is a fixed
+/// body after the bodies of the surface. Time and memory do not grow with pairs of the other obstacles, which may be
+/// thousands.
 struct NearScene {
   std::shared_ptr<const Surface> surface;
   Positions obstacles;  ///< of the last vertices of the surface
   /// Vertices and triangles of obstacles, numbered as if all obstacles followed the surface, ascending.
   std::vector<Index> obstacle_vertices, obstacle_triangles;
+  /// Bodies of obstacles, numbered in the same way, ascending.
+  std::vector<Index> obstacle_bodies;
 };
 
+/// @param named bodies, numbered as if all obstacles followed the surface: an obstacle among them is always a body
 NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
-                     const Execution& execution);
+                     const std::vector<Index>& named, const Execution& execution);
 
 }  // namespace stiv

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "editing/effective_separation.hpp"
 #include "editing/motion_box.hpp"
 #include "editing/near_scene.hpp"
 #include "editing/scene_rows.hpp"
@@ -34,6 +35,17 @@ void check_without_obstacles(const EditOptions& options, const Surface& surface)
   check_overlapping(surface, options.overlapping);
 }
 
+std::vector<Index> named_bodies(const EditOptions& options, std::size_t bodies) {
+  std::vector<Index> named;
+  for (const BodyPairSeparation& pair : options.pair_separations) {
+    for (const Index body : {pair.first, pair.second}) {
+      check_body(body, bodies);
+      named.push_back(body);
+    }
+  }
+  return named;
+}
+
 class ObstacleSession final : public SessionImplementation {
  public:
   ObstacleSession(std::shared_ptr<const Surface> surface, std::shared_ptr<const Deformation> deformation,
@@ -43,6 +55,7 @@ class ObstacleSession final : public SessionImplementation {
         start_(controls),
         options_(std::move(options)),
         obstacles_(std::move(obstacles)),
+        named_bodies_(named_bodies(options_, surface_->bodies().size() + obstacles_.size())),
         goal_(controls) {
     check_without_obstacles(options_, *surface_);
     const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, deformation_->surface_in_range(controls, execution));
@@ -98,7 +111,7 @@ class ObstacleSession final : public SessionImplementation {
     if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
     const Execution execution(options_.threads);
     const Eigen::AlignedBox3d box = nearest && !bounds.isEmpty() ? grown(bounds, nearest->distance) : whole_space();
-    const NearScene scene = near_scene(*surface_, obstacles_, box, execution);
+    const NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     SceneRows rows(scene.obstacles);
     return with_scene_numbers(LeastDistance(scene.surface).find(rows.with_rest(surface()), pairs), scene);
   }
@@ -131,13 +144,27 @@ class ObstacleSession final : public SessionImplementation {
 
   std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal,
                                   Execution& execution) const {
-    NearScene scene = near_scene(*surface_, obstacles_, box, execution);
+    NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     return with_scene_numbers(scene, accepted, [&] {
-      auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_, accepted,
-                                          goal, execution);
+      auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_in(scene),
+                                          accepted, goal, execution);
       return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
     });
   }
+
+  /// The options with the numbers of the scene's bodies.
+  EditOptions options_in(const NearScene& scene) const {
+    EditOptions options = options_;
+    for (BodyPairSeparation& pair : options.pair_separations) {
+      for (Index* body : {&pair.first, &pair.second}) {
+        const auto place = std::ranges::lower_bound(scene.obstacle_bodies, *body);
+        if (*body >= own_bodies()) *body = own_bodies() + static_cast<Index>(place - scene.obstacle_bodies.begin());
+      }
+    }
+    return options;
+  }
+
+  Index own_bodies() const { return static_cast<Index>(surface_->bodies().size()); }
 
   /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
   /// has changed.
@@ -192,6 +219,8 @@ class ObstacleSession final : public SessionImplementation {
     for (Event& event : result.events)
       for (Index& vertex : event.vertices)
         if (vertex >= first) vertex = near_->scene.obstacle_vertices[at(vertex - first)];
+    for (Index& body : result.blocking)
+      if (body >= own_bodies()) body = near_->scene.obstacle_bodies[at(body - own_bodies())];
     return result;
   }
 
@@ -241,6 +270,7 @@ class ObstacleSession final : public SessionImplementation {
   Controls start_;
   EditOptions options_;
   Obstacles obstacles_;
+  std::vector<Index> named_bodies_;   ///< by options
   Controls goal_;                     ///< of the last call
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
   Eigen::AlignedBox3d box_;

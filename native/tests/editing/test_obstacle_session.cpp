@@ -130,6 +130,36 @@ TEST_CASE("obstacle session: a cancelled call changes nothing, though its path l
   CHECK(session.drag(moved(scene.controls, 1, Vector3(0.1, 0, 0)), again).status == EditStatus::reached);
 }
 
+TEST_CASE("obstacle session: bodies keep their numbers, whichever obstacles are near") {
+  const PlateOverWall scene;
+  Positions distant(0, 3);
+  Triangles distant_faces(0, 3);
+  append_sheet(distant, distant_faces, 3, 1, Vector3(500, 0, 0));
+  const auto far = std::make_shared<Obstacle>("far", distant, distant_faces);
+  const auto wall = std::make_shared<Obstacle>("wall", scene.wall, scene.wall_faces);
+  const Controls below = moved(scene.controls, 1, Vector3(0, 0, -2));
+  EditOptions options;
+  options.threads = 1;
+  Execution execution(1);
+
+  options.pair_separations = {{0, 3, 0.01}, {2, 0, 0.2}};
+  EditSession kept_apart(scene.surface, scene.deformation, scene.controls, options, {far, wall, far}, execution);
+  CHECK(kept_apart.edit(below, execution).surface.col(2).minCoeff() >= 0.2);
+
+  options.pair_separations = {{0, 3, 0.2}};
+  options.max_rounds = 1;
+  EditSession blocked(scene.surface, scene.deformation, scene.controls, options, {far, wall, far}, execution);
+  const EditResult result = blocked.edit(below, execution);
+  CHECK(result.surface.col(2).minCoeff() < 0.2);
+  CHECK(result.status == EditStatus::blocked);
+  CHECK(result.blocking == std::vector<Index>{0, 2});
+
+  options.pair_separations = {{0, 4, 0.2}};
+  CHECK_THROWS_WITH_AS(
+      EditSession(scene.surface, scene.deformation, scene.controls, options, {far, wall, far}, execution),
+      "pair_separations: there is no body 4, only 0..3", InputError);
+}
+
 TEST_CASE("obstacle session: exclusions and overlaps of obstacles are refused") {
   const PlateOverWall scene;
   const Obstacles obstacles{std::make_shared<Obstacle>("wall", scene.wall, scene.wall_faces)};

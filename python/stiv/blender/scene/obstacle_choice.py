@@ -23,7 +23,8 @@ def find_obstacles(context: bpy.types.Context, moving_names: Collection[str], se
     guarded evaluations may show differently.
     """
     objects = [ob for ob in context.view_layer.objects if is_visible(context, ob)]
-    candidates = [ob for ob in objects if _is_independent(ob)]
+    parents = {ob.parent.session_uid for ob in bpy.data.objects if ob.parent is not None}  # `children` searches all
+    candidates = [ob for ob in objects if ob.session_uid not in parents and _is_independent(ob)]
     if choose_guard(context, settings).choice != "viewport":
         rendered = rendered_objects(context.view_layer)
         candidates = [ob for ob in candidates if ob.session_uid in rendered and _is_rendered_alike(ob, context.scene)]
@@ -34,8 +35,9 @@ def find_obstacles(context: bpy.types.Context, moving_names: Collection[str], se
 
 
 def _is_independent(ob: bpy.types.Object) -> bool:
+    """Does nothing but its own data place and shape the mesh?"""
     alone = ob.type == "MESH" and ob.mode == "OBJECT" and not is_edited(ob) and ob.instance_type == "NONE"
-    return bool(alone and ob.parent is None and not ob.children and not any(dependencies(ob)))
+    return bool(alone and ob.parent is None and not any(dependencies(ob)))
 
 
 def _is_rendered_alike(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
