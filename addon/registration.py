@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Registers everything that the extension adds to Blender, and unregisters it in reverse order."""
 
-import sys
-
 import bpy
 
 from . import (
     getting_started,
     header,
+    kept_data,
     keymap,
     loop_updates,
     manual,
@@ -20,7 +19,6 @@ from . import (
 )
 from .guard import waiting, watcher
 from .operators import running
-from .operators.transform import drag_results, morph_slider
 from .overlay import display
 from .tools import gizmo_group, live_switch, toolbar
 
@@ -41,6 +39,7 @@ def register() -> None:
     """Add classes, settings, menu entries and keys. Needs no native module."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
+    kept_data.register()
     properties.register()
     translations.register()
     menus.register()
@@ -71,13 +70,4 @@ def unregister() -> None:
     properties.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
-    forget()
-
-
-def forget() -> None:
-    """Delete the caches that last from one drag to the next."""
-    drag_results.clear()
-    morph_slider.forget()
-    cache = sys.modules.get("stiv.blender.controls.deformation_cache")  # loaded only with the native module
-    if cache is not None:
-        cache.clear_cache()
+    kept_data.unregister()

@@ -65,6 +65,12 @@ def keep_session(inputs: SessionInputs, session: stiv.EditSession, deformation: 
     _kept = inputs, session, deformation
 
 
+def forget_session() -> None:
+    """Free the session that is kept, if any."""
+    global _kept
+    _kept = None
+
+
 def take_session(inputs: SessionInputs, controls: Floats) -> tuple[stiv.EditSession, stiv.Deformation] | None:
     """The kept session at these controls, (m, 3), and its deformation, if it was made from the same inputs.
 
