@@ -12,7 +12,7 @@ from .operators.transform import drag_results, morph_slider
 
 def _forget_scene() -> None:
     if "stiv.blender" in sys.modules:  # loaded only with the native module
-        stiv_blender.forget_kept_data()
+        stiv_blender.free_kept_data()
 
 
 @persistent

@@ -6,7 +6,7 @@ from stiv.blender.edit.kept_session import forget_session
 from stiv.blender.scene.static_reading import forget_static_meshes
 
 
-def forget_kept_data() -> None:
+def free_kept_data() -> None:
     """Free the session of the last edit, its obstacles, and deformations. An edit that goes on keeps its own."""
     forget_session()
     forget_static_meshes()
