@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What edits keep for the next one is freed when another file is loaded."""
+"""Loading another file frees everything that edits keep for the next one."""
 
 import gc
 import weakref

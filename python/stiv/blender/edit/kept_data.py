@@ -7,7 +7,7 @@ from stiv.blender.scene.static_reading import forget_static_meshes
 
 
 def free_kept_data() -> None:
-    """Free the session of the last edit, its obstacles, and deformations. An edit that goes on keeps its own."""
+    """Free the session of the last edit, its obstacles, and deformations. A running edit keeps its own."""
     forget_session()
     forget_static_meshes()
     clear_cache()
