@@ -20,6 +20,7 @@ from ...modal.request import Request
 from ...modal.state import Effect, State
 from ...native_module import Mixin
 from ...overlay import display
+from ...scene.edit_settings import DRAG_BUDGET
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame, read_selection
 from ...scene.tool_settings import (
     read_proportional,
@@ -44,7 +45,7 @@ from .move import STIV_OT_move
 from .options import changed_options, make_influence
 from .rotate import STIV_OT_rotate
 from .scale import STIV_OT_scale
-from .transform_operator import TransformOperator, apply_values, begin_drag, insert_keyframes, make_motion
+from .transform_operator import TransformOperator, apply_values, begin_edit, insert_keyframes, make_motion
 
 TICK = 1.0 / 60.0  # least seconds between two solves
 NO_POINTER = Pointer.at((0.0, 0.0))
@@ -104,7 +105,7 @@ class DragOperator(Mixin):
         proportional, snap = read_proportional(context), snapping_kinds(context)
         axis_lock = AxisLock(self.axis, self.plane) if self.axis >= 0 else AxisLock()
         state = State(pointer, request, axis_lock, proportional=proportional, snap=snap, release=self.release)
-        self._launch(context, state, lambda request: begin_drag(context, request))
+        self._launch(context, state, lambda request: begin_edit(context, request, DRAG_BUDGET))
 
     def _launch(
         self,

@@ -12,7 +12,7 @@ from ... import stiv_blender
 from ...modal.drag_loop import restore_after_error
 from ...modal.request import Request
 from ...native_module import NeedsNativeModule
-from ...scene.edit_settings import DRAG_BUDGET, edit_settings
+from ...scene.edit_settings import edit_settings
 from ...scene.frame import read_frame
 from ...transform import Transform
 from ...transform.frame import Frame
@@ -216,21 +216,14 @@ def report_start(operator: bpy.types.Operator, context: bpy.types.Context, edit:
         operator.report({"INFO"}, context.window_manager.stiv_check.left_out)
 
 
-def begin_edit(context: bpy.types.Context, request: Request) -> stiv_blender.Steps[stiv_blender.BlenderEdit]:
-    """Steps that begin an edit of the current scene."""
-    settings = edit_settings(context.scene, request)
-    without_surface = stiv_blender.find_without_surface(context)
-    edit = yield from stiv_blender.BlenderEdit.begin_steps(context, settings, kind=request.kind)
-    _note_unguarded(context, edit, without_surface)
-    return edit
+def begin_edit(
+    context: bpy.types.Context, request: Request, time_budget: float = 0.0
+) -> stiv_blender.Steps[stiv_blender.BlenderEdit]:
+    """Steps that begin an edit of the current scene.
 
-
-def begin_drag(context: bpy.types.Context, request: Request) -> stiv_blender.Steps[stiv_blender.Edit]:
-    """Steps that begin an edit for a drag.
-
-    It leaves out far obstacles of a large scene, and limits the time of each solve.
+    time_budget: seconds of each solve, 0 for no limit.
     """
-    settings = edit_settings(context.scene, request, DRAG_BUDGET)
+    settings = edit_settings(context.scene, request, time_budget)
     without_surface = stiv_blender.find_without_surface(context)
     edit = yield from stiv_blender.begin_culled_steps(context, settings, kind=request.kind)
     _note_unguarded(context, edit, without_surface)

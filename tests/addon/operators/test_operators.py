@@ -16,6 +16,7 @@ import mathutils  # noqa: E402
 
 import stiv_addon  # noqa: E402
 from stiv import InputError  # noqa: E402
+from stiv.blender.scene.lattice_reading import read_selected_lattice_points  # noqa: E402
 from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
@@ -47,7 +48,7 @@ class FreeDirections(SimpleNamespace):
 
 
 class RecordingEdit:
-    """Replaces BlenderEdit: moves the active object to its goal, unless it should fail."""
+    """Replaces the edit: moves the active object to its goal, unless it should fail."""
 
     begun: Any = None
     summary = SimpleNamespace(warnings=())
@@ -102,9 +103,13 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain = dict.fromkeys(("EditSettings", "Handles", "LoopSurface", "WeightGroup"), SimpleNamespace)
     plain |= {"Motion": Motion, "FreeDirections": FreeDirections, "Influence": lambda *given: given}
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
+    plain |= {"read_selected_lattice_points": read_selected_lattice_points}
     plain |= {"unguarded_text": lambda *_: "", "find_without_surface": lambda context: ()}
-    stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
+    stand_in = SimpleNamespace(
+        begin_culled_steps=RecordingEdit.begin_steps, SceneChangedError=KeyError, run_steps=run, **plain
+    )
     stand_in.is_cut_by_topology = lambda result: False
+    stand_in.free_kept_data = lambda: None
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")
