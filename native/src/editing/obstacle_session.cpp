@@ -7,7 +7,7 @@
 
 #include "editing/effective_separation.hpp"
 #include "editing/motion_box.hpp"
-#include "editing/near_scene.hpp"
+#include "editing/near_session.hpp"
 #include "editing/scene_rows.hpp"
 #include "editing/validation.hpp"
 #include "stiv/error.hpp"
@@ -16,7 +16,8 @@ namespace stiv {
 
 namespace {
 
-constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
+constexpr int boxes_per_call = 4;   // then all obstacles are near, which bounds the number of repetitions
+constexpr double ticks_ahead = 12;  // of a drag: if they leave the box, the next one is prepared; it takes a few ticks
 
 void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
   if (surface == nullptr || deformation == nullptr) throw InputError("a surface and a deformation are needed");
@@ -67,7 +68,9 @@ class ObstacleSession final : public SessionImplementation {
     return carry_out(goal, execution, [&] { return near_->session->edit(goal, execution); });
   }
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
-    return carry_out(goal, execution, [&] { return near_->session->drag(goal, execution, hand_over); });
+    EditResult result = carry_out(goal, execution, [&] { return near_->session->drag(goal, execution, hand_over); });
+    if (result.status != EditStatus::cancelled) look_ahead(execution.threads());
+    return result;
   }
   EditResult settle(Execution& execution) override {
     const Controls goal = goal_;
@@ -87,9 +90,11 @@ class ObstacleSession final : public SessionImplementation {
       open(around(bounds), controls, goal, execution);
     goal_ = goal;
     motion_.setZero();
+    next_.reset();
   }
 
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
+    next_.reset();  // its thread reads the options
     near_->session->set_weights(weights, weight_axes);
     options_.weights = std::move(weights);
     options_.weight_axes = std::move(weight_axes);
@@ -99,7 +104,7 @@ class ObstacleSession final : public SessionImplementation {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
     bounds.extend(moving_bounds(*surface_, end));
-    const auto test = [&](Near& near) { return near.session->is_step_free(start, end, execution); };
+    const auto test = [&](NearSession& near) { return near.session->is_step_free(start, end, execution); };
     if (is_inside(bounds)) return test(*near_);
     return test(*make_near(grown(bounds, margin()), start_, start_, execution));
   }
@@ -122,12 +127,6 @@ class ObstacleSession final : public SessionImplementation {
   const Surface& topology() const override { return *surface_; }
 
  private:
-  /// The obstacles near a box, and a session with them.
-  struct Near {
-    NearScene scene;
-    std::unique_ptr<SessionImplementation> session;
-  };
-
   Eigen::AlignedBox3d around(const Eigen::AlignedBox3d& bounds) const {
     const Eigen::AlignedBox3d box =
         box_around(bounds, motion_, obstacles_, static_cast<Index>(surface_->triangles().rows()));
@@ -142,13 +141,13 @@ class ObstacleSession final : public SessionImplementation {
 
   bool is_inside(const Eigen::AlignedBox3d& bounds) const { return contains(box_, bounds, margin()); }
 
-  std::unique_ptr<Near> make_near(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal,
-                                  Execution& execution) const {
+  std::unique_ptr<NearSession> make_near(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal,
+                                         Execution& execution) const {
     NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     return with_scene_numbers(scene, accepted, [&] {
       auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_in(scene),
                                           accepted, goal, execution);
-      return std::make_unique<Near>(Near{std::move(scene), std::move(session)});
+      return std::make_unique<NearSession>(NearSession{std::move(scene), std::move(session)});
     });
   }
 
@@ -169,8 +168,44 @@ class ObstacleSession final : public SessionImplementation {
   /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
   /// has changed.
   void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
-    near_ = make_near(box, accepted, goal, execution);
+    near_ = next_ && is_next(box) ? take_next(accepted, goal, execution) : make_near(box, accepted, goal, execution);
     box_ = box;
+    next_.reset();
+  }
+
+  bool is_next(const Eigen::AlignedBox3d& box) const {
+    return next_->box().min() == box.min() && next_->box().max() == box.max();
+  }
+
+  std::unique_ptr<NearSession> take_next(const Controls& accepted, const Controls& goal, Execution& execution) {
+    auto near = next_->take(execution);
+    with_scene_numbers(near->scene, accepted, [&] { near->session->restore(accepted, goal); });
+    return near;
+  }
+
+  /// The box of the prepared session if it contains the bounds, and otherwise a new one.
+  Eigen::AlignedBox3d next_around(const Eigen::AlignedBox3d& bounds) const {
+    return next_ && contains(next_->box(), bounds, margin()) ? next_->box() : around(bounds);
+  }
+
+  /// Prepares the session in the next box of a drag that is about to leave the present one. Which box depends on
+  /// accepted states alone, and not on the number of threads.
+  void look_ahead(int threads) {
+    if (!options_.excluded.empty() || !options_.overlapping.empty()) return;  // compared with where a session began
+    const Eigen::AlignedBox3d now = moving_bounds(*surface_, surface());
+    if (now.isEmpty() || is_inside(after(now, ticks_ahead))) return;
+    if (next_ && contains(next_->box(), after(now, 1), margin())) return;
+    next_.reset();
+    const Eigen::AlignedBox3d box = around(now);
+    if (!contains(box, after(now, ticks_ahead), margin())) return;  // a motion so fast would leave it at once
+    next_.emplace(box, threads, [this, box, accepted = controls(), goal = goal_](Execution& execution) {
+      return make_near(box, accepted, goal, execution);
+    });
+  }
+
+  /// Bounds that some more ticks like the last one would sweep.
+  Eigen::AlignedBox3d after(Eigen::AlignedBox3d bounds, double ticks) const {
+    return bounds.extend(bounds.translated(ticks * motion_));
   }
 
   /// Makes a call, and again in other boxes while its path leaves the box.
@@ -178,13 +213,12 @@ class ObstacleSession final : public SessionImplementation {
   EditResult carry_out(const Controls& goal, Execution& execution, const Call& call) {
     const Controls before = controls(), goal_before = goal_;
     const Eigen::AlignedBox3d start = moving_bounds(*surface_, surface());
-    Eigen::AlignedBox3d bounds = start;
-    if (!start.isEmpty()) bounds.extend(start.translated(motion_));  // where the same motion again would lead
-    if (!is_inside(bounds)) reopen(around(bounds), before, goal_before, execution);
+    Eigen::AlignedBox3d bounds = start.isEmpty() ? start : after(start, 1);
+    if (!is_inside(bounds)) reopen(next_around(bounds), before, goal_before, execution);
     EditResult result = call();
     for (int boxes = 1; result.status != EditStatus::cancelled && !is_inside(bounds_of(result)); ++boxes) {
       bounds.extend(bounds_of(result));
-      reopen(boxes < boxes_per_call ? around(bounds) : whole_space(), before, goal_before, execution);
+      reopen(boxes < boxes_per_call ? next_around(bounds) : whole_space(), before, goal_before, execution);
       result = call();  // returns at once if it was cancelled
     }
     if (result.status != EditStatus::cancelled) goal_ = goal;
@@ -274,7 +308,8 @@ class ObstacleSession final : public SessionImplementation {
   Controls goal_;                     ///< of the last call
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
   Eigen::AlignedBox3d box_;
-  std::unique_ptr<Near> near_;
+  std::unique_ptr<NearSession> near_;
+  std::optional<NextSession> next_;  ///< last: its thread refers to the other members
 };
 
 }  // namespace
