@@ -6,13 +6,13 @@ import sys
 import bpy
 from bpy.app.handlers import persistent
 
-from . import stiv_blender
 from .operators.transform import drag_results, morph_slider
 
 
 def _forget_scene() -> None:
-    if "stiv.blender" in sys.modules:  # loaded only with the native module
-        stiv_blender.free_kept_data()
+    package = sys.modules.get("stiv.blender")  # loaded at first use, and only with the native module
+    if package is not None:
+        package.free_kept_data()
 
 
 @persistent
