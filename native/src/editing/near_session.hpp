@@ -5,7 +5,6 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <optional>
 
 #include "editing/near_scene.hpp"
 #include "editing/session_implementation.hpp"
@@ -26,7 +25,8 @@ class NextSession {
  public:
   using Make = std::function<std::unique_ptr<NearSession>(Execution& execution)>;
 
-  /// @param make is called once, perhaps in another thread; what it refers to must outlive this object
+  /// @param make is called in another thread if there are several, and again by `take` if that failed; what it refers
+  /// to must outlive this object
   NextSession(const Eigen::AlignedBox3d& box, int threads, Make make);
   ~NextSession();
   NextSession(const NextSession&) = delete;

@@ -20,7 +20,7 @@ PackedBox box_of(const std::array<Index, 3>& corners, const std::vector<PackedBo
 
 CornerList triangle_corners(const Surface& surface) {
   CornerList corners;
-  corners.reserve(at(static_cast<Index>(surface.triangles().rows())));
+  corners.reserve(static_cast<std::size_t>(surface.triangles().rows()));
   for (const auto& row : surface.triangles().rowwise()) corners.push_back({row[0], row[1], row[2]});
   return corners;
 }

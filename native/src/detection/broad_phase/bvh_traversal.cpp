@@ -87,7 +87,6 @@ struct Traversal {
 #define HWY_TARGET_INCLUDE "detection/broad_phase/bvh_traversal.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
-#include "hwy/cache_control.h"
 #include "vector/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
