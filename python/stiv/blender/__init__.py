@@ -11,7 +11,7 @@ from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.culled_edit import begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
-from stiv.blender.edit.kept_data import free_kept_data
+from stiv.blender.edit.kept_session import free_kept_data
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import ObjectsIntersectError
 from stiv.blender.edit.state_writer import WriteReport

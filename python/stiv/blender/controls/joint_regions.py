@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stiv.blender.scene.arrays import Flags, Floats, Indices
-from stiv.blender.scene.cropped_mesh import CroppedMesh
-from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
 YIELDING = 0.6  # part of the region at a joint that only responds, and thus turns little

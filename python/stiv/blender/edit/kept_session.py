@@ -11,10 +11,12 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.deformation_cache import clear_cache
 from stiv.blender.scene.arrays import Floats, diagonal_of, digest
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.shared_surface import are_equal
 from stiv.blender.scene.static_mesh import StaticMesh
+from stiv.blender.scene.static_reading import forget_static_meshes
 
 LARGEST_GROWTH = 1.1  # of the moving surface, either way; the automatic separation is a part of its diagonal
 
@@ -65,10 +67,12 @@ def keep_session(inputs: SessionInputs, session: stiv.EditSession, deformation: 
     _kept = inputs, session, deformation
 
 
-def forget_session() -> None:
-    """Free the session that is kept, if any."""
+def free_kept_data() -> None:
+    """Free the kept session, its obstacles, and deformations. A running edit keeps its own."""
     global _kept
     _kept = None
+    forget_static_meshes()
+    clear_cache()
 
 
 def take_session(inputs: SessionInputs, controls: Floats) -> tuple[stiv.EditSession, stiv.Deformation] | None:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, extents, transform_points
-from stiv.blender.scene.cropped_mesh import CroppedMesh
 from stiv.blender.scene.evaluations import (
     EVALUATIONS,
     RENDER,
@@ -44,6 +43,29 @@ from stiv.blender.scene.strand_reading import (
     why_no_strands,
 )
 from stiv.blender.scene.strands import Strands, cover_strands
+
+
+@dataclass(frozen=True)
+class CroppedMesh:
+    """Some faces, loose edges and loose vertices of a mesh.
+
+    Attributes:
+        vertices: ascending vertex numbers, (n,).
+        local: positions, (n, 3).
+        triangles: Blender's triangulation, indices into `vertices`, (f, 3).
+        faces: face of each triangle, (f,).
+        loose_edges: indices into `vertices`, (l, 2).
+        loose_numbers: edge number of each loose edge, (l,).
+        size: number of vertices of the whole mesh.
+    """
+
+    vertices: Indices
+    local: Singles
+    triangles: Indices
+    faces: Indices
+    loose_edges: Indices
+    loose_numbers: Indices
+    size: int
 
 
 @dataclass(frozen=True)

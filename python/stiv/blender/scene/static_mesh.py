@@ -9,9 +9,8 @@ import numpy as np
 
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices, Singles
-from stiv.blender.scene.cropped_mesh import CroppedMesh
 from stiv.blender.scene.elements import Element
-from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
 from stiv.blender.scene.references import ObjectReference
 
 
