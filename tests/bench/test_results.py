@@ -3,7 +3,8 @@
 
 import pytest
 
-from benchmarks.results_tables import FOLDER, filled, loaded
+from benchmarks.results_tables.__main__ import filled
+from benchmarks.results_tables.markdown import FOLDER, loaded
 from benchmarks.sessions.table1 import PUBLISHED
 
 

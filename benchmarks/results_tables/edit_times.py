@@ -1,37 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write the tables of benchmarks/results/README.md from the JSON files beside it.
-
-Each table is enclosed in `<!-- begin NAME -->` and `<!-- end NAME -->`. `python -m benchmarks.results_tables`
-"""
+"""Tables of edits and detection on their own, with the programs that they are compared with."""
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
+from benchmarks.results_tables.markdown import SCENES, loaded, markdown, number
 from benchmarks.sessions.table1 import PUBLISHED
-
-FOLDER = Path(__file__).parent / "results"
-SCENES = tuple(PUBLISHED)
-
-
-def loaded(name: str) -> Any:
-    """The content of one JSON file."""
-    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
-
-
-def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def number(value: float) -> str:
-    """Two or three digits, without an exponent."""
-    return f"{value:.0f}" if value >= 20 else f"{value:.2g}" if value < 10 else f"{value:.1f}"
 
 
 def _pairs(rows: dict[tuple[str, str, int], Any], preset: str, what: str) -> str:
@@ -76,52 +51,6 @@ def table1() -> str:
         "paper, i5 3.6 GHz, ms",
     ]
     return markdown(head, lines)
-
-
-def settled() -> str:
-    """Energies of solutions settled until nothing changes."""
-    lines = [
-        [
-            scene["scene"],
-            str(scene["edits"]),
-            *(f"{value:.2f}" for value in scene["energies"].values()),
-            str(scene["paper_nearer"]),
-        ]
-        for scene in sorted(loaded("settled_edits"), key=lambda scene: SCENES.index(scene["scene"]))
-    ]
-    head = ["scene", "edits", "ours", "ours, settled", "paper", "paper, settled", "best of each", "paper closer in"]
-    return markdown(head, lines)
-
-
-def whole_drags() -> str:
-    """Energies of whole drags relative to a stop at the first contact."""
-    content = loaded("whole_drags")
-    order = sorted(content["drags"], key=lambda drag: SCENES.index(drag["scene"]))
-    lines = [
-        [
-            f"{drag['scene']}: {drag['stage'].replace('_', ' ')}",
-            f"{100 * drag['step']:.0f} %",
-            f"{drag['contacts']:.0f}",
-            *(f"{value:.3f}" for value in drag["energies"].values()),
-        ]
-        for drag in order
-    ]
-    lines.append(["geometric mean", "", "", *(f"{value:.3f}" for value in content["means"].values())])
-    return markdown(["drag", "step", "contacts per round", *content["means"]], lines)
-
-
-def fourteen() -> str:
-    """Energies of the fourteen edits relative to a stop at the first contact."""
-    content = loaded("paper_preset")
-    lines = []
-    for edit in content["edits"]:
-        energies = [edit["ours"]["energy"], edit["settled"], *(answer["energy"] for answer in edit["paper"].values())]
-        least = "" if edit["converged"] is None else f"{edit['converged'] / edit['stopped']:.4f}"
-        if least and not edit["converged_in_time"]:
-            least += " (time over)"
-        lines.append([edit["edit"], *(f"{energy / edit['stopped']:.4f}" for energy in energies), least])
-    lines.append(["geometric mean", *(f"{value:.4f}" for value in content["means"].values()), ""])
-    return markdown(["edit", *content["means"], "interior point"], lines)
 
 
 def detection() -> str:
@@ -191,26 +120,30 @@ def race() -> str:
     return markdown(head, lines)
 
 
-TABLES: dict[str, Callable[[], str]] = {
-    make.__name__: make for make in (table1, settled, whole_drags, fourteen, detection, race)
-}
-
-
-def filled(text: str) -> str:
-    """The text with updated tables."""
-    for name, make in TABLES.items():
-        block = re.compile(rf"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
-        text, count = block.subn(lambda match, make=make: match[1] + make() + "\n" + match[2], text)  # type: ignore[misc]
-        if count != 1:
-            raise ValueError(f"README.md of the results has {count} places for the table {name!r}")
-    return text
-
-
-def main() -> None:
-    """Update README.md."""
-    path = FOLDER / "README.md"
-    path.write_text(filled(path.read_text(encoding="utf-8")), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
+def trust_regions() -> str:
+    """One edit per scene beside the trust regions of offset geometric contact, from ipctk."""
+    rows = {row["scene"]: row for row in loaded("trust_region")["rows"]}
+    lines = [
+        [
+            scene,
+            *(number(rows[scene][what]) for what in ("search_ms", "update_ms", "narrow_update_ms")),
+            f"{rows[scene]['share_of_step']:.3f}",
+            f"{rows[scene]['vertices_within_bounds']:.2f}",
+            f"{number(rows[scene]['edit_ms'])} / {number(rows[scene]['loop_ms'])}",
+            f"{rows[scene]['kept']:.3f} / {rows[scene]['kept_by_loop']:.3f}",
+            f"{rows[scene]['energy_ratio']:.3f}",
+        ]
+        for scene in SCENES
+    ]
+    head = [
+        "scene",
+        "our search, ms",
+        "update, ms",
+        "narrow update, ms",
+        "share",
+        "vertices within bounds",
+        "edit / loop, ms",
+        "motion kept, edit / loop",
+        "E, edit / loop",
+    ]
+    return markdown(head, lines)
