@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from benchmarks.results_tables.markdown import SCENES, loaded, markdown, number
-from benchmarks.sessions.dragged_profile import frames_missed, shapes_a_second, shown_apart
+from benchmarks.sessions.dragged_profile import DragFigures, drag_figures
+from benchmarks.sessions.profile import frame_rates
 
 LEAST_RATES = {"hare": 12}
 """Frames per second that a scene has to keep, where that is not 24."""
@@ -46,8 +46,7 @@ def frames() -> str:
 
 
 def _rates(seconds: Sequence[float]) -> str:
-    rates = 1 / np.array(seconds)
-    return ", ".join(f"{rate:.0f}" for rate in (rates.min(), np.median(rates), 1 / np.mean(seconds)))
+    return ", ".join(f"{rate:.0f}" for rate in frame_rates(seconds))
 
 
 def _below(seconds: Sequence[float], rate: float) -> str:
@@ -70,7 +69,11 @@ def _percent(share: float) -> str:
 def drags() -> str:
     """Drags in Blender, as a user sees them."""
     blender = {row["scene"]: row["dragged"] for row in loaded("profile_in_blender")["rows"]}
-    lines = [[f"{scene}, {part['threads']}", *_drag(part["stages"])] for scene in SCENES for part in blender[scene]]
+    lines = [
+        [f"{scene}, {part['threads']}", *_drag(drag_figures(part["stages"]))]
+        for scene in SCENES
+        for part in blender[scene]
+    ]
     head = [
         "scene, threads",
         "shapes a second",
@@ -84,28 +87,16 @@ def drags() -> str:
     return markdown(head, lines)
 
 
-def _drag(stages: Sequence[dict[str, Any]]) -> list[str]:
-    apart = [shown_apart(stage) for stage in stages]
-    moving = sum(stage["moving"] for stage in stages)
-    least, mean = min(shapes_a_second(stage)[0] for stage in stages), sum(map(len, apart)) / moving
-    ticks = np.concatenate([stage["ticks"]["seconds"] for stage in stages])
+def _drag(figures: DragFigures) -> list[str]:
     return [
-        f"{least:.0f}, {mean:.0f}, {1 / np.median(np.concatenate(apart)):.0f}",
-        str(max(map(frames_missed, stages))),
-        _spread(ticks),
-        _spread(np.concatenate(apart)),
-        _spread(np.concatenate([_behind(stage) for stage in stages])),
-        *(f"{1000 * max(stage[what] for stage in stages):.0f}" for what in ("settling", "confirming")),
+        f"{figures.least:.0f}, {figures.mean:.0f}, {figures.median:.0f}",
+        str(figures.missed),
+        figures.ticks,
+        figures.apart,
+        figures.behind,
+        f"{figures.settling:.0f}",
+        f"{figures.confirming:.0f}",
     ]
-
-
-def _behind(stage: dict[str, Any]) -> Any:
-    ticks = {name: np.array(values) for name, values in stage["ticks"].items()}
-    return ticks["behind"][ticks["shown"].astype(bool) & (ticks["at"] <= stage["moving"])]
-
-
-def _spread(seconds: Any) -> str:
-    return " / ".join(f"{1000 * value:.0f}" for value in np.percentile(seconds, [100, 95, 50]))
 
 
 def growth() -> str:
@@ -143,7 +134,7 @@ def large_scenes() -> str:
         "first tick, ms",
         "median, ms",
         "95 %, ms",
-        "most, ms",
+        "longest, ms",
         "memory, MB",
         "bytes per static triangle",
     ]

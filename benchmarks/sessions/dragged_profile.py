@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -60,16 +61,55 @@ def dragged_text(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _line(scene: str, part: dict[str, Any]) -> str:
-    stages = part["stages"]
-    seconds = np.concatenate([stage["ticks"]["seconds"] for stage in stages])
+    figures = drag_figures(part["stages"])
+    spreads = " ".join(f"{text:>17}" for text in (figures.ticks, figures.apart, figures.behind))
+    shapes = f"{figures.least:.0f} / {figures.median:.0f}"
+    return (
+        f"{scene:10} {part['threads']:7d} {shapes:>9} {figures.missed:6d} {spreads} {figures.settling:8.0f}"
+        f" {figures.beginning:6.0f}"
+    )
+
+
+@dataclass(frozen=True)
+class DragFigures:
+    """Figures of all drags of a scene.
+
+    Attributes:
+        least, mean, median: new shapes a second while the mouse moved: the least over any second, the mean, and the
+            inverse of the median distance.
+        missed: see `frames_missed`.
+        ticks, apart, behind: as in `dragged_text`.
+        beginning, settling, confirming: longest, in milliseconds.
+    """
+
+    least: float
+    mean: float
+    median: float
+    missed: int
+    ticks: str
+    apart: str
+    behind: str
+    beginning: float
+    settling: float
+    confirming: float
+
+
+def drag_figures(stages: Sequence[dict[str, Any]]) -> DragFigures:
+    """The figures of the stages of one scene, with one number of threads."""
     apart = np.concatenate([shown_apart(stage) for stage in stages])
+    ticks = np.concatenate([stage["ticks"]["seconds"] for stage in stages])
     behind = np.concatenate([_while_moving(stage, "behind") for stage in stages])
-    settling = 1000 * max(stage["settling"] for stage in stages)
-    begin = 1000 * max(stage["beginning"] for stage in stages)
-    figures = " ".join(f"{_percentiles(values):>17}" for values in (seconds, apart, behind))
-    least = min(shapes_a_second(stage)[0] for stage in stages)
-    shapes, missed = f"{least:.0f} / {1.0 / np.median(apart):.0f}", max(map(frames_missed, stages))
-    return f"{scene:10} {part['threads']:7d} {shapes:>9} {missed:6d} {figures} {settling:8.0f} {begin:6.0f}"
+    longest = {what: 1000 * max(stage[what] for stage in stages) for what in ("beginning", "settling", "confirming")}
+    return DragFigures(
+        least=min(shapes_a_second(stage)[0] for stage in stages),
+        mean=len(apart) / sum(stage["moving"] for stage in stages),
+        median=float(1.0 / np.median(apart)),
+        missed=max(map(frames_missed, stages)),
+        ticks=_percentiles(ticks),
+        apart=_percentiles(apart),
+        behind=_percentiles(behind),
+        **longest,
+    )
 
 
 def shown_apart(stage: dict[str, Any]) -> Any:

@@ -37,6 +37,12 @@ def profile(names: Sequence[str], threads: Sequence[int], report: Report) -> lis
     return rows
 
 
+def frame_rates(seconds: Sequence[float]) -> tuple[float, float, float]:
+    """Frames per second: minimum, median, and mean over the whole time."""
+    rates = 1 / np.array(seconds)
+    return float(rates.min()), float(np.median(rates)), len(seconds) / sum(seconds)
+
+
 def profile_text(rows: Sequence[dict[str, Any]]) -> str:
     """A line per row: minimum, median and mean of frames per second, and the split of the time."""
     parts = tuple(rows[0]["shares"])
@@ -44,10 +50,7 @@ def profile_text(rows: Sequence[dict[str, Any]]) -> str:
         f"{'Model':9} {'threads':>7} {'least':>6} {'median':>6} {'mean':>6}  " + " ".join(f"{p:>10}" for p in parts)
     ]
     for r in rows:
-        rates = 1 / np.array(r["seconds"])
-        mean = len(rates) / sum(r["seconds"])
+        rates = " ".join(f"{rate:6.1f}" for rate in frame_rates(r["seconds"]))
         split = " ".join(f"{100 * r['shares'][part]:9.1f}%" for part in parts)
-        lines.append(
-            f"{r['scene']:9} {r['threads']:7d} {rates.min():6.1f} {np.median(rates):6.1f} {mean:6.1f}  {split}"
-        )
+        lines.append(f"{r['scene']:9} {r['threads']:7d} {rates}  {split}")
     return "\n".join(lines)
