@@ -57,6 +57,15 @@ class Progress(Enum):
         return self in (Progress.FINISHED, Progress.CANCELLED)
 
 
+class Refinement(Enum):
+    """What a solved drag still needs, while the mouse rests or after the confirmation."""
+
+    SETTLING = "settling"
+    CONFIRMING = "confirming"
+    """A comparison with the edit from the start, which no solve within a budget makes."""
+    NONE = "none"
+
+
 @dataclass(frozen=True)
 class Goal:
     """The goal of a solve: a state, its transform, and the motion that an edit takes."""
@@ -134,7 +143,7 @@ class DragLoop:
         self._pending = False
         self._confirmed = False
         self._unfinished: Goal | None = None
-        self._settled = False
+        self._refinement = Refinement.SETTLING
         self._refusal = ""
         self._solves = 0
         self._solved: tuple[State | None, float] = (None, 0.0)
@@ -226,7 +235,7 @@ class DragLoop:
 
     def _note_motion(self) -> None:
         """Solve for a new goal, without what rest was used for."""
-        self._pending, self._settled = True, False
+        self._pending, self._refinement = True, Refinement.SETTLING
         self._fruitless = self._empty = self._idle = 0
         self._is_poor = False
         self._moved_at = time.perf_counter()
@@ -242,13 +251,16 @@ class DragLoop:
             self.writer.is_due = True
         if self.writer.is_due and not self._solves_on():
             self._write()
-        if self._confirmed and self.at_rest and (self._settled or self.result is None):
+        if self._confirmed and self.at_rest and not self._needs_refinement:
             self.progress = Progress.FINISHED
 
     def _solves_on(self) -> bool:
         """Whether a confirmed drag is not at its end: drawing each state on the way would take longer than solving."""
-        unsettled = self.result is not None and not self._settled
-        return self._confirmed and (self._pending or self._task is not None or unsettled)
+        return self._confirmed and (self._pending or self._task is not None or self._needs_refinement)
+
+    @property
+    def _needs_refinement(self) -> bool:
+        return self.result is not None and self._refinement is not Refinement.NONE
 
     def _run(self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False) -> None:
         self._task: Task[Any] | None = self._calls.task(steps)
@@ -278,11 +290,18 @@ class DragLoop:
         if self._pending:
             if not self._begin_again():
                 self._begin_solve()
-        elif not self._settled and self.result is not None and (self._confirmed or self._rests()):
-            assert self.edit is not None
-            self._settled = True
-            self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
+        elif self._needs_refinement and (self._confirmed or self._rests()):
+            self._begin_refinement()
         return self._task is not None
+
+    def _begin_refinement(self) -> None:
+        assert self.edit is not None
+        if self._refinement is Refinement.SETTLING:
+            self._refinement = Refinement.CONFIRMING
+            self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
+        else:
+            self._refinement = Refinement.NONE
+            self._run(self.edit.confirm_steps(), self._take_refined, can_cancel=not self._confirmed)
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
@@ -330,28 +349,35 @@ class DragLoop:
         )
         self._unfinished = goal if nothing_accepted else None
         self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
-        ends = found.status == "reached" or (found.status == "blocked" and self._fruitless > 0)
-        if not self._pending and (ends or self._is_poor):
+        if self._pending:
+            return
+        if found.status == "reached":
+            self._refinement = Refinement.NONE
+        elif self._is_poor or (found.status == "blocked" and self._fruitless > 0):
             self._end_settling()
 
     def _take_settled(self, settled: EditResult) -> None:
         """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
-        if self._is_cancelled(settled):
-            return
-        self._solves += 1
-        if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
-            self.result, self.writer.is_due = settled, True
-        if settled.status != "budget" or self.stopped:
+        if not self._take_refined(settled) or settled.status != "budget" or self.stopped:
             return
         gained = self._has_gained(self._solved[0], settled)
         self._idle = 0 if gained else self._idle + 1
-        self._settled = False
+        self._refinement = Refinement.SETTLING
         if self._idle >= MAX_IDLE or self._is_poor:
             self._end_settling()
 
+    def _take_refined(self, refined: EditResult) -> bool:
+        """Take a refined state; returns False if a motion cancelled its solve."""
+        if self._is_cancelled(refined):
+            return False
+        self._solves += 1
+        if refined.path or refined.status not in ("unchanged", "cancelled", "budget"):
+            self.result, self.writer.is_due = refined, True
+        return True
+
     def _end_settling(self) -> None:
         """End the solves, of which the last ones gained little."""
-        self._settled = True
+        self._refinement = Refinement.CONFIRMING
         if self.result is not None and self.result.status == "budget" and self.result.path:
             self.result = replace(self.result, status="corrected")
 
@@ -424,7 +450,7 @@ class DragLoop:
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending, self._fruitless, self._empty = True, 0, 0
-        if self.edit is not None or self._settled:
+        if self.edit is not None or self._refinement is Refinement.NONE:
             self.progress = Progress.FINISHING
             self._finish_at_once()
 
@@ -448,7 +474,7 @@ class DragLoop:
         if self.edit is not None:
             self.edit.restore()
         self._pending = self.writer.is_due = False
-        self._settled = True  # by the steps
+        self._refinement = Refinement.NONE  # by the steps
         self.result = None
         self._run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
         return True
@@ -458,7 +484,7 @@ class DragLoop:
 
     def _stop(self) -> None:
         """Keep the last accepted state."""
-        self.stopped, self._pending, self._settled = True, False, True
+        self.stopped, self._pending, self._refinement = True, False, Refinement.NONE
         if self._task is not None:
             self._task.cancel()
 

@@ -103,6 +103,7 @@ SessionCall drag_to(const DoubleArray& goal, const DragTimes& times) {
 }
 
 EditResult settle_session(EditSession& session, Execution& execution) { return session.settle(execution); }
+EditResult confirm_session(EditSession& session, Execution& execution) { return session.confirm(execution); }
 
 EditSession make_session(SurfacePointer surface, DeformationPointer deformation, const Controls& controls,
                          const EditOptions& options, const Obstacles& obstacles, Execution& execution) {
@@ -332,6 +333,12 @@ void bind_editing(py::module_& module) {
           },
           cancel, progress)
       .def(
+          "confirm",
+          [](Session& session, Token token, const py::object& report) {
+            return session.call(confirm_session, token, report);
+          },
+          cancel, progress)
+      .def(
           "start_edit", [](Session& session, const DoubleArray& to) { return session.start_call(edit_to(to)); }, goal)
       .def(
           "start_drag",
@@ -341,6 +348,7 @@ void bind_editing(py::module_& module) {
           },
           goal, time_budget, hand_over)
       .def("start_settle", [](Session& session) { return session.start_call(settle_session); })
+      .def("start_confirm", [](Session& session) { return session.start_call(confirm_session); })
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
       .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))
       .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))

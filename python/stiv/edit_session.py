@@ -191,8 +191,18 @@ class EditSession:
         return self._result(values)
 
     def settle(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
-        """Solve again toward the last goal until the energy no longer falls. It never grows."""
+        """Solve again toward the last goal until the energy no longer falls. It never grows.
+
+        Without a time budget, also does what :meth:`confirm` does.
+        """
         return self._result(self._session.settle(cancel, progress))
+
+    def confirm(self, *, cancel: CancelToken | None = None, progress: Progress | None = None) -> EditResult:
+        """After a straight drag to a far goal, make the edit from its start as well, and keep the better result.
+
+        For a drag with time budgets that has settled, when the user waits or rests. Heeds no time budget.
+        """
+        return self._result(self._session.confirm(cancel, progress))
 
     def start_edit(self, goal: ArrayLike) -> Job[EditResult]:
         """Start :meth:`edit` as a job."""
@@ -207,6 +217,10 @@ class EditSession:
     def start_settle(self) -> Job[EditResult]:
         """Start :meth:`settle` as a job."""
         return self._job(self._session.start_settle())
+
+    def start_confirm(self) -> Job[EditResult]:
+        """Start :meth:`confirm` as a job."""
+        return self._job(self._session.start_confirm())
 
     def _job(self, native: _native.Job) -> Job[EditResult]:
         return Job(native, self._result)

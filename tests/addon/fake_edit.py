@@ -34,7 +34,7 @@ class FakeEdit:
     from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write.
     `solving`: seconds that each solve reports. `budgets`, `hand_overs`: of all solves. `taking`: whether states can be
     taken from the session; `flips`: whether Blender then shows them with intersections; `cutting`: states that it shows
-    with intersections. `passed`: the last state that was written and passed the test.
+    with intersections. `from_start`: where the edit from the start ends, if closer to the goal. `passed`: the last state that was written and passed the test.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -59,6 +59,7 @@ class FakeEdit:
     moving = frozenset({"Box"})
     furthest: float = 10.0
     settling: bool = False
+    from_start: float | None = None
     busy: bool = False
     start_digest = "start"
     controls = ()
@@ -99,6 +100,16 @@ class FakeEdit:
             return FakeResult("cancelled")
         self._called("settle")
         return self._solve(self.goals[-1]) if self.settling else FakeResult("unchanged")
+
+    def confirm_steps(self) -> "Steps[Any]":
+        yield from self._delayed("confirm")
+        if self.cancelled:
+            return FakeResult("cancelled")
+        self._called("confirm")
+        if self.from_start is None:
+            return FakeResult("unchanged")
+        self.accepted = self.from_start
+        return FakeResult("corrected", (self.accepted,))
 
     def apply_steps(self, matrix: Any, state: Any) -> "Steps[Any]":
         """Typed values: in two halves."""

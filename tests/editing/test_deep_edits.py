@@ -15,6 +15,7 @@ from blend_fixtures.scenes.shape import Shape, joined
 Array = NDArray[np.float64]
 EGG = triangulated(icosphere(2, 0.3)).scaled((1.0, 0.6, 0.5))
 BALL = triangulated(icosphere(1, 0.2))
+LONG = 1e6  # seconds: a budget that ends nothing, but calls with a budget take no long ways
 
 
 def gap(width: float, at: float) -> list[Shape]:
@@ -75,31 +76,43 @@ def test_rigid_body_goes_around_a_wall() -> None:
     assert results[-1].status == "reached"  # without detours it stayed in front of the wall
 
 
-def ball_and_gap() -> tuple[stiv.EditSession, Array, Array]:
+def test_a_confirmed_drag_within_budgets_goes_around_a_wall() -> None:
+    session, controls, goal = wall(time_budget=LONG)
+    for step in range(1, 21):
+        session.drag(controls + (goal - controls) * step / 20)
+    assert session.settle().status != "reached"
+    assert session.confirm().status == "reached"
+
+
+def ball_and_gap(**options: float) -> tuple[stiv.EditSession, Array, Array]:
     """A ball of free vertices in front of a gap, with a goal behind it."""
     ball = triangulated(icosphere(2, 0.3))
-    return by_vertices(ball, gap(0.35, 0.6)), ball.vertices, ball.vertices + (1.2, 0.1, 0.0)
+    return by_vertices(ball, gap(0.35, 0.6), **options), ball.vertices, ball.vertices + (1.2, 0.1, 0.0)
 
 
-def torus_over_ball() -> tuple[stiv.EditSession, Array, Array]:
+def torus_over_ball(**options: float) -> tuple[stiv.EditSession, Array, Array]:
     """A torus in a cage above a ball, with a goal around its upper half."""
     cage = triangulated(torus(12, 6, 0.3, 0.08)).moved((0.0, 0.0, 0.7))
     deformation, triangles = stiv.loop(stiv.Cage.of_faces(cage.faces), 1)
     mover = Shape(deformation.surface(cage.vertices), tuple(map(tuple, triangles.tolist())))
-    session = session_of(mover, [triangulated(icosphere(2, 0.35))], deformation, cage.vertices)
+    session = session_of(mover, [triangulated(icosphere(2, 0.35))], deformation, cage.vertices, **options)
     return session, cage.vertices, cage.vertices + (0.02, 0.0, -0.7)
 
 
+@pytest.mark.parametrize("budget", [0.0, LONG])
 @pytest.mark.parametrize("scene", [ball_and_gap, torus_over_ball])
-def test_a_straight_drag_settles_no_worse_than_the_edit(
-    scene: Callable[[], tuple[stiv.EditSession, Array, Array]],
+def test_a_straight_drag_ends_no_worse_than_the_edit(
+    scene: Callable[..., tuple[stiv.EditSession, Array, Array]], budget: float
 ) -> None:
-    (edited, start, goal), (dragged, _, _) = scene(), scene()
+    """With a budget, as in Blender, only confirming compares them."""
+    (edited, start, goal), (dragged, _, _) = scene(), scene(time_budget=budget)
     path = [start]
     for step in range(1, 21):
         path += dragged.drag(start + (goal - start) * step / 20).path
-    result = dragged.settle()
-    path += result.path
+    ends = [dragged.settle, dragged.confirm] if budget else [dragged.settle]
+    for end in ends:
+        result = end()
+        path += result.path
     assert result.energy <= edited.edit(goal).energy * 1.001  # it was 1.20 and 1.07 times
     assert np.array_equal(path[-1], dragged.controls)
     surfaces = []
@@ -120,6 +133,7 @@ def test_a_drag_around_a_wall_stays_behind_it() -> None:
             session.drag(ball.vertices + before + (place - before) * step / 5)
         before = place
     session.settle()
+    session.confirm()
     assert session.controls[:, 0].min() > 0.1  # an edit ends in front of it, closer to the goal
 
 

@@ -198,6 +198,7 @@ bool detour(EditCall& call, const Aim& aim) {
 }
 
 bool detour_of_drag(EditCall& call, const Aim& aim, DragProgress& drag) {
+  if (call.execution.has_time_budget()) return false;
   const double missing = call.context.longest_displacement(call.accepted.surface, aim.surface);
   if (!(missing > missing_growth * drag.missing_at_detour)) return false;
   const bool passes = detour(call, aim);

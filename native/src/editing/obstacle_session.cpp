@@ -76,6 +76,10 @@ class ObstacleSession final : public SessionImplementation {
     const Controls goal = goal_;
     return carry_out(goal, execution, [&] { return near_->session->settle(execution); });
   }
+  EditResult confirm(Execution& execution) override {
+    const Controls goal = goal_;
+    return carry_out(goal, execution, [&] { return near_->session->confirm(execution); });
+  }
 
   void restore(const Controls& controls, const Controls& goal) override {
     // The session refuses other controls.

@@ -72,6 +72,7 @@ class SurfaceSession final : public SessionImplementation {
   }
 
   EditResult edit(const Controls& goal, Execution& execution) override {
+    limit_time(execution);
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
       tightening_.reset();
@@ -90,6 +91,7 @@ class SurfaceSession final : public SessionImplementation {
   }
 
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
+    limit_time(execution);
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
       if (hand_over) call.hand_over.emplace(*hand_over);
@@ -107,17 +109,29 @@ class SurfaceSession final : public SessionImplementation {
   }
 
   EditResult settle(Execution& execution) override {
+    limit_time(execution);
     const Controls goal = goal_;
     const auto work = [&](EditCall& call, const Aim& aim) {
       if (!tightening_) settle_smoothly(call, aim);
       if (context_.options().tight) tighten(call, aim, tightening_);
     };
     EditResult result = carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
-    if (result.status == EditStatus::budget)
-      trail_.add(goal, result.path);
-    else if (result.status != EditStatus::cancelled)
+    if (result.status == EditStatus::cancelled) return result;
+    if (execution.has_time_budget())
+      trail_.add(goal, result.path);  // not yet compared with the edit from the start
+    else
       trail_.begin(accepted_.controls);
     return result;
+  }
+
+  EditResult confirm(Execution& execution) override {
+    const Controls goal = goal_;
+    const auto work = [&](EditCall& call, const Aim& aim) {
+      if (!is_dragging_) return;
+      look_further(call, aim);
+      if (context_.options().tight) tighten(call, aim, tightening_);
+    };
+    return carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
   }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
@@ -177,7 +191,15 @@ class SurfaceSession final : public SessionImplementation {
     pull_until_settled(call, aim, limits);
     if (!is_dragging_) return;
     leap(call, aim, drag_);
-    if (detour_of_drag(call, aim, drag_)) pull_until_settled(call, aim, limits);
+    look_further(call, aim);
+  }
+
+  /// From the settled state of a drag. Changes nothing within a time budget.
+  void look_further(EditCall& call, const Aim& aim) {
+    if (detour_of_drag(call, aim, drag_)) {
+      tightening_.reset();
+      refine(call, aim);
+    }
     edit_from_start(call, aim);
   }
 
@@ -198,8 +220,8 @@ class SurfaceSession final : public SessionImplementation {
            !moves_pinned_controls(options, trail_.start(), aim.controls);
   }
 
-  /// A drag straight to a far goal may end where an edit from its start would not. Makes that edit as well, and keeps
-  /// the better result. Its path leads back to the start.
+  /// A drag straight to a far goal may end where an edit from its start would not. Makes that edit as well, as tight as
+  /// the drag's state, and keeps the better result. Its path leads back to the start.
   void edit_from_start(EditCall& call, const Aim& aim) {
     if (!can_edit_from_start(call, aim)) return;
     State start{trail_.start(), context_.surface_at(trail_.start(), call.execution)};
@@ -209,17 +231,22 @@ class SurfaceSession final : public SessionImplementation {
     if (!trail.is_known()) return;
     const State dragged = std::exchange(accepted_, std::move(start));
     EditReport report = std::exchange(call.report, {});
+    std::optional<TighteningProgress> tightening = std::exchange(tightening_, std::nullopt);
     const double missing = context_.energy(dragged.surface, aim.surface);
     progress_.reset();
     queries_.clear_cache();
     edit_toward(call, aim);
+    if (tightening) tighten(call, aim, tightening_);
     if (context_.energy(accepted_.surface, aim.surface) < (1 - least_gain_of_edit) * missing) {
       std::vector<Controls> way = trail.way_back();
+      trail_.begin(trail.start());
+      trail_.add(aim.controls, call.report.path);
       report.path.insert(report.path.end(), way.begin() + 1, way.end());
       call.report.path.insert(call.report.path.begin(), report.path.begin(), report.path.end());
     } else {
       call.report = std::move(report);
       accepted_ = dragged;
+      tightening_ = std::move(tightening);
     }
     queries_.clear_cache();
   }
@@ -232,6 +259,12 @@ class SurfaceSession final : public SessionImplementation {
         call, aim,
         {.pulls = 2 * context_.options().max_sub_edits, .poor_pulls = poor_pulls_before_end(call.execution)});
     call.report.blocked = was_blocked && call.report.blocked;
+  }
+
+  void limit_time(Execution& execution) const {
+    const double time_budget = context_.options().time_budget;
+    if (time_budget > 0 && !execution.has_time_budget())
+      execution.set_time_budget(time_budget, BudgetEnd::after_checkpoint);
   }
 
   /// Wraps every call: checks, interruption and the result. A call that is cancelled or throws changes nothing.
@@ -248,9 +281,6 @@ class SurfaceSession final : public SessionImplementation {
     EditStatus status = EditStatus::unchanged;
     {
       const ScopedTimer timer(execution.timings.total);
-      const double time_budget = context_.options().time_budget;
-      if (time_budget > 0 && !execution.has_time_budget())
-        execution.set_time_budget(time_budget, BudgetEnd::after_checkpoint);
       EditCall call{context_, queries_, accepted_, progress_, report, execution};
       status = solve(call, goal, target, followed, work);
     }
@@ -335,6 +365,7 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution, std::op
   return implementation_->drag(goal, execution, hand_over);
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
+EditResult EditSession::confirm(Execution& execution) { return implementation_->confirm(execution); }
 void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
 void EditSession::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
   implementation_->set_weights(std::move(weights), std::move(weight_axes));

@@ -17,6 +17,7 @@ class SessionImplementation {
   virtual EditResult edit(const Controls& goal, Execution& execution) = 0;
   virtual EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) = 0;
   virtual EditResult settle(Execution& execution) = 0;
+  virtual EditResult confirm(Execution& execution) = 0;
   virtual void restore(const Controls& controls, const Controls& goal) = 0;
   virtual void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) = 0;
   virtual bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) = 0;

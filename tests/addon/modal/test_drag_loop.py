@@ -31,7 +31,7 @@ def test_motions_are_solved_for_the_latest_only() -> None:
     assert edit.calls == ["drag", "write"]
 
 
-@pytest.mark.parametrize(("status", "settles"), [("reached", []), ("blocked", ["settle"])])
+@pytest.mark.parametrize(("status", "settles"), [("reached", []), ("blocked", ["settle", "confirm"])])
 def test_confirming_solves_for_the_last_goal_settles_and_writes(status: str, settles: list[str]) -> None:
     """Of a large object, even finding nothing to settle takes longer than a frame."""
     edit = FakeEdit(statuses=[status])
@@ -335,6 +335,33 @@ def test_a_motion_cancels_what_a_resting_drag_solves(rest: None) -> None:
     drag.tick()
     drag.tick()
     assert edit.goals == [0.5, 0.7] and edit.shown == 0.7
+
+
+@pytest.mark.parametrize("rests", [True, False])
+def test_a_settled_drag_is_confirmed_once(rests: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Solves within budgets never compare a drag with the edit from its start."""
+    monkeypatch.setattr(drag_loop, "REST_TIME", 0.0 if rests else 1e9)
+    edit = FakeEdit(statuses=["blocked"], furthest=0.3, from_start=0.8)
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    for _ in range(5):
+        drag.tick()
+    assert drag.at_rest and edit.shown == pytest.approx(0.8 if rests else 0.3)
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHED and drag.result.status == "corrected"
+    assert edit.shown == 0.8 and edit.calls.count("settle") == edit.calls.count("confirm") == 1
+
+
+def test_esc_ends_a_confirming_solve_and_keeps_the_settled_state() -> None:
+    edit = FakeEdit(statuses=["blocked"], furthest=0.3, from_start=0.8, delays={"confirm": 1000})
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    for _ in range(3):
+        assert drag.tick() is Progress.FINISHING
+    drag.handle(Event("ESC"))
+    drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.stopped and edit.shown == edit.accepted == 0.3
 
 
 def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:

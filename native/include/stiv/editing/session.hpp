@@ -75,9 +75,13 @@ class EditSession {
   ///        the state can be shown while the next call continues from it
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over = std::nullopt);
 
-  /// Solves again from the accepted state toward the last goal until the energy no longer falls. It never grows. After
-  /// a straight drag to a far goal, also makes the edit from its start, and keeps the better result.
+  /// Solves again from the accepted state toward the last goal until the energy no longer falls. It never grows.
+  /// Without a time budget, also confirms.
   EditResult settle(Execution& execution);
+
+  /// After a straight drag to a far goal, makes the edit from its start as well, and keeps the better result. Heeds no
+  /// time budget of the options: for a settled state, when the user waits or rests.
+  EditResult confirm(Execution& execution);
 
   /// Makes an earlier accepted state (undo, Esc) the accepted one. The next drag's increment counts from `goal`. Clears
   /// the cached candidates, so later results do not depend on earlier calls. @throws StartIntersectsError

@@ -332,6 +332,13 @@ class BlenderEdit:
         with kept_twins():
             return (yield from self._solver.solve(None))
 
+    def confirm_steps(self) -> Steps[stiv.EditResult]:
+        """Steps that confirm a settled drag: see stiv.EditSession.confirm."""
+        if self._unguarded is not None:
+            return unguarded_result(self._solver.deformation, self._unguarded)
+        with kept_twins():
+            return (yield from self._solver.confirm())
+
     def write(self) -> WriteReport:
         """Write the accepted controls, read Blender's evaluation back and test it (see `StateWriter`).
 

@@ -80,10 +80,21 @@ class EditSolver:
             result: stiv.EditResult = yield Call(session.settle, session.start_settle)
         else:
             result = yield Call(session.drag, session.start_drag, goal, **limits)
+        self._note(goal, result)
+        return result
+
+    def confirm(self) -> Steps[stiv.EditResult]:
+        """Steps that confirm a settled drag; see stiv.EditSession.confirm."""
+        session = self.session
+        self._renew_jacobians()
+        result: stiv.EditResult = yield Call(session.confirm, session.start_confirm)
+        self._note(None, result)
+        return result
+
+    def _note(self, goal: Floats | None, result: stiv.EditResult) -> None:
         if result.status != "cancelled":  # its goal is no longer wanted
             self.trail.add(goal, result)
         self._blocked = result.status == "blocked"
-        return result
 
     def _renew_jacobians(self) -> None:
         """Renew the Jacobians of observed stacks sometimes, and after a blocked call, at the accepted state."""

@@ -10,7 +10,7 @@ from stiv.blender.scene.arrays import Floats
 
 @dataclass(frozen=True)
 class SolverCall:
-    """One call of a session, a drag to a goal or a settle (None), with its result."""
+    """One call of a session, a drag to a goal, or settling or confirming (None), with its result."""
 
     goal: Floats | None
     result: stiv.EditResult
