@@ -58,7 +58,7 @@ class Progress(Enum):
 
 
 class Refinement(Enum):
-    """What a solved drag still needs, while the mouse rests or after the confirmation."""
+    """The next work on a solved drag, while the mouse rests or after the confirmation."""
 
     SETTLING = "settling"
     CONFIRMING = "confirming"
@@ -358,7 +358,10 @@ class DragLoop:
 
     def _take_settled(self, settled: EditResult) -> None:
         """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
-        if not self._take_refined(settled) or settled.status != "budget" or self.stopped:
+        if self._is_cancelled(settled):
+            return
+        self._take_refined(settled)
+        if settled.status != "budget" or self.stopped:
             return
         gained = self._has_gained(self._solved[0], settled)
         self._idle = 0 if gained else self._idle + 1
@@ -366,14 +369,12 @@ class DragLoop:
         if self._idle >= MAX_IDLE or self._is_poor:
             self._end_settling()
 
-    def _take_refined(self, refined: EditResult) -> bool:
-        """Take a refined state; returns False if a motion cancelled its solve."""
+    def _take_refined(self, refined: EditResult) -> None:
         if self._is_cancelled(refined):
-            return False
+            return
         self._solves += 1
         if refined.path or refined.status not in ("unchanged", "cancelled", "budget"):
             self.result, self.writer.is_due = refined, True
-        return True
 
     def _end_settling(self) -> None:
         """End the solves, of which the last ones gained little."""

@@ -34,7 +34,8 @@ class FakeEdit:
     from the name of a call to the turns that it takes. `reading`, `writing`: seconds of the start and of each write.
     `solving`: seconds that each solve reports. `budgets`, `hand_overs`: of all solves. `taking`: whether states can be
     taken from the session; `flips`: whether Blender then shows them with intersections; `cutting`: states that it shows
-    with intersections. `from_start`: where the edit from the start ends, if closer to the goal. `passed`: the last state that was written and passed the test.
+    with intersections. `from_start`: where the edit from the start ends, if closer to the goal. `passed`: the last
+    state that was written and passed the test.
     """
 
     statuses: list[str] = field(default_factory=list)
