@@ -25,6 +25,7 @@ from building import (
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene
+from stiv.task import run
 
 DEFORM = EditSettings(object_response="deform")
 
@@ -52,6 +53,23 @@ def test_a_move_into_the_floor_stops_above_it(settings: EditSettings) -> None:
     assert edit.apply(shift(z=-2)).status in ("corrected", "blocked")
     assert edit.write().passed
     assert 0 < evaluated(cube)[:, 2].min() < 0.01
+    assert check_scene(bpy.context).pairs == ()
+
+
+def test_a_confirmed_drag_goes_around_a_wall() -> None:
+    """Solves within budgets make no detours, and stay in front of it."""
+    cube = add_cube("Cube")
+    add_cube("Wall", (2.0, 0.3, 0.1), scale=(0.2, 2.0, 2.0))
+    select(cube)
+    bpy.context.view_layer.update()
+    edit = begin(settings=EditSettings(time_budget=1e6))
+    for step in range(1, 11):
+        edit.drag(shift(0.6 * step))
+    edit.settle()
+    assert edit.write().passed and cube.location.x < 2.0
+    assert run(edit.confirm_steps()).status == "reached"
+    assert edit.write().passed
+    assert tuple(cube.location) == pytest.approx((6.0, 0.0, 0.0), abs=1e-6)
     assert check_scene(bpy.context).pairs == ()
 
 
