@@ -19,9 +19,10 @@ from blend_fixtures.scenes.families import Edit
 from stiv import InputError
 
 Array = NDArray[np.float64]
-WAYS = ("stop", "edit", "settled", "tight", "drag", "confirmed", "ipc")
+WAYS = ("stop", "edit", "settled", "tight", "drag", "confirmed", "in Blender", "ipc")
 DRAG_STEPS = 20
 SETTLE_CALLS = 12  #: at most
+BUDGET = 1e6  #: seconds of a call: ends nothing, but calls with a budget take no long ways
 NEGLIGIBLE = 1e-9  #: of the energy at the start; below it, an edit reached its goal
 SMALLEST = 1e-60  #: coordinates below it are rounding errors of the solver, which the exact test refuses
 QUANTILE = 0.99  #: of the growth of edges
@@ -67,8 +68,8 @@ _Found = tuple[Array, float, bool]  # surface, seconds, whether the solver conve
 
 
 def _by_stiv(edit: Edit) -> dict[str, _Found]:
-    def session(tight: bool = False) -> stiv.EditSession:
-        options = stiv.EditOptions(threads=1, tight=tight, **edit.options)
+    def session(**chosen: Any) -> stiv.EditSession:
+        options = stiv.EditOptions(**{"threads": 1, **edit.options, **chosen})
         return stiv.EditSession(edit.surface, edit.deformation, edit.controls, options)
 
     def timed(session: stiv.EditSession, work: Callable[[], object]) -> _Found:
@@ -76,7 +77,7 @@ def _by_stiv(edit: Edit) -> dict[str, _Found]:
         work()
         return np.array(session.surface), time.process_time() - began, True
 
-    edited, tightened, dragged = session(), session(tight=True), session()
+    edited, tightened, dragged, limited = session(), session(tight=True), session(), session(time_budget=BUDGET)
     found = {"stop": (_stop(session(), edit), 0.0, True)}
     found["edit"] = timed(edited, lambda: edited.edit(edit.goal))
     surface, seconds, _ = timed(edited, lambda: _settle(edited))
@@ -84,9 +85,17 @@ def _by_stiv(edit: Edit) -> dict[str, _Found]:
     found["tight"] = timed(tightened, lambda: tightened.edit(edit.goal))
     goals = edit.controls + (edit.goal - edit.controls) * np.arange(1, DRAG_STEPS + 1)[:, None, None] / DRAG_STEPS
     found["drag"] = timed(dragged, lambda: [dragged.drag(goal) for goal in goals])
-    surface, seconds, _ = timed(dragged, dragged.settle)  # as Blender does when a drag is confirmed
+    surface, seconds, _ = timed(dragged, dragged.settle)
     found["confirmed"] = surface, seconds + found["drag"][1], True
+    found["in Blender"] = timed(limited, lambda: _drag_as_blender(limited, goals))
     return found
+
+
+def _drag_as_blender(session: stiv.EditSession, goals: Array) -> None:
+    for goal in goals:
+        session.drag(goal)
+    session.settle()
+    session.confirm()
 
 
 def _settle(session: stiv.EditSession) -> None:
