@@ -22,9 +22,9 @@ def rows_of(edit: str, energies: tuple[float, ...]) -> list[dict[str, object]]:
 
 def test_energies_are_compared_where_neither_reached_the_goal() -> None:
     rows = [
-        *rows_of("a", (9, 3, 2, 2, 3, 3, 2)),
-        *rows_of("b", (9, 0, 0, 0, 3, 3, 1)),
-        *rows_of("c", (9, 8, 2, 2, 3, 3, 2)),
+        *rows_of("a", (9, 3, 2, 2, 3, 3, 3, 2)),
+        *rows_of("b", (9, 0, 0, 0, 3, 3, 3, 1)),
+        *rows_of("c", (9, 8, 2, 2, 3, 3, 3, 2)),
     ]
     assert energy_ratios(rows, "edit") == {"a": 1.5, "c": 4.0}
     assert worst(rows) == ["c", "a"]
