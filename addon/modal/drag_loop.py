@@ -13,8 +13,9 @@ from .drag_writer import DragWriter
 from .event import Event
 from .event_handling import step
 from .pointer import Pointer
+from .repeated_solves import RepeatedSolves
 from .request import Request
-from .state import Effect, Phase, State
+from .state import Effect, Phase, State, same_goal
 
 if TYPE_CHECKING:
     from ..stiv_blender import Edit, EditResult, Motion, Steps, Task
@@ -27,18 +28,8 @@ LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would 
 HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
-DOUBLINGS = 4  # of a budget that ends before a state is accepted, at most; of an unfinished goal, fewer
-DOUBLINGS_UNFINISHED = 2
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
-MAX_HIDDEN = 3  # solves for a goal that accept nothing before the header says so
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
-GAIN = 0.99  # fraction of the energy: a repeated solve that leaves more of it has gained nothing
-MAX_SLOW = 6  # repeated solves that use up their budget and gain little; then a drag waits for the next motion
-POOR_GAIN = (
-    0.9999  # the same for a poor state, of which one settles a drag at rest: deep in a wall, a slide gains little
-)
-MAX_IDLE = 10  # repeated solves that settle and accept nothing, each from where the last one was; then a drag ends
-MAX_FRUITLESS = 20  # repeated solves that use up their budget and accept nothing; then the goal is given up
 
 
 class Progress(Enum):
@@ -146,11 +137,8 @@ class DragLoop:
         self._refinement = Refinement.SETTLING
         self._refusal = ""
         self._solves = 0
-        self._solved: tuple[State | None, float] = (None, 0.0)
+        self._repeated = RepeatedSolves()
         self._aimed_at: State | None = None  # state of the last goal
-        self._energy = 0.0  # of the last solve
-        self._fruitless = self._empty = self._idle = 0
-        self._is_poor = False
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._run(calls.begin(state.request), self._take_first_edit)
@@ -171,7 +159,7 @@ class DragLoop:
     @property
     def shows_soon(self) -> bool:
         """Whether the first solves for a goal accepted nothing, and others follow: showing each would draw the view."""
-        return 0 < self._empty <= MAX_HIDDEN and not self.at_rest
+        return self._repeated.are_hidden and not self.at_rest
 
     @property
     def fraction(self) -> float:
@@ -236,8 +224,7 @@ class DragLoop:
     def _note_motion(self) -> None:
         """Solve for a new goal, without what rest was used for."""
         self._pending, self._refinement = True, Refinement.SETTLING
-        self._fruitless = self._empty = self._idle = 0
-        self._is_poor = False
+        self._repeated.begin()
         self._moved_at = time.perf_counter()
         if self._task is not None and self._can_cancel:
             self._task.cancel()
@@ -319,12 +306,12 @@ class DragLoop:
         self._aimed_at = goal.state
         is_new = self._unfinished is None
         self._unfinished = None
-        doublings = min(self._empty, DOUBLINGS if is_new or self._confirmed else DOUBLINGS_UNFINISHED)
+        doublings = self._repeated.doublings(is_new or self._confirmed)
         hand_over = None if self._confirmed or self._rests() else max(HAND_OVER, self.writer.seconds / 2)
         budget = FINAL_BUDGET if self._confirmed else self._budget
         budget = (budget if hand_over is None else max(budget, LONG_BUDGET)) * 2**doublings
         steps = self.edit.drag_steps(goal.motion, time_budget=budget, hand_over=hand_over)
-        can_cancel = is_new and self._fruitless > 0 and not self._confirmed
+        can_cancel = is_new and self._repeated.fruitless > 0 and not self._confirmed
         self._run(_noting(steps), lambda found: self._take_solved(goal, found), can_cancel)
 
     def _take_first_edit(self, edit: Edit) -> None:
@@ -343,17 +330,15 @@ class DragLoop:
         self.result, self.transform, self.note = found, goal.transform, self._refusal
         self._refusal = ""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
-        self._empty = self._empty + 1 if nothing_accepted else 0
-        self._pending = not self.stopped and (
-            self._may_gain(goal.state, found) or not _same_goal(goal.state, self.state)
-        )
+        may_gain = self._repeated.may_gain(goal.state, found, self._confirmed, self._rests())
+        self._pending = not self.stopped and (may_gain or not same_goal(goal.state, self.state))
         self._unfinished = goal if nothing_accepted else None
         self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
         if self._pending:
             return
         if found.status == "reached":
             self._refinement = Refinement.NONE
-        elif self._is_poor or (found.status == "blocked" and self._fruitless > 0):
+        elif self._repeated.is_poor or (found.status == "blocked" and self._repeated.fruitless > 0):
             self._end_settling()
 
     def _take_settled(self, settled: EditResult) -> None:
@@ -363,10 +348,8 @@ class DragLoop:
         self._take_refined(settled)
         if settled.status != "budget" or self.stopped:
             return
-        gained = self._has_gained(self._solved[0], settled)
-        self._idle = 0 if gained else self._idle + 1
         self._refinement = Refinement.SETTLING
-        if self._idle >= MAX_IDLE or self._is_poor:
+        if not self._repeated.may_settle(settled, self._confirmed or self._rests()):
             self._end_settling()
 
     def _take_refined(self, refined: EditResult) -> None:
@@ -389,30 +372,6 @@ class DragLoop:
     def _new_goal(self) -> Goal:
         transform = self._calls.transform_of(self.state)
         return Goal(self.state, transform, self._calls.motion_of(transform, self.state))
-
-    def _may_gain(self, state: State, result: EditResult) -> bool:
-        """Whether another solve for the same state may come closer: one solve goes only a limited way to a far goal.
-
-        While the mouse rests, this makes the final state independent of the number of motions before it.
-        """
-        gained = self._has_gained(state, result)
-        self._fruitless = 0 if gained else self._fruitless + 1
-        if result.status == "budget":
-            most = MAX_FRUITLESS if self._confirmed or len(result.path) == 0 else MAX_SLOW
-            return self._fruitless < most and not self._is_poor
-        return result.status == "corrected" and gained
-
-    def _has_gained(self, state: State | None, result: EditResult) -> bool:
-        """Whether a solve for a state came closer to its goal; notes whether it hardly did."""
-        solved, least = self._solved
-        is_new, before = not _same_goal(solved, state), self._energy
-        gained = is_new or result.energy < GAIN * least
-        if gained:
-            self._solved = (state, result.energy)
-        self._energy = result.energy
-        rests = self._confirmed or self._rests()
-        self._is_poor = not is_new and rests and len(result.path) > 0 and result.energy >= POOR_GAIN * before
-        return gained
 
     def _begin_again(self) -> bool:
         """Begin another edit if the state requests one; returns whether its task has begun.
@@ -450,7 +409,8 @@ class DragLoop:
         self._confirmed = True
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
-            self._pending, self._fruitless, self._empty = True, 0, 0
+            self._pending = True
+            self._repeated.begin_confirmed()
         if self.edit is not None or self._refinement is Refinement.NONE:
             self.progress = Progress.FINISHING
             self._finish_at_once()
@@ -501,7 +461,7 @@ class DragLoop:
     def _drags_on(self) -> bool:
         """Whether the next work is a solve for a new goal, and takes too long for the same frame."""
         continues = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
-        is_new = not _same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
+        is_new = not same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
         solved = self.result.timings["total"] if self.result is not None else 0.0
         return continues and is_new and solved + self.writer.seconds > FITTING
 
@@ -525,11 +485,6 @@ class DragLoop:
         self._leave_task()
         if self.edit is not None:
             restore_after_error(self.edit, error)
-
-
-def _same_goal(first: State | None, second: State | None) -> bool:
-    """Whether two states differ at most by the confirmation."""
-    return first is not None and second is not None and replace(first, phase=second.phase) == second
 
 
 def _noting(steps: Steps[Any]) -> Steps[Any]:

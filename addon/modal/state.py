@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from .axis_lock import AxisLock
@@ -94,3 +94,8 @@ class State:
         if self.kind == "rotate":
             return 2 if self.trackball else 1
         return len(self.axis_lock.axes)
+
+
+def same_goal(first: State | None, second: State | None) -> bool:
+    """Whether two states differ at most by the confirmation."""
+    return first is not None and second is not None and replace(first, phase=second.phase) == second

@@ -7,9 +7,10 @@ from scripted_drag import follow, move_to, new_drag
 from test_event_handling import EVENTS
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW, Progress
+from stiv_addon.modal.drag_loop import Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.pointer import Pointer
+from stiv_addon.modal.repeated_solves import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW
 from stiv_addon.modal.request import Request
 from stiv_addon.modal.state import Effect
 
