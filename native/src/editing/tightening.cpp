@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "editing/drag.hpp"
+#include "editing/linearised_step.hpp"
 #include "editing/response_projection.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "response/sparse_fields.hpp"
@@ -29,6 +30,7 @@ class Tightening {
   double energy_now() const { return call_.context.energy(call_.accepted.surface, aim_.surface); }
   Controls step() const;
   double fraction_nearest_to_goal(const Controls& motion) const;
+  Controls projected(const Controls& ahead) const;
   double pull();
   bool run_level();
 
@@ -60,13 +62,19 @@ double Tightening::fraction_nearest_to_goal(const Controls& motion) const {
   return squared_length > 0 ? (aim_.surface - call_.accepted.surface).cwiseProduct(moved).sum() / squared_length : 0;
 }
 
+/// Contacts of turning bodies are linear only near the state at which they are linearized.
+Controls Tightening::projected(const Controls& ahead) const {
+  if (!call_.context.deformation().rotation_rows().empty()) return linearised_step(call_, ahead);
+  ConstraintSet limits;
+  return project_within_limits(call_, limits, ahead);
+}
+
 /// Pulls along a part of the step. Returns the relative drop of the energy.
 double Tightening::pull() {
   const double before = energy_now();
   const Controls motion = step();
   const Controls ahead = call_.accepted.controls + progress_.part * fraction_nearest_to_goal(motion) * motion;
-  ConstraintSet limits;
-  const Controls goal = call_.context.limits().nearest(project_within_limits(call_, limits, ahead));
+  const Controls goal = call_.context.limits().nearest(projected(ahead));
   if (call_.context.stored(goal) == call_.accepted.controls) return 0;
   run_sub_edits_by_steps(call_, {goal, aim_.surface, true});
   return 1 - energy_now() / before;
