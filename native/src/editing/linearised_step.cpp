@@ -40,8 +40,7 @@ std::vector<ControlConstraint> contacts_toward(EditCall& call, const Controls& p
   const Deformation& deformation = context.deformation();
   const State& accepted = call.accepted;
   const Positions ahead = accepted.surface + deformation.push_forward(accepted.controls, p - accepted.controls);
-  const std::optional<Events> events =
-      call.queries.find(accepted.surface, ahead, PairLimit::respected, call.execution);
+  const std::optional<Events> events = call.queries.find(accepted.surface, ahead, PairLimit::respected, call.execution);
   if (!events || events->empty()) return {};
   const auto [start, end] = call.queries.with_obstacles(accepted.surface, ahead);
   std::vector<Stiv> volumes;
