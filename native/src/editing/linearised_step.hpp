@@ -5,10 +5,10 @@
 
 namespace stiv {
 
-/// The controls closest to `ahead` in the call's metric that respect the contacts near the accepted state, and the
-/// call's limits. Surface and contacts are linearized at the accepted state. If contacts balance the way to `ahead`,
-/// these are therefore the accepted controls: a step of sequential quadratic programming. Nothing is tested: the step
-/// may have contacts of second order. (mathematics.md, "Tight edits")
+/// The controls closest to `ahead` in the call's metric that respect the contacts on the way to them, and the call's
+/// limits: a step of sequential quadratic programming. Surface and contacts are linearised at the accepted state. If
+/// contacts balance the way to `ahead`, the result is therefore the accepted controls. It is not tested, and curved
+/// surfaces may intersect there. (mathematics.md, "Tight edits")
 /// @throws Interrupted
 Controls linearised_step(EditCall& call, const Controls& ahead);
 
