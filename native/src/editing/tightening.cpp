@@ -71,7 +71,7 @@ Controls Tightening::projected(const Controls& ahead) const {
   return project_within_limits(call_, limits, ahead);
 }
 
-/// Is the motion to these controls as short as rounding? Then contacts balance the step, and halving it is in vain.
+/// Is the motion to these controls as short as rounding? Then contacts balance the step, and shorter ones too.
 bool Tightening::is_balanced(const Controls& goal) const {
   const Controls& p = call_.accepted.controls;
   const Positions motion = call_.context.deformation().push_forward(p, goal - p);
