@@ -72,7 +72,7 @@ def turned(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
     angle = np.linalg.norm(turn)
     axis = turn / angle
     along = (vectors @ axis)[:, None] * axis
-    return along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors)
+    return np.asarray(along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors))
 
 
 def least_energy_of_turns(vertices: np.ndarray, start: np.ndarray, target: np.ndarray) -> float:
@@ -90,7 +90,7 @@ def least_energy_of_turns(vertices: np.ndarray, start: np.ndarray, target: np.nd
         return 0.5 * float(((placed(x) - target) ** 2).sum())
 
     def height(x: np.ndarray) -> np.ndarray:
-        return placed(x)[:, 2] - FLOOR - CLEARANCE
+        return np.asarray(placed(x)[:, 2] - FLOOR - CLEARANCE)
 
     def solved(turn: np.ndarray) -> float:
         above = {"type": "ineq", "fun": height}
