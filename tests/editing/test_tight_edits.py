@@ -84,7 +84,7 @@ def least_energy_of_turns(vertices: np.ndarray, start: np.ndarray, target: np.nd
     arms = vertices - vertices.mean(axis=0)
 
     def placed(x: np.ndarray) -> np.ndarray:
-        return x[:3] + turned(arms, x[3:])
+        return np.asarray(x[:3] + turned(arms, x[3:]))
 
     def energy(x: np.ndarray) -> float:
         return 0.5 * float(((placed(x) - target) ** 2).sum())
