@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "editing/drag.hpp"
+#include "editing/linearised_step.hpp"
 #include "editing/response_projection.hpp"
 #include "editing/sub_edit_loop.hpp"
 #include "response/sparse_fields.hpp"
@@ -29,12 +30,15 @@ class Tightening {
   double energy_now() const { return call_.context.energy(call_.accepted.surface, aim_.surface); }
   Controls step() const;
   double fraction_nearest_to_goal(const Controls& motion) const;
-  double pull();
+  Controls projected(const Controls& ahead) const;
+  bool is_balanced(const Controls& goal) const;
+  std::optional<double> pull();
   bool run_level();
 
   EditCall& call_;
   const Aim& aim_;
   TighteningProgress& progress_;
+  const bool turns_ = !call_.context.deformation().rotation_rows().empty();
 };
 
 /// The motion M^-1 J' (q~ - f(p)) of the controls, in which pinned controls rest.
@@ -60,13 +64,28 @@ double Tightening::fraction_nearest_to_goal(const Controls& motion) const {
   return squared_length > 0 ? (aim_.surface - call_.accepted.surface).cwiseProduct(moved).sum() / squared_length : 0;
 }
 
-/// Pulls along a part of the step. Returns the relative drop of the energy.
-double Tightening::pull() {
+/// Contacts of turning bodies are linear only near the state at which they are linearized.
+Controls Tightening::projected(const Controls& ahead) const {
+  if (turns_) return linearised_step(call_, ahead);
+  ConstraintSet limits;
+  return project_within_limits(call_, limits, ahead);
+}
+
+/// Is the motion to these controls as short as rounding? Then contacts balance the step, and shorter ones too.
+bool Tightening::is_balanced(const Controls& goal) const {
+  const Controls& p = call_.accepted.controls;
+  const Positions motion = call_.context.deformation().push_forward(p, goal - p);
+  const double longest = motion.rowwise().squaredNorm().maxCoeff(), rounding = call_.context.least_separation();
+  return longest <= rounding * rounding;
+}
+
+/// Pulls along a part of the step. Returns the relative drop of the energy, or nothing if the whole step is balanced.
+std::optional<double> Tightening::pull() {
   const double before = energy_now();
   const Controls motion = step();
   const Controls ahead = call_.accepted.controls + progress_.part * fraction_nearest_to_goal(motion) * motion;
-  ConstraintSet limits;
-  const Controls goal = call_.context.limits().nearest(project_within_limits(call_, limits, ahead));
+  const Controls goal = call_.context.limits().nearest(projected(ahead));
+  if (turns_ && progress_.part == 1 && is_balanced(goal)) return std::nullopt;
   if (call_.context.stored(goal) == call_.accepted.controls) return 0;
   run_sub_edits_by_steps(call_, {goal, aim_.surface, true});
   return 1 - energy_now() / before;
@@ -80,14 +99,15 @@ bool Tightening::run_level() {
   while (progress_.poor_pulls < poor_pulls_before_next_level && progress_.pulls < max_pulls) {
     if (call_.context.longest_displacement(call_.accepted.surface, aim_.surface) <= call_.context.least_separation())
       return false;
-    const double gain = pull();
+    const std::optional<double> gain = pull();
+    if (!gain) break;
     ++progress_.pulls;
-    progress_.gain += gain;
-    if (gain >= least_gain)
+    progress_.gain += *gain;
+    if (*gain >= least_gain)
       progress_.poor_pulls = 0;
-    else if (gain > 0 || progress_.part == smallest_part)
+    else if (*gain > 0 || progress_.part == smallest_part)
       ++progress_.poor_pulls;
-    progress_.part = gain > 0 ? std::min(1.0, 2 * progress_.part) : std::max(smallest_part, progress_.part / 2);
+    progress_.part = *gain > 0 ? std::min(1.0, 2 * progress_.part) : std::max(smallest_part, progress_.part / 2);
   }
   return progress_.gain >= least_gain && progress_.pulls < max_pulls;
 }

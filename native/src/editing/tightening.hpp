@@ -22,8 +22,9 @@ struct TighteningProgress {
 
 /// Lowers the energy from a settled state further. The metric's damping keeps settled states smooth, so they end short
 /// of the lowest energy. Each pull leads toward a damped Gauss-Newton step of the energy alone, whose fixed points are
-/// its minima under the constraints. Less damped levels follow while they lower the energy by more than 1e-4. Controls
-/// stay within their box. (mathematics.md, "Tight edits")
+/// its minima under the constraints. If rotations are controls, it leads to a linearised step. Less damped levels
+/// follow while they lower the energy by more than 1e-4. Controls stay within their box. (mathematics.md, "Tight
+/// edits")
 void tighten(EditCall& call, const Aim& aim, std::optional<TighteningProgress>& progress);
 
 }  // namespace stiv

@@ -105,6 +105,28 @@ EditResult edited(EditSession& session, const Controls& goal, int threads = 1) {
   return session.edit(goal, execution);
 }
 
+/// An edit and settling in calls whose time is used up at once.
+EditResult edited_in_short_calls(const Scene& scene, EditSession& session, const Controls& goal) {
+  EditResult result;
+  int calls = 0;
+  for (; calls < 2000 && (calls == 0 || result.status == EditStatus::budget); ++calls) {
+    Execution execution(1);
+    execution.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
+    result = calls == 0 ? session.edit(goal, execution) : session.settle(execution);
+    CHECK(is_free(scene, session.surface()));
+  }
+  CHECK(calls > 5);
+  CHECK(result.status != EditStatus::budget);
+  return result;
+}
+
+Controls pressed_and_turned(const Scene& plate) {
+  Controls goal = plate.controls;
+  goal.row(0) += Eigen::RowVector3d(0.1, 0, -0.8);
+  goal.row(1) << 0, 0.6, 0;
+  return goal;
+}
+
 }  // namespace
 
 TEST_CASE("tight: an edit ends at the optimum of a dense quadratic program") {
@@ -203,14 +225,23 @@ TEST_CASE("tight: the same bits for any number of threads") {
 TEST_CASE("tight: a rigid motion is tightened too, and stays free of intersections") {
   const Scene scene = plate_over_wall();
   EditOptions options;
-  Controls goal = scene.controls;
-  goal.row(0) += Eigen::RowVector3d(0.1, 0, -0.8);
-  goal.row(1) << 0, 0.6, 0;
+  const Controls goal = pressed_and_turned(scene);
   EditSession smooth = session_of(scene, options);
   options.tight = true;
   EditSession tight = session_of(scene, options);
   CHECK(edited(tight, goal).energy <= edited(smooth, goal).energy);
   CHECK(is_free(scene, tight.surface()));
+}
+
+TEST_CASE("tight: a rigid motion has the same bits for any number of threads, and the same energy in short calls") {
+  const Scene scene = plate_over_wall();
+  const Controls goal = pressed_and_turned(scene);
+  EditSession one = session_of(scene, precise(true)), three = session_of(scene, precise(true));
+  const double energy = edited(one, goal, 1).energy;
+  edited(three, goal, 3);
+  CHECK(one.controls() == three.controls());
+  EditSession session = session_of(scene, precise(true));
+  CHECK(edited_in_short_calls(scene, session, goal).energy < (1 + 1e-4) * energy);
 }
 
 TEST_CASE("tight: a call that is cancelled changes nothing") {
@@ -234,15 +265,6 @@ TEST_CASE("tight: settling in calls without time ends at the same energy") {
   const BezierOverPlate bezier(2);
   const Controls goal = bezier.pressed(6);
   EditSession session = session_of(bezier.scene, precise(true));
-  EditResult result;
-  int calls = 0;
-  for (; calls < 2000 && (calls == 0 || result.status == EditStatus::budget); ++calls) {
-    Execution execution(1);
-    execution.set_time_budget(1e-9, BudgetEnd::after_checkpoint);
-    result = calls == 0 ? session.edit(goal, execution) : session.settle(execution);
-    CHECK(is_free(bezier.scene, session.surface()));
-  }
-  CHECK(calls > 5);
-  CHECK(result.status != EditStatus::budget);
+  const EditResult result = edited_in_short_calls(bezier.scene, session, goal);
   CHECK(result.energy < (1 + 1e-4) * bezier.energy_at(bezier.optimum(goal, 1e-7), goal));
 }
