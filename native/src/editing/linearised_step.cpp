@@ -34,7 +34,7 @@ Stiv linearised(const Event& event, const Positions& accepted, Index first_obsta
   return stiv;
 }
 
-/// Constraints of the contacts on the linearized way to the controls p; none if there are none.
+/// Constraints of the contacts on the linearised way to the controls p; none if there are none.
 std::vector<ControlConstraint> contacts_toward(EditCall& call, const Controls& p) {
   const EditContext& context = call.context;
   const Deformation& deformation = context.deformation();

@@ -251,7 +251,7 @@ class SurfaceSession final : public SessionImplementation {
     queries_.clear_cache();
   }
 
-  /// The first solution is linearized where the surfaces met on the way to the goal, possibly far from the result.
+  /// The first solution is linearised where the surfaces met on the way to the goal, possibly far from the result.
   /// Solving again from there lowers the energy further. An edit whose response had settled stays unblocked.
   void refine(EditCall& call, const Aim& aim) {
     const bool was_blocked = call.report.blocked;

@@ -63,7 +63,7 @@ RoundOutcome SubEditLoop::rounds(Projection projection, const StatePredicate& is
   return run_rounds_within_reach(call_, aim_.controls, projection, fraction_, is_diverging);
 }
 
-/// The first solution of an edit. Accumulated constraints were linearized at different candidates and may overshoot
+/// The first solution of an edit. Accumulated constraints were linearised at different candidates and may overshoot
 /// together. If the energy grows though no pinned control pushes, Algorithm 1 is run as well, and the better solution
 /// is used. Accumulating only raises the energy further, so diverging rounds are given up early, and completed only if
 /// Algorithm 1 overshoots too. (mathematics.md, "Guarantee")

@@ -56,7 +56,7 @@ Controls Tightening::step() const {
   return motion;
 }
 
-/// Where along a motion the linearized surface is nearest to the goal: damping makes the motion too short, and response
+/// Where along a motion the linearised surface is nearest to the goal: damping makes the motion too short, and response
 /// weights scale it.
 double Tightening::fraction_nearest_to_goal(const Controls& motion) const {
   const Positions moved = call_.context.deformation().push_forward(call_.accepted.controls, motion);
@@ -64,7 +64,7 @@ double Tightening::fraction_nearest_to_goal(const Controls& motion) const {
   return squared_length > 0 ? (aim_.surface - call_.accepted.surface).cwiseProduct(moved).sum() / squared_length : 0;
 }
 
-/// Contacts of turning bodies are linear only near the state at which they are linearized.
+/// Contacts of turning bodies are linear only near the state at which they are linearised.
 Controls Tightening::projected(const Controls& ahead) const {
   if (turns_) return linearised_step(call_, ahead);
   ConstraintSet limits;

@@ -41,7 +41,7 @@ std::shared_ptr<const HandleDeformation> make_laplacian(const HandleDefinition& 
 /// linear in the controls.
 /// The minimum is computed from the rest positions, so that it depends on the controls alone. Local and global steps
 /// alternate until a step moves no vertex by more than 1e-11 of the mesh's size, at most 300 times. J is the exact
-/// derivative at the minimum, and the last linearization is cached. The metric neglects the change of rotations.
+/// derivative at the minimum, and the last linearisation is cached. The metric neglects the change of rotations.
 /// @throws InputError as make_laplacian
 std::shared_ptr<const HandleDeformation> make_arap(const HandleDefinition& definition);
 

@@ -23,7 +23,7 @@ struct ControlConstraint {
   Index limit = -1;  ///< the limit of a scalar that it keeps (ControlLimits); -1: none
 };
 
-/// Linearizes STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
+/// Linearises STIVs at the controls p: V + row . (p' - p) >= 0. Constraints that no free control changes are left out.
 /// (mathematics.md, Eq. 5)
 /// @param metric_at controls at which the metric is evaluated, the same for all constraints solved together
 /// @param execution threads and cancellation; null: one thread

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int most_steps = 300;
 constexpr double least_motion = 1e-11;    // of the mesh's size: a shorter step is the last
-constexpr double rough_motion = 1e-6;     // the same while rounds find and linearize contacts
+constexpr double rough_motion = 1e-6;     // the same while rounds find and linearise contacts
 constexpr double least_residual = 1e-10;  // relative to the first one, when solving for J
 constexpr double slack = 1e-12;           // relative increase of an energy that rounding may cause
 
