@@ -76,8 +76,8 @@ struct EditCall {
   Execution& execution;
   std::optional<HandOver> hand_over = std::nullopt;
   OvershootMemory* overshoot = nullptr;  ///< of a drag that is to hand over
-  const Metric* metric = nullptr;   ///< of the responses, instead of the context's
-  const ControlBox* box = nullptr;  ///< that controls must not leave
+  const Metric* metric = nullptr;        ///< of the responses, instead of the context's
+  const ControlBox* box = nullptr;       ///< that controls must not leave
 
   bool is_to_hand_over() const { return hand_over && HandOver::Clock::now() >= hand_over->begins; }
   bool is_late() const { return !hand_over || HandOver::Clock::now() >= hand_over->late; }
