@@ -47,6 +47,12 @@ struct EditReport {
   std::vector<Controls> path;  ///< accepted controls, in order
 };
 
+/// Which projection was better when accumulated constraints last overshot in a drag. The next call then need not solve
+/// both ways before a state can be shown.
+struct OvershootMemory {
+  std::optional<Projection> better = std::nullopt;  ///< none: they do not overshoot
+};
+
 /// When a call ends at an acceptance, so that the state can be shown.
 struct HandOver {
   using Clock = std::chrono::steady_clock;
@@ -69,8 +75,9 @@ struct EditCall {
   EditReport& report;
   Execution& execution;
   std::optional<HandOver> hand_over = std::nullopt;
-  const Metric* metric = nullptr;   ///< of the responses, instead of the context's
-  const ControlBox* box = nullptr;  ///< that controls must not leave
+  OvershootMemory* overshoot = nullptr;  ///< of a drag that is to hand over
+  const Metric* metric = nullptr;        ///< of the responses, instead of the context's
+  const ControlBox* box = nullptr;       ///< that controls must not leave
 
   bool is_to_hand_over() const { return hand_over && HandOver::Clock::now() >= hand_over->begins; }
   bool is_late() const { return !hand_over || HandOver::Clock::now() >= hand_over->late; }

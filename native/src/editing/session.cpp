@@ -56,6 +56,7 @@ class SurfaceSession final : public SessionImplementation {
     checked_ = controls;
     progress_.reset();
     tightening_.reset();
+    overshoot_ = {};
     queries_.clear_cache();
     trail_.begin(controls);
     const Controls aim = context_.limits().nearest(goal);
@@ -94,7 +95,10 @@ class SurfaceSession final : public SessionImplementation {
     limit_time(execution);
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = true;
-      if (hand_over) call.hand_over.emplace(*hand_over);
+      if (hand_over) {
+        call.hand_over.emplace(*hand_over);
+        call.overshoot = &overshoot_;
+      }
       tightening_.reset();
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
       if (aim.controls != drag_.followed.controls) forget_leaps();
@@ -158,13 +162,17 @@ class SurfaceSession final : public SessionImplementation {
   class Transaction {
    public:
     explicit Transaction(SurfaceSession& session)
-        : session_(session), accepted_(session.accepted_), followed_(session.drag_.followed) {}
+        : session_(session),
+          accepted_(session.accepted_),
+          followed_(session.drag_.followed),
+          overshoot_(session.overshoot_) {}
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
     ~Transaction() {
       if (lasts_) return;
       session_.accepted_ = std::move(accepted_);
       session_.drag_.followed = std::move(followed_);
+      session_.overshoot_ = overshoot_;
       session_.progress_.reset();
       session_.tightening_.reset();
       session_.queries_.clear_cache();
@@ -176,6 +184,7 @@ class SurfaceSession final : public SessionImplementation {
    private:
     SurfaceSession& session_;
     State accepted_, followed_;
+    OvershootMemory overshoot_;
     bool lasts_ = false;
   };
 
@@ -325,6 +334,7 @@ class SurfaceSession final : public SessionImplementation {
   std::optional<RoundProgress> progress_;         ///< of a call that the time budget ended
   std::optional<TighteningProgress> tightening_;  ///< toward the goal of the last call
   Controls checked_;                              ///< last restored; a drag that is cancelled goes back to them
+  OvershootMemory overshoot_;                     ///< of the drags
   bool is_dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< built at the first query
 };

@@ -18,6 +18,8 @@ namespace {
 constexpr int max_cuts = 256;               // fractions of a motion that is too large for one search
 constexpr double least_energy_drop = 1e-3;  // relative; below it no further sub-edit
 constexpr double largest_growth = 16;       // of the energy to the goal of a sub-edit: four times the distance
+constexpr double largest_rise = 1.1;        // of the energy, in a solution that is shown at once
+constexpr int few_rounds = 3;               // of Algorithm 1; then accumulated constraints are tried again
 constexpr double largest_turn = 0.3;        // radians a step; its chord leaves the arc by 1.1 % of the radius
 
 /// The goal itself as a candidate, used if no fraction of the step to the first solution is accepted. Without a surface
@@ -48,7 +50,14 @@ class SubEditLoop {
  private:
   double energy_of(const State& state) const { return call_.context.energy(state.surface, aim_.surface); }
   RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
+  bool overshoots(const State& state) const { return fraction_ == 1 && energy_of(state) > energy_before_; }
+  /// Whether a drag that is to hand over takes a solution without comparing it with another one.
+  bool can_be_shown(const RoundOutcome& outcome) const {
+    return outcome.clear && energy_of(outcome.candidate) <= largest_rise * energy_before_;
+  }
   RoundOutcome first_answer();
+  RoundOutcome better_of(RoundOutcome accumulated, RoundOutcome other);
+  std::optional<RoundOutcome> answer_in_better_way();
   bool diverges(const State& state) const;
   Acceptance accept(const RoundOutcome& outcome, bool is_first);
   void report(RoundOutcome& outcome, const Acceptance& acceptance);
@@ -74,14 +83,38 @@ RoundOutcome SubEditLoop::first_answer() {
   const EditOptions& options = call_.context.options();
   if (options.accumulated_rounds == 0 || moves_pinned_controls(options, from, aim_.controls))
     return rounds(Projection::from_goal);
-  const auto overshoots = [&](const State& state) { return fraction_ == 1 && energy_of(state) > energy_before_; };
-  RoundOutcome accumulated = rounds(Projection::from_goal, overshoots);
+  if (std::optional<RoundOutcome> again = answer_in_better_way()) return std::move(*again);
+  const auto has_overshot = [&](const State& state) { return overshoots(state); };
+  RoundOutcome accumulated = rounds(Projection::from_goal, has_overshot);
   const bool overshot = accumulated.given_up || (accumulated.clear && overshoots(accumulated.candidate));
-  if (!overshot) return accumulated;
-  RoundOutcome other = rounds(Projection::from_last_round);
-  if (other.clear && !overshoots(other.candidate)) return other;
-  if (accumulated.given_up) accumulated = rounds(Projection::from_goal);
-  return other.clear && energy_of(other.candidate) < energy_of(accumulated.candidate) ? other : accumulated;
+  const bool has_responded = call_.progress->round > 0;  // else Algorithm 1 has the same solution
+  if (!overshot || !has_responded) return accumulated;
+  return better_of(std::move(accumulated), rounds(Projection::from_last_round));
+}
+
+/// The better solution, after accumulated constraints overshot.
+RoundOutcome SubEditLoop::better_of(RoundOutcome accumulated, RoundOutcome other) {
+  const bool suffices = call_.overshoot != nullptr && accumulated.given_up && can_be_shown(other);
+  bool is_better = suffices || (other.clear && !overshoots(other.candidate));
+  if (!is_better) {
+    if (accumulated.given_up) accumulated = rounds(Projection::from_goal);
+    is_better = other.clear && energy_of(other.candidate) < energy_of(accumulated.candidate);
+  }
+  if (call_.overshoot != nullptr)
+    call_.overshoot->better = is_better ? Projection::from_last_round : Projection::from_goal;
+  return std::move(is_better ? other : accumulated);
+}
+
+/// Solves in the way that was better when constraints last overshot in this drag. Nothing if they did not, or if both
+/// ways must be compared again.
+std::optional<RoundOutcome> SubEditLoop::answer_in_better_way() {
+  if (call_.overshoot == nullptr || !call_.overshoot->better) return std::nullopt;
+  const Projection way = *call_.overshoot->better;
+  RoundOutcome outcome = rounds(way);
+  const bool is_shown = can_be_shown(outcome);
+  const bool is_easy = way == Projection::from_goal || call_.progress->round < few_rounds;
+  if (!is_shown || (is_easy && !overshoots(outcome.candidate))) call_.overshoot->better.reset();
+  return is_shown ? std::optional(std::move(outcome)) : std::nullopt;
 }
 
 /// Is a state so far from the goal of the sub-edit that it cannot be a projection of it? Nearly linear constraints,
