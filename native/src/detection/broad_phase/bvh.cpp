@@ -21,7 +21,7 @@ class TaskList {
     std::vector<Bvh::Task> tasks;
     if (a_.size() == 0 || b_.size() == 0) return tasks;
     add(tasks, {static_cast<Index>(a_.levels().size()) - 1, 0, static_cast<Index>(b_.levels().size()) - 1, 0});
-    while (tasks.size() < about) {
+    while (tasks.size() < enough(tasks, about)) {
       std::vector<Bvh::Task> next;
       bool divided = false;
       for (const Bvh::Task& task : tasks) divided |= divide(task, next);
@@ -32,6 +32,14 @@ class TaskList {
   }
 
  private:
+  /// Tasks near the blocks hold little work, so fewer of them are enough. All tasks have the same two levels.
+  static std::size_t enough(const std::vector<Bvh::Task>& tasks, std::size_t about) {
+    constexpr Index low = 2;
+    constexpr std::size_t fewer = 8;
+    const bool are_low = !tasks.empty() && std::max(tasks[0].level, tasks[0].other_level) <= low;
+    return are_low ? about / fewer : about;
+  }
+
   void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
     const Bvh::Level &a = a_.levels()[task.level], &b = b_.levels()[task.other_level];
     const Index group = a.groups[task.node], other = b.groups[task.other_node];
