@@ -19,8 +19,9 @@ class BlockIncidence {
     Index sum = 0;
     for (Index& first : first_) first = sum += first;  // where the vertex ends: filled from the back
     blocks_.resize(static_cast<std::size_t>(sum));
-    for_each_once(corners, block_size,
-                  [&](std::size_t vertex, Index block) { blocks_[static_cast<std::size_t>(--first_[vertex])] = block; });
+    for_each_once(corners, block_size, [&](std::size_t vertex, Index block) {
+      blocks_[static_cast<std::size_t>(--first_[vertex])] = block;
+    });
   }
 
   /// The blocks of each of the vertices `begin` to `end`, some of them repeatedly.
@@ -40,7 +41,7 @@ class BlockIncidence {
     }
   }
 
-  std::vector<Index> first_;   // of each vertex in `blocks_`, and the end
+  std::vector<Index> first_;  // of each vertex in `blocks_`, and the end
   std::vector<Index> blocks_;
 };
 

@@ -185,8 +185,8 @@ void Bvh::prepare_refit_some_corners(Index vertex_count) {
   is_touched_.resize((order_.size() / width + width - 1) / width * width, 0);
 }
 
-/// Sorts the blocks by marking them: blocks are few, and each is listed many times. Runs of vertices share a list, since
-/// no processor predicts where short lists end.
+/// Sorts the blocks by marking them: blocks are few, and each is listed many times. Runs of vertices share a list,
+/// since no processor predicts where short lists end.
 void Bvh::find_touched(std::span<const Index> vertices) {
   for (std::size_t begin = 0, end; begin < vertices.size(); begin = end) {
     for (end = begin + 1; end < vertices.size() && vertices[end] == vertices[end - 1] + 1;) ++end;

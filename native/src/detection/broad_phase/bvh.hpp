@@ -163,7 +163,7 @@ class Bvh {
   Index corner_size_ = 0;
   std::optional<BlockIncidence> incidence_;  // of these corners, for refit_some_corners
   std::vector<unsigned char> is_touched_;    // its work space: for each block, zero between calls
-  std::vector<Index> touched_, parents_;   // the blocks, ascending
+  std::vector<Index> touched_, parents_;     // the blocks, ascending
 };
 
 /// Centers of boxes, zero where one is infinite.

@@ -105,9 +105,10 @@ template VectorOf<double> geometric_normal(EventKind, const Quadruple<double>&);
 template struct RelativeMotion<DoubleDouble>;
 template struct ProjectedMotion<DoubleDouble>;
 template DoubleDouble reach_of_plane(const ProjectedMotion<DoubleDouble>&, const DoubleDouble&, const DoubleDouble&);
-template bool turning_plane_holds(EventKind, const VectorOf<DoubleDouble>&, const Quadruple<DoubleDouble>&, const VectorOf<DoubleDouble>&,
-                                  const Quadruple<DoubleDouble>&, const DoubleDouble&);
-template DoubleDouble gap_of_plane(const RelativeMotion<DoubleDouble>&, const VectorOf<DoubleDouble>&, const DoubleDouble&);
+template bool turning_plane_holds(EventKind, const VectorOf<DoubleDouble>&, const Quadruple<DoubleDouble>&,
+                                  const VectorOf<DoubleDouble>&, const Quadruple<DoubleDouble>&, const DoubleDouble&);
+template DoubleDouble gap_of_plane(const RelativeMotion<DoubleDouble>&, const VectorOf<DoubleDouble>&,
+                                   const DoubleDouble&);
 template VectorOf<DoubleDouble> geometric_normal(EventKind, const Quadruple<DoubleDouble>&);
 
 }  // namespace stiv

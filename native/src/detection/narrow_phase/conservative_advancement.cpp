@@ -29,8 +29,7 @@ VectorOf<Scalar> edge_of(EventKind kind, const WitnessOf<Scalar>& nearest, const
 /// A pair at a time, with its nearest points.
 template <class Scalar>
 struct State {
-  State(const RelativeMotion<Scalar>& motion, const Scalar& at)
-      : State(motion, at, motion.at(at)) {}
+  State(const RelativeMotion<Scalar>& motion, const Scalar& at) : State(motion, at, motion.at(at)) {}
   State(const RelativeMotion<Scalar>& motion, const Scalar& at, const Quadruple<Scalar>& positions)
       : State(at, positions, witness(motion.kind, positions)) {}
   State(const Scalar& at, const Quadruple<Scalar>& positions, const WitnessOf<Scalar>& nearest_points)

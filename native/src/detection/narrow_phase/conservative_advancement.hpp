@@ -21,8 +21,7 @@ struct Approach {
 /// @param nearest the nearest points at `time`, if they are known
 template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
-                                        const Scalar& time, double latest,
-                                        const WitnessOf<Scalar>* nearest = nullptr);
+                                        const Scalar& time, double latest, const WitnessOf<Scalar>* nearest = nullptr);
 
 /// For a pair that touches, or is at the threshold, at the start: a time from which it is provably beyond the
 /// threshold. 1 if it slides along a plane for the whole step, 0 if neither can be proved.

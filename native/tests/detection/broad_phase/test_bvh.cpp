@@ -169,7 +169,8 @@ TEST_CASE("bvh: after some vertices changed, all nodes are those of a complete r
     for (std::size_t level = 0; level < whole.levels().size(); ++level)
       for (std::size_t node = 0; node < whole.levels()[level].boxes.size(); ++node) {
         CHECK(tree.levels()[level].boxes[node].values == whole.levels()[level].boxes[node].values);
-        const auto &planes = tree.levels()[level].nodes[node].planes, &wanted = whole.levels()[level].nodes[node].planes;
+        const auto &planes = tree.levels()[level].nodes[node].planes,
+                   &wanted = whole.levels()[level].nodes[node].planes;
         for (std::size_t plane = 0; plane < 7; ++plane)
           CHECK(std::equal(planes[plane], planes[plane] + Bvh::width, wanted[plane]));
       }
