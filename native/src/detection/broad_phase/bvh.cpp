@@ -180,7 +180,7 @@ void Bvh::summarise_all(const Execution& execution) {
 }
 
 void Bvh::prepare_refit_some_corners(Index vertex_count) {
-  const auto block_size = static_cast<std::size_t>(corner_size_ * width);
+  const std::size_t block_size = static_cast<std::size_t>(corner_size_) * width;
   if (!incidence_) incidence_.emplace(corners_, block_size, vertex_count);
   is_touched_.resize((order_.size() / width + width - 1) / width * width, 0);
 }
