@@ -221,7 +221,7 @@ TEST_CASE("rounds: what was cancelled at any point leaves no trace") {
     Detector detector(scene.surface);
     int cancelled = 0;
     bool done = false;
-    for (int checks = 0; !done; checks += 1 + checks / 8) {
+    for (int checks = 0; !done; checks += 1 + checks / 16) {
       Positions start = scene.start, end = start;
       if (cancelled % 3 > 0) found_by(detector, start, start, 1);  // from its own start, or in the middle of an edit
       const Index first = cancelled % 2 == 0 ? 0 : 1800;

@@ -2,8 +2,8 @@
 #include "detection/broad_phase/bvh.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "detection/broad_phase/block_order.hpp"
@@ -21,7 +21,7 @@ class TaskList {
     std::vector<Bvh::Task> tasks;
     if (a_.size() == 0 || b_.size() == 0) return tasks;
     add(tasks, {static_cast<Index>(a_.levels().size()) - 1, 0, static_cast<Index>(b_.levels().size()) - 1, 0});
-    while (tasks.size() < about) {
+    while (tasks.size() < enough(tasks, about)) {
       std::vector<Bvh::Task> next;
       bool divided = false;
       for (const Bvh::Task& task : tasks) divided |= divide(task, next);
@@ -32,6 +32,14 @@ class TaskList {
   }
 
  private:
+  /// Tasks near the blocks hold little work, so fewer of them are enough. All tasks have the same two levels.
+  static std::size_t enough(const std::vector<Bvh::Task>& tasks, std::size_t about) {
+    constexpr Index low = 2;
+    constexpr std::size_t fewer = 8;
+    const bool are_low = !tasks.empty() && std::max(tasks[0].level, tasks[0].other_level) <= low;
+    return are_low ? about / fewer : about;
+  }
+
   void add(std::vector<Bvh::Task>& tasks, const Bvh::Task& task) const {
     const Bvh::Level &a = a_.levels()[task.level], &b = b_.levels()[task.other_level];
     const Index group = a.groups[task.node], other = b.groups[task.other_node];
@@ -127,6 +135,7 @@ void Bvh::reserve_levels(const std::vector<Index>& groups) {
 void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed,
                       const Execution& execution) {
   corner_size_ = corners.size;
+  incidence_.reset();
   const std::size_t size = corners.size;
   corners_.resize(order_.size() * size);
   execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
@@ -170,26 +179,27 @@ void Bvh::summarise_all(const Execution& execution) {
                          });
 }
 
-void Bvh::prepare_refit_some() {
-  if (!places_.empty()) return;
-  places_.resize(size_);
-  for (std::size_t place = 0; place < order_.size(); ++place)
-    if (order_[place] >= 0) places_[order_[place]] = static_cast<Index>(place);
+void Bvh::prepare_refit_some_corners(Index vertex_count) {
+  const std::size_t block_size = static_cast<std::size_t>(corner_size_) * width;
+  if (!incidence_) incidence_.emplace(corners_, block_size, vertex_count);
+  is_touched_.resize((order_.size() / width + width - 1) / width * width, 0);
 }
 
-/// Sorts the blocks by marking them: blocks are few, and each is listed many times.
-void Bvh::find_touched(std::span<const Index> primitives) {
-  prepare_refit_some();
-  constexpr std::size_t bits = 64;
-  is_touched_.resize((order_.size() / width + bits - 1) / bits, 0);
-  for (const Index primitive : primitives) {
-    const auto block = static_cast<std::size_t>(places_[primitive] / width);
-    is_touched_[block / bits] |= std::uint64_t{1} << block % bits;
+/// Sorts the blocks by marking them: blocks are few, and each is listed many times. Runs of vertices share a list,
+/// since no processor predicts where short lists end.
+void Bvh::find_touched(std::span<const Index> vertices) {
+  for (std::size_t begin = 0, end; begin < vertices.size(); begin = end) {
+    for (end = begin + 1; end < vertices.size() && vertices[end] == vertices[end - 1] + 1;) ++end;
+    for (const Index block : incidence_->blocks_at(vertices[begin], vertices[end - 1] + 1)) is_touched_[block] = 1;
   }
   touched_.clear();
-  for (std::size_t word = 0; word < is_touched_.size(); ++word)
-    for (std::uint64_t left = std::exchange(is_touched_[word], 0); left != 0; left &= left - 1)
-      touched_.push_back(static_cast<Index>(word * bits) + std::countr_zero(left));
+  for (std::size_t first = 0; first < is_touched_.size(); first += width) {
+    std::uint64_t eight;
+    std::memcpy(&eight, is_touched_.data() + first, sizeof(eight));
+    if (eight == 0) continue;
+    for (std::size_t block = first; block < first + width; ++block)
+      if (std::exchange(is_touched_[block], 0) != 0) touched_.push_back(static_cast<Index>(block));
+  }
 }
 
 void Bvh::find_touched(const std::vector<unsigned char>& changed_groups) {
@@ -233,8 +243,10 @@ void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const 
   summarise_touched(execution);
 }
 
-void Bvh::refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices) {
-  find_touched(primitives);
+void Bvh::refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices) {
+  if (levels_.empty()) return;
+  prepare_refit_some_corners(static_cast<Index>(vertices.size()));
+  find_touched(changed);
   refit_blocks(touched_.data(), 0, static_cast<Index>(touched_.size()), vertices.data());
   summarise_touched();
 }

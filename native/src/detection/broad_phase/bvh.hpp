@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "detection/broad_phase/block_incidence.hpp"
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/group_frames.hpp"
 #include "detection/broad_phase/numbered_point.hpp"
@@ -89,18 +91,14 @@ class Bvh {
   template <class BoxOf>
   void refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution);
 
-  /// The same for some primitives, each listed at least once. The cost does not depend on the others.
-  template <class BoxOf>
-  void refit_some(std::span<const Index> primitives, const BoxOf& box_of);
-
-  /// Allocates what the first refit of some primitives would allocate.
-  void prepare_refit_some();
-
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
   void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
                             const Execution& execution);
-  void refit_some_corners(std::span<const Index> primitives, const std::vector<PackedBox>& vertices);
+  /// The same for the primitives with a corner among `changed`. The cost does not depend on the others.
+  void refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices);
+  /// Allocates what the first refit of some corners would allocate.
+  void prepare_refit_some_corners(Index vertex_count);
 
   /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
   void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
@@ -150,7 +148,7 @@ class Bvh {
   void refit_block(std::size_t block, const BoxOf& box_of);
   /// Blocks number `begin` to `end` of a list, or of all (nullptr).
   void refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices);
-  void find_touched(std::span<const Index> primitives);
+  void find_touched(std::span<const Index> vertices);
   void find_touched(const std::vector<unsigned char>& changed_groups);
   void summarise_touched();
   void summarise_touched(const Execution& execution);
@@ -160,12 +158,12 @@ class Bvh {
 
   Index size_ = 0;
   std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
-  std::vector<Index> places_;  // place of each primitive, for refit_some
   std::vector<Level> levels_;  // blocks first, the root last
   std::vector<Index> corners_;
   Index corner_size_ = 0;
-  std::vector<std::uint64_t> is_touched_;  // work space of refit_some: a bit for each block, zero between calls
-  std::vector<Index> touched_, parents_;   // the blocks, ascending
+  std::optional<BlockIncidence> incidence_;  // of these corners, for refit_some_corners
+  std::vector<unsigned char> is_touched_;    // its work space: for each block, zero between calls
+  std::vector<Index> touched_, parents_;     // the blocks, ascending
 };
 
 /// Centers of boxes, zero where one is infinite.
@@ -200,13 +198,6 @@ void Bvh::refit_groups(const std::vector<unsigned char>& changed, const BoxOf& b
     for (Index k = begin; k < end; ++k) refit_block(static_cast<std::size_t>(touched_[k]), box_of);
   });
   summarise_touched(execution);
-}
-
-template <class BoxOf>
-void Bvh::refit_some(std::span<const Index> primitives, const BoxOf& box_of) {
-  find_touched(primitives);
-  for (const Index block : touched_) refit_block(static_cast<std::size_t>(block), box_of);
-  summarise_touched();
 }
 
 }  // namespace stiv

@@ -12,7 +12,6 @@
 #include "detection/broad_phase/corner_order.hpp"
 #include "detection/broad_phase/curve_order.hpp"
 #include "detection/broad_phase/swept_vertices.hpp"
-#include "detection/primitive_pair.hpp"
 
 namespace stiv {
 
@@ -30,10 +29,7 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one, so that memory does not
     // grow late in a session.
-    if (std::exchange(has_boxes_, true)) {
-      if (!incidence_) incidence_.emplace(rows_, count_, size, surface_.vertex_count());
-      tree_->prepare_refit_some();
-    }
+    if (std::exchange(has_boxes_, true)) tree_->prepare_refit_some_corners(surface_.vertex_count());
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
@@ -41,7 +37,7 @@ class PrimitiveTree {
     } else if (change == SweptVertices::Change::some && many) {
       tree_->refit_groups_corners(swept.changed_bodies(), swept.boxes(), execution);
     } else if (change == SweptVertices::Change::some) {
-      tree_->refit_some_corners(incidence_->primitives_with(swept.changed()), swept.boxes());
+      tree_->refit_some_corners(swept.changed(), swept.boxes());
     }
   }
 
@@ -174,7 +170,6 @@ class PrimitiveTree {
   std::optional<Bvh> tree_;
   bool has_boxes_ = false;
   double spread_ = 0;  // when the tree was built
-  std::optional<VertexIncidence> incidence_;
 };
 
 }  // namespace stiv

@@ -2,6 +2,7 @@
 #include "detection/filters/relative_motion.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace stiv {
 
@@ -34,6 +35,7 @@ RelativeMotion<Scalar>::RelativeMotion(EventKind event_kind, const PairMotion& m
   Scalar magnitude = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     start[k] = motion.start[k].template cast<Scalar>() - motion.start[0].template cast<Scalar>();
+    if constexpr (std::is_same_v<Scalar, double>) start[k].array() += 0.0;  // a negative zero becomes zero
     const VectorOf<Scalar> end = motion.end[k].template cast<Scalar>() - motion.end[0].template cast<Scalar>();
     step[k] = end - start[k];
     magnitude = std::max({magnitude, start[k].cwiseAbs().maxCoeff(), end.cwiseAbs().maxCoeff()});
@@ -52,10 +54,13 @@ bool RelativeMotion<Scalar>::rests() const {
 }
 
 template <class Scalar>
-Scalar reach_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
-                      const Scalar& clearance) {
-  const Values<Scalar> offset = project(normal, motion.start), rate = project(normal, motion.step);
-  const auto first = static_cast<std::size_t>(first_side_size(motion.kind));
+ProjectedMotion<Scalar>::ProjectedMotion(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal)
+    : kind(motion.kind), offset(project(normal, motion.start)), rate(project(normal, motion.step)) {}
+
+template <class Scalar>
+Scalar reach_of_plane(const ProjectedMotion<Scalar>& along_normal, const Scalar& time, const Scalar& clearance) {
+  const auto& [kind, offset, rate] = along_normal;
+  const auto first = static_cast<std::size_t>(first_side_size(kind));
   Scalar limit = 1;
   for (std::size_t i = 0; i < first; ++i)
     for (std::size_t j = first; j < 4; ++j) {
@@ -67,13 +72,12 @@ Scalar reach_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scala
 }
 
 template <class Scalar>
-bool turning_plane_holds(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& n0, const Scalar& t0,
-                         const VectorOf<Scalar>& n1, const Scalar& t1, const Scalar& clearance) {
-  const Quadruple<Scalar> x0 = motion.at(t0), x1 = motion.at(t1);
-  if (!(gap(motion.kind, project(n0, x0)) >= clearance)) return false;
-  if (!(gap(motion.kind, project(n1, x1)) >= clearance)) return false;
+bool turning_plane_holds(EventKind kind, const VectorOf<Scalar>& n0, const Quadruple<Scalar>& x0,
+                         const VectorOf<Scalar>& n1, const Quadruple<Scalar>& x1, const Scalar& clearance) {
+  if (!(gap(kind, project(n0, x0)) >= clearance)) return false;
+  if (!(gap(kind, project(n1, x1)) >= clearance)) return false;
   const Values<Scalar> a = project(n0, x1), b = project(n1, x0);
-  return gap<Scalar>(motion.kind, {Scalar(0), a[1] + b[1], a[2] + b[2], a[3] + b[3]}) / 2 >= clearance;
+  return gap<Scalar>(kind, {Scalar(0), a[1] + b[1], a[2] + b[2], a[3] + b[3]}) / 2 >= clearance;
 }
 
 template <class Scalar>
@@ -82,9 +86,8 @@ Scalar gap_of_plane(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>
 }
 
 template <class Scalar>
-VectorOf<Scalar> geometric_normal(const RelativeMotion<Scalar>& motion, const Scalar& time) {
-  const Quadruple<Scalar> x = motion.at(time);
-  const bool face = motion.kind == EventKind::vertex_face;
+VectorOf<Scalar> geometric_normal(EventKind kind, const Quadruple<Scalar>& x) {
+  const bool face = kind == EventKind::vertex_face;
   const VectorOf<Scalar> u = face ? x[2] - x[1] : x[1] - x[0], v = face ? x[3] - x[1] : x[3] - x[2];
   const VectorOf<Scalar> normal = u.cross(v);
   const Scalar length = normal.norm();
@@ -92,20 +95,20 @@ VectorOf<Scalar> geometric_normal(const RelativeMotion<Scalar>& motion, const Sc
 }
 
 template struct RelativeMotion<double>;
-template double reach_of_plane(const RelativeMotion<double>&, const VectorOf<double>&, const double&, const double&);
-template bool turning_plane_holds(const RelativeMotion<double>&, const VectorOf<double>&, const double&,
-                                  const VectorOf<double>&, const double&, const double&);
+template struct ProjectedMotion<double>;
+template double reach_of_plane(const ProjectedMotion<double>&, const double&, const double&);
+template bool turning_plane_holds(EventKind, const VectorOf<double>&, const Quadruple<double>&, const VectorOf<double>&,
+                                  const Quadruple<double>&, const double&);
 template double gap_of_plane(const RelativeMotion<double>&, const VectorOf<double>&, const double&);
-template VectorOf<double> geometric_normal(const RelativeMotion<double>&, const double&);
+template VectorOf<double> geometric_normal(EventKind, const Quadruple<double>&);
 
 template struct RelativeMotion<DoubleDouble>;
-template DoubleDouble reach_of_plane(const RelativeMotion<DoubleDouble>&, const VectorOf<DoubleDouble>&,
-                                     const DoubleDouble&, const DoubleDouble&);
-template bool turning_plane_holds(const RelativeMotion<DoubleDouble>&, const VectorOf<DoubleDouble>&,
-                                  const DoubleDouble&, const VectorOf<DoubleDouble>&, const DoubleDouble&,
-                                  const DoubleDouble&);
+template struct ProjectedMotion<DoubleDouble>;
+template DoubleDouble reach_of_plane(const ProjectedMotion<DoubleDouble>&, const DoubleDouble&, const DoubleDouble&);
+template bool turning_plane_holds(EventKind, const VectorOf<DoubleDouble>&, const Quadruple<DoubleDouble>&,
+                                  const VectorOf<DoubleDouble>&, const Quadruple<DoubleDouble>&, const DoubleDouble&);
 template DoubleDouble gap_of_plane(const RelativeMotion<DoubleDouble>&, const VectorOf<DoubleDouble>&,
                                    const DoubleDouble&);
-template VectorOf<DoubleDouble> geometric_normal(const RelativeMotion<DoubleDouble>&, const DoubleDouble&);
+template VectorOf<DoubleDouble> geometric_normal(EventKind, const Quadruple<DoubleDouble>&);
 
 }  // namespace stiv

@@ -26,18 +26,33 @@ VectorOf<Scalar> edge_of(EventKind kind, const WitnessOf<Scalar>& nearest, const
   return VectorOf<Scalar>::Zero();
 }
 
+/// A pair at a time, with its nearest points.
+template <class Scalar>
+struct State {
+  State(const RelativeMotion<Scalar>& motion, const Scalar& at) : State(motion, at, motion.at(at)) {}
+  State(const RelativeMotion<Scalar>& motion, const Scalar& at, const Quadruple<Scalar>& positions)
+      : State(at, positions, witness(motion.kind, positions)) {}
+  State(const Scalar& at, const Quadruple<Scalar>& positions, const WitnessOf<Scalar>& nearest_points)
+      : time(at), x(positions), nearest(nearest_points) {}
+
+  Scalar time;
+  Quadruple<Scalar> x;
+  WitnessOf<Scalar> nearest;
+};
+
 /// The direction between the nearest points. If they nearly coincide, their difference is noise. Inside both
 /// primitives, the normal of the face or of both edges replaces it. Inside an edge, its component along the edge is
 /// removed, because the far ends of the edge would turn it into distance.
 template <class Scalar>
-VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& time) {
+VectorOf<Scalar> direction(const RelativeMotion<Scalar>& motion, const State<Scalar>& state) {
+  const WitnessOf<Scalar>& nearest = state.nearest;
   if (!(nearest.distance > 0)) return VectorOf<Scalar>::Zero();
   if (nearest.distance >= Precision<Scalar>::noise * motion.rounding) return nearest.separation / nearest.distance;
   if (within_both(nearest)) {
-    const VectorOf<Scalar> normal = geometric_normal(motion, time);
+    const VectorOf<Scalar> normal = geometric_normal<Scalar>(motion.kind, state.x);
     if (!normal.isZero(0)) return normal.dot(nearest.separation) < 0 ? VectorOf<Scalar>(-normal) : normal;
   }
-  const VectorOf<Scalar> edge = edge_of(motion.kind, nearest, motion.at(time));
+  const VectorOf<Scalar> edge = edge_of(motion.kind, nearest, state.x);
   const Scalar length2 = edge.squaredNorm();
   if (!(length2 > 0)) return nearest.separation / nearest.distance;
   const VectorOf<Scalar> across = nearest.separation - (edge.dot(nearest.separation) / length2) * edge;
@@ -69,13 +84,15 @@ Scalar predicted_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scal
 /// The time until which a plane separates the pair. Its normal is the direction of the nearest points at a later time,
 /// or turns toward it.
 template <class Scalar>
-Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const Scalar& time,
+Scalar reach_of_trial(const RelativeMotion<Scalar>& motion, const VectorOf<Scalar>& normal, const State<Scalar>& state,
                       const Scalar& trial, const Scalar& clearance) {
-  const WitnessOf<Scalar> later = witness(motion.kind, motion.at(trial));
-  const VectorOf<Scalar> later_normal = direction(motion, later, trial);
-  const Scalar fixed = reach_of_plane(motion, later_normal, time, clearance);
-  if (fixed >= trial || !turning_plane_holds(motion, normal, time, later_normal, trial, clearance)) return fixed;
-  return reach_of_plane(motion, later_normal, trial, clearance);
+  const State<Scalar> later(motion, trial);
+  const VectorOf<Scalar> later_normal = direction(motion, later);
+  const ProjectedMotion<Scalar> projected(motion, later_normal);
+  const Scalar fixed = reach_of_plane(projected, state.time, clearance);
+  if (fixed >= trial || !turning_plane_holds(motion.kind, normal, state.x, later_normal, later.x, clearance))
+    return fixed;
+  return reach_of_plane(projected, trial, clearance);
 }
 
 /// The same by extrapolating the distance from the last step: accurate where the nearest points slide along their
@@ -88,17 +105,16 @@ Scalar extrapolated_time(const Scalar& time, const Scalar& distance, const Scala
   return std::min<Scalar>(1.0, time + (distance - threshold) * (time - time_before) / fall);
 }
 
-/// The time until which planes separate the pair, starting at `time`. `expected`: when it is expected to reach the
-/// threshold. Subtracts its trials from `budget`.
+/// The time until which planes separate the pair, starting at `state` with the plane of this normal. `expected`: when
+/// it is expected to reach the threshold. Subtracts its trials from `budget`.
 template <class Scalar>
-Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& nearest, const Scalar& threshold,
-                 const Scalar& time, const Scalar& expected, int& budget) {
-  const Scalar clearance = threshold + motion.rounding;
-  const VectorOf<Scalar> normal = direction(motion, nearest, time);
+Scalar next_time(const RelativeMotion<Scalar>& motion, const State<Scalar>& state, const VectorOf<Scalar>& normal,
+                 const Scalar& clearance, const Scalar& expected, int& budget) {
+  const Scalar& time = state.time;
   Scalar reached = reach_of_plane(motion, normal, time, clearance);
   Scalar trial = expected;
   for (int k = 0; k < Precision<Scalar>::most_trials && trial > reached; ++k, --budget) {
-    reached = std::max(reached, reach_of_trial(motion, normal, time, trial, clearance));
+    reached = std::max(reached, reach_of_trial(motion, normal, state, trial, clearance));
     trial = time + (trial - time) / 2;
   }
   return reached;
@@ -106,10 +122,11 @@ Scalar next_time(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& 
 
 /// Tries directions other than that of the nearest points, which rounding spoils for nearly degenerate pairs.
 template <class Scalar>
-Scalar reach_of_other_planes(const RelativeMotion<Scalar>& motion, const Scalar& time, const Scalar& clearance) {
-  const VectorOf<Scalar> normal = geometric_normal(motion, time);
-  return std::max(reach_of_plane(motion, normal, time, clearance),
-                  reach_of_plane<Scalar>(motion, -normal, time, clearance));
+Scalar reach_of_other_planes(const RelativeMotion<Scalar>& motion, const State<Scalar>& state,
+                             const Scalar& clearance) {
+  const VectorOf<Scalar> normal = geometric_normal<Scalar>(motion.kind, state.x);
+  return std::max(reach_of_plane(motion, normal, state.time, clearance),
+                  reach_of_plane<Scalar>(motion, -normal, state.time, clearance));
 }
 
 /// Do the boxes of both sides, in a frame of the pair, stay apart for the whole step? Where the narrow phase gives up,
@@ -141,31 +158,32 @@ bool arrived(const RelativeMotion<Scalar>& motion, const WitnessOf<Scalar>& near
 // only on the planes: a poor direction costs steps, never correctness.
 template <class Scalar>
 std::optional<Approach<Scalar>> advance(const RelativeMotion<Scalar>& motion, const Scalar& threshold,
-                                        const Scalar& time, double latest) {
+                                        const Scalar& time, double latest, const WitnessOf<Scalar>* nearest) {
   const Scalar clearance = threshold + motion.rounding;
   const Scalar aim = threshold * (1 + tolerance / 2) + 4 * motion.rounding;
-  Approach<Scalar> approach{time, {}, VectorOf<Scalar>::Zero()};
+  const Quadruple<Scalar> x = motion.at(time);
+  State<Scalar> state = nearest != nullptr ? State<Scalar>(time, x, *nearest) : State<Scalar>(motion, time, x);
+  VectorOf<Scalar> last_normal = VectorOf<Scalar>::Zero();
   Scalar time_before = time, distance_before = 0;
   int budget = Precision<Scalar>::trials_in_all;
   for (int step = 0; step < Precision<Scalar>::most_steps && budget > 0; ++step) {
-    approach.witness = witness(motion.kind, motion.at(approach.time));
-    const Scalar distance = approach.witness.distance;
-    if (arrived(motion, approach.witness, threshold)) return approach;
-    Scalar expected = predicted_time(motion, approach.witness, aim, approach.time);
+    const Scalar distance = state.nearest.distance;
+    if (arrived(motion, state.nearest, threshold)) return Approach<Scalar>{state.time, state.nearest, last_normal};
+    Scalar expected = predicted_time(motion, state.nearest, aim, state.time);
     if (step >= slow)
-      expected = std::max(expected, extrapolated_time(approach.time, distance, time_before, distance_before, aim));
-    Scalar reached = next_time(motion, approach.witness, threshold, approach.time, expected, budget);
-    if (reached <= approach.time) reached = reach_of_other_planes(motion, approach.time, clearance);
+      expected = std::max(expected, extrapolated_time(state.time, distance, time_before, distance_before, aim));
+    const VectorOf<Scalar> normal = direction(motion, state);
+    Scalar reached = next_time(motion, state, normal, clearance, expected, budget);
+    if (reached <= state.time) reached = reach_of_other_planes(motion, state, clearance);
     if (reached >= 1 || reached > latest) return std::nullopt;
-    if (reached <= approach.time) break;
-    approach.last_normal = direction(motion, approach.witness, approach.time);
-    time_before = approach.time;
+    if (reached <= state.time) break;
+    last_normal = normal;
+    time_before = state.time;
     distance_before = distance;
-    approach.time = reached;
+    state = State<Scalar>(motion, reached);
   }
   if (boxes_apart(motion, clearance)) return std::nullopt;
-  approach.witness = witness(motion.kind, motion.at(approach.time));
-  return approach;
+  return Approach<Scalar>{state.time, state.nearest, last_normal};
 }
 
 double parting_time(const RelativeMotion<double>& motion, double start_distance, double threshold) {
@@ -181,16 +199,17 @@ double parting_time(const RelativeMotion<double>& motion, double start_distance,
     if (normal.isZero(0)) continue;
     if (slides_along(normal) || slides_along(-normal)) return 1;
   }
-  if (at_threshold && slides_along(direction(motion, witness(motion.kind, motion.start), 0.0))) return 1;
+  if (at_threshold && slides_along(direction(motion, State<double>(motion, 0.0)))) return 1;
   for (double time = 1; time > 0x1p-24; time /= 2) {
-    const Vector3 normal = direction(motion, witness(motion.kind, motion.at(time)), time);
+    const Vector3 normal = direction(motion, State<double>(motion, time));
     if (gap_of_plane(motion, normal, 0.0) >= least && gap_of_plane(motion, normal, time) >= apart) return time;
   }
   return 0;
 }
 
-template std::optional<Approach<double>> advance(const RelativeMotion<double>&, const double&, const double&, double);
+template std::optional<Approach<double>> advance(const RelativeMotion<double>&, const double&, const double&, double,
+                                                 const Witness*);
 template std::optional<Approach<DoubleDouble>> advance(const RelativeMotion<DoubleDouble>&, const DoubleDouble&,
-                                                       const DoubleDouble&, double);
+                                                       const DoubleDouble&, double, const WitnessOf<DoubleDouble>*);
 
 }  // namespace stiv

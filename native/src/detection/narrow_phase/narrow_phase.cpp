@@ -63,7 +63,8 @@ std::optional<Contact> contact_within(double threshold, const RelativeMotion<dou
     if (time >= 1) return std::nullopt;
     if (time == 0) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   }
-  std::optional<Approach<double>> approach = advance(relative, threshold, time, latest);
+  std::optional<Approach<double>> approach =
+      advance(relative, threshold, time, latest, time == 0 ? &at_start : nullptr);
   if (approach) approach = refined(relative, motion, threshold, *approach);
   if (!approach || approach->time > latest) return std::nullopt;
   return contact_of(relative, *approach, at_start.distance);

@@ -142,6 +142,41 @@ TEST_CASE("bvh: groups that did not change keep their boxes") {
   CHECK(sorted(Bvh::overlapping_pairs(tree, Execution(1)), true) == expected_pairs(boxes, boxes, all));
 }
 
+TEST_CASE("bvh: after some vertices changed, all nodes are those of a complete refit") {
+  constexpr Index vertices = 3000, faces = 5000;
+  std::mt19937 random(12);
+  std::uniform_int_distribution<Index> near(0, 20);
+  std::vector<Index> rows;
+  for (Index face = 0; face < faces; ++face)
+    for (int k = 0; k < 3; ++k) rows.push_back((face * (vertices - 20) / faces + near(random)) % vertices);
+  const auto packed = [](const std::vector<Bounds>& boxes) {
+    std::vector<PackedBox> result;
+    for (const Bounds& box : boxes) result.push_back(PackedBox::of(box, true));
+    return result;
+  };
+  const std::vector<PackedBox> moved = packed(random_boxes(vertices, 0.1, 14));
+  const std::vector<NumberedPoint> centres = centres_of(random_boxes(faces, 0.1, 15));
+  const Execution execution(1);
+  Bvh tree(centres, {}, {rows.data(), 3}, execution), whole = tree;
+  std::vector<PackedBox> boxes = packed(random_boxes(vertices, 0.1, 13));
+  tree.refit_corners(boxes, execution);
+  for (const Index step : {1, 37, 400}) {
+    std::vector<Index> changed;
+    for (Index vertex = step; vertex < vertices; vertex += vertex % 3 == 0 ? 1 : step) changed.push_back(vertex);
+    for (const Index vertex : changed) boxes[at(vertex)] = moved[at(vertex)];
+    tree.refit_some_corners(changed, boxes);
+    whole.refit_corners(boxes, execution);
+    for (std::size_t level = 0; level < whole.levels().size(); ++level)
+      for (std::size_t node = 0; node < whole.levels()[level].boxes.size(); ++node) {
+        CHECK(tree.levels()[level].boxes[node].values == whole.levels()[level].boxes[node].values);
+        const auto &planes = tree.levels()[level].nodes[node].planes,
+                   &wanted = whole.levels()[level].nodes[node].planes;
+        for (std::size_t plane = 0; plane < 7; ++plane)
+          CHECK(std::equal(planes[plane], planes[plane] + Bvh::width, wanted[plane]));
+      }
+  }
+}
+
 TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
   const Bvh tree(random_boxes(3000, 0.05, 6));
   const Pairs expected = Bvh::overlapping_pairs(tree, Execution(1));
