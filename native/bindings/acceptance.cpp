@@ -109,6 +109,15 @@ void bind_acceptance(py::module_& module) {
   py::class_<CachedIntersectionTest>(module, "IntersectionTest")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
       .def("find", &CachedIntersectionTest::find, positions, Release());
+  py::class_<DeviationTest, std::shared_ptr<DeviationTest>>(module, "DeviationTest")
+      .def_property_readonly("reach", &DeviationTest::reach)
+      .def(
+          "is_free",
+          [](const DeviationTest& test, const PositionsView& q, int thread_count) {
+            Execution execution(thread_count);
+            return test.is_free(q, execution);
+          },
+          positions, threads, Release());
   py::class_<StepCheck>(module, "StepCheck")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
       .def("is_free", &StepCheck::is_free, start, end, separation, Release())

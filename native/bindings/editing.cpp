@@ -194,6 +194,11 @@ class Session : public std::enable_shared_from_this<Session> {
     return session_.is_step_free(start, end, execution);
   }
 
+  std::shared_ptr<DeviationTest> deviation_test() {
+    const InUse in_use(in_use_);
+    return std::const_pointer_cast<DeviationTest>(session_.deviation_test());
+  }
+
   py::object least_distance(bool within) {
     const InUse in_use(in_use_);
     return tuple_of([&] {
@@ -352,6 +357,7 @@ void bind_editing(py::module_& module) {
       .def("restore", &Session::restore, py::arg("controls"), py::arg("goal"))
       .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))
       .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))
+      .def("deviation_test", &Session::deviation_test)
       .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)

@@ -28,7 +28,14 @@ from stiv.detection import Detector, Events, find_interference, time_of_impact
 from stiv.distances import LeastDistance, least_distance
 from stiv.edit_session import CancelToken, EditOptions, EditResult, EditSession, StorageFrame, edit
 from stiv.handles import arap, laplacian, stored_mesh
-from stiv.intersections import IntersectionTest, StepCheck, find_intersections, find_loose_intersections, is_step_free
+from stiv.intersections import (
+    DeviationTest,
+    IntersectionTest,
+    StepCheck,
+    find_intersections,
+    find_loose_intersections,
+    is_step_free,
+)
 from stiv.job import CancelledError, Job, JobProgress
 from stiv.lattices import lattice, lattice_rest_points, lattice_weights
 from stiv.observed import InfeasibleError, ObservedDeformation, observed
@@ -52,6 +59,7 @@ __all__ = [
     "ContractionResult",
     "Deformation",
     "Detector",
+    "DeviationTest",
     "EditOptions",
     "EditResult",
     "EditSession",

@@ -23,6 +23,7 @@ from stiv.edit_options import (
     native_options,
     with_numbers,
 )
+from stiv.intersections import DeviationTest
 from stiv.job import Job
 from stiv.obstacles import Obstacle
 from stiv.surface import Surface, as_surface
@@ -155,6 +156,15 @@ class EditSession:
         test the accepted surface again. Not for sessions with excluded pairs.
         """
         return self._session.is_step_free(as_doubles(start, "start"), as_doubles(end, "end"))
+
+    def deviation_test(self, threads: int = 0) -> DeviationTest | None:
+        """Return the exact test of surfaces that deviate from the accepted one by rounding, such as evaluated ones.
+
+        It remains valid, and may be used while the session solves on. None for sessions with excluded pairs, bodies
+        that may overlap or obstacles, and where the accepted state was not the last that was tested.
+        """
+        native = self._session.deviation_test()
+        return None if native is None else DeviationTest(native, threads)
 
     def edit(
         self, goal: ArrayLike, *, cancel: CancelToken | None = None, progress: Progress | None = None

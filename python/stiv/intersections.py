@@ -81,6 +81,29 @@ def is_step_free(
     return _native.is_step_free(surface.native, first, last, distance, as_count(threads, "threads"))
 
 
+class DeviationTest:
+    """The exact test of surfaces that deviate by rounding from one without intersections.
+
+    Made by `EditSession.deviation_test`. Immutable: it may be used while the session solves on.
+    """
+
+    def __init__(self, native: _native.DeviationTest, threads: int = 0) -> None:
+        """Take the test of the core; threads 0 uses all cores."""
+        self._native, self._threads = native, as_count(threads, "threads")
+
+    @property
+    def reach(self) -> float:
+        """The largest deviation of a coordinate that it can decide."""
+        return self._native.reach
+
+    def is_free(self, vertices: ArrayLike) -> bool | None:
+        """Return whether nothing intersects at `vertices`, (N, 3); None if one of them deviates by more than `reach`.
+
+        The answer is that of `find_intersections`, with loose edges and vertices. Raises InputError as it does.
+        """
+        return self._native.is_free(as_floats(vertices, "vertices", (None, 3)), self._threads)
+
+
 class StepCheck:
     """The test of `is_step_free` for many steps of one surface from free starts. Caches its trees.
 

@@ -3,6 +3,7 @@
 
 /// Everything that a program needs to edit, test and repair surfaces. docs/cpp_users.md lists the headers by topic.
 
+#include "stiv/acceptance/deviation_test.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/acceptance/least_distance.hpp"
 #include "stiv/acceptance/step_check.hpp"

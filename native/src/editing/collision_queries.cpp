@@ -33,13 +33,17 @@ std::shared_ptr<const Surface> without_pairs(const Surface& surface, const BodyP
   return std::make_shared<Surface>(std::move(definition));
 }
 
+bool has_deviation_tests(const EditContext& context) {
+  return context.obstacles().rows() == 0 && context.options().excluded.empty() && context.options().overlapping.empty();
+}
+
 }  // namespace
 
 CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditContext& context)
     : surface(std::move(guarded)),
       detector(surface, {.broad_phase = context.options().broad_phase}),
       cache(detector, static_cast<Index>(context.obstacles().rows())),
-      intersections(surface) {
+      intersections(surface, {.lists_near_pairs = has_deviation_tests(context)}) {
   const EditOptions& options = context.options();
   if (options.narrow_phase != NarrowPhase::conservative)
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
@@ -203,7 +207,17 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
   // As most steps are no longer than rounding, the last search has mostly found all pairs that can touch.
   std::optional<double> first = guard_->cache.earliest_contact(start, end, touching, execution);
   if (!first) first = guard_->detector.earliest_time(start, end, touching, execution);
-  return *first == never && guard_->intersections.is_free(end_.with_rest(to), moved(from, to), execution);
+  return *first == never && is_end_free(from, to, execution);
+}
+
+bool CollisionQueries::is_end_free(const PositionsView& from, const PositionsView& to, Execution& execution) {
+  if (const auto near = deviation_test(from))
+    if (const std::optional<bool> is_free = near->is_free(to, execution)) return *is_free;
+  return guard_->intersections.is_free(end_.with_rest(to), moved(from, to), execution);
+}
+
+std::shared_ptr<const DeviationTest> CollisionQueries::deviation_test(const PositionsView& accepted) const {
+  return guard_->intersections.deviation_test(accepted);
 }
 
 }  // namespace stiv

@@ -56,6 +56,9 @@ class CollisionQueries {
   /// Is a step free of intersections, whatever its clearance, given that its start is? For sessions without excluded
   /// pairs.
   bool is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution);
+  /// The test of surfaces that deviate by rounding from the accepted one; null if it was not the last that passed the
+  /// static test, for excluded pairs, bodies that may overlap, and obstacles.
+  std::shared_ptr<const DeviationTest> deviation_test(const PositionsView& accepted) const;
 
  private:
   /// The tests of a surface without the pairs of bodies that overlap now.
@@ -72,6 +75,7 @@ class CollisionQueries {
   };
 
   void guard_pairs_apart_at(const Positions& accepted, Execution& execution);
+  bool is_end_free(const PositionsView& from, const PositionsView& to, Execution& execution);
   bool passes_static_test(const Positions& from, const Positions& to, Execution& execution);
   std::optional<Events> find_not_excluded(Detector& detector, const Positions& from, const Positions& to,
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;

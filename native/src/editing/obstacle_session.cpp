@@ -113,6 +113,8 @@ class ObstacleSession final : public SessionImplementation {
     return test(*make_near(grown(bounds, margin()), start_, start_, execution));
   }
 
+  std::shared_ptr<const DeviationTest> deviation_test() const override { return nullptr; }
+
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, surface());
     auto nearest = with_scene_numbers(near_->session->least_distance(pairs), near_->scene);

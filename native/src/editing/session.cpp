@@ -146,6 +146,10 @@ class SurfaceSession final : public SessionImplementation {
     return queries_.is_step_free(start, end, execution);
   }
 
+  std::shared_ptr<const DeviationTest> deviation_test() const override {
+    return queries_.deviation_test(accepted_.surface);
+  }
+
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
     if (!least_distance_) least_distance_.emplace(context_.shared_surface());
     SceneRows rows(context_.obstacles());
@@ -387,6 +391,7 @@ bool EditSession::is_step_free(const PositionsView& start, const PositionsView& 
 
 const Controls& EditSession::controls() const { return implementation_->controls(); }
 const Positions& EditSession::surface() const { return implementation_->surface(); }
+std::shared_ptr<const DeviationTest> EditSession::deviation_test() const { return implementation_->deviation_test(); }
 std::optional<NearestTriangles> EditSession::least_distance(DistancePairs pairs) {
   return implementation_->least_distance(pairs);
 }

@@ -74,7 +74,7 @@ def test_a_taken_state_that_intersects_is_refused_and_the_last_one_comes_back() 
 def test_the_last_state_comes_back_while_the_session_solves_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is tested again; a scene that someone changed is refused."""
     verdicts = iter([True, True, False, True])
-    monkeypatch.setattr(stiv.StepCheck, "is_end_free", lambda *_: next(verdicts, True))
+    monkeypatch.setattr(stiv.DeviationTest, "is_free", lambda *_: next(verdicts, True))
     cube = cube_above_floor()
     select(cube)
     edit = begin()
@@ -93,6 +93,27 @@ def test_the_last_state_comes_back_while_the_session_solves_on(monkeypatch: pyte
     assert edit.write().passed and cube.location.x == pytest.approx(1.8)
     edit.restore()
     assert not edit.write_shown() and cube.location.x == pytest.approx(0.3)
+
+
+def test_a_search_decides_only_if_blender_shows_more_than_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    searches: list[bool] = []
+    is_end_free = stiv.StepCheck.is_end_free
+
+    def watched(check: stiv.StepCheck, start: np.ndarray, end: np.ndarray) -> bool:
+        searches.append(is_end_free(check, start, end))
+        return searches[-1]
+
+    monkeypatch.setattr(stiv.StepCheck, "is_end_free", watched)
+    select(cube_above_floor())
+    edit = begin()
+    for x, expected in ((0.5, []), (1.0, [True])):
+        edit.drag(shift(x=x))
+        taken = edit.take_state()
+        assert taken is not None and taken.deviations is not None
+        if expected:
+            monkeypatch.setattr(stiv.DeviationTest, "is_free", lambda *_: None)
+        assert edit.write_taken(taken) is not None and searches == expected
+    edit.restore()
 
 
 def test_a_state_taken_before_the_edit_was_restored_is_refused() -> None:

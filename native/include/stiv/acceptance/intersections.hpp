@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "stiv/acceptance/deviation_test.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/surface.hpp"
 
@@ -30,11 +31,15 @@ struct StaticPairs {
   bool empty() const { return count() == 0; }
 };
 
+struct IntersectionTestOptions {
+  bool lists_near_pairs = false;  ///< for `deviation_test`
+};
+
 /// Exact static test of a whole surface at positions q, (N, 3), all finite. It keeps its trees between calls. Pairs of
 /// bodies that do not meet are left out. Results do not depend on the number of threads.
 class IntersectionTest {
  public:
-  explicit IntersectionTest(std::shared_ptr<const Surface> surface);
+  explicit IntersectionTest(std::shared_ptr<const Surface> surface, IntersectionTestOptions options = {});
   ~IntersectionTest();
   IntersectionTest(IntersectionTest&&) noexcept;
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
@@ -49,15 +54,17 @@ class IntersectionTest {
   IndexPairs find_loose_vertices(const PositionsView& q, Execution& execution);
 
   /// All three of them.
-  StaticPairs find_all(const PositionsView& q, Execution& execution) {
-    return {find(q, execution), find_loose_edges(q, execution), find_loose_vertices(q, execution)};
-  }
+  StaticPairs find_all(const PositionsView& q, Execution& execution);
 
   /// True if nothing intersects; stops at the first intersection.
   /// @param moved (N) nonzero for vertices that differ from a state known to be free; only pairs with a moved vertex
   /// are
   ///        tested. Empty: all
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution);
+
+  /// The test of surfaces that deviate from q by rounding, for options that list near pairs. Null unless q was the last
+  /// surface without intersections in `find_all` or `is_free`.
+  std::shared_ptr<const DeviationTest> deviation_test(const PositionsView& q) const;
 
  private:
   class Implementation;

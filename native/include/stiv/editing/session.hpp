@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "stiv/acceptance/deviation_test.hpp"
 #include "stiv/acceptance/least_distance.hpp"
 #include "stiv/deformation/deformation.hpp"
 #include "stiv/editing/obstacle.hpp"
@@ -95,6 +96,11 @@ class EditSession {
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
   /// Like stiv::is_step_free, but with the trees of the session. For sessions without excluded pairs.
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution);
+
+  /// The exact test of surfaces that deviate from the accepted one by rounding. It remains valid, and may be used while
+  /// the session solves on. Null for sessions with excluded pairs, bodies that may overlap or obstacles, and where the
+  /// accepted state was not the last that was tested.
+  std::shared_ptr<const DeviationTest> deviation_test() const;
 
   const Controls& controls() const;  ///< accepted, (m, 3)
   const Positions& surface() const;  ///< f(accepted), (N, 3)

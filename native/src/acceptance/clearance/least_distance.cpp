@@ -146,7 +146,7 @@ class LeastDistance::Implementation {
     if (triangles_.empty()) return std::nullopt;
     const Execution execution(1);
     PlacedVertices placed(*surface_);
-    placed.update(q, {}, execution);
+    placed.update(q, {}, 0, execution);
     triangles_.note_changes(placed.changed_bodies());
     triangles_.update(placed.boxes(), execution);
     return Search(*surface_, triangles_, q, pairs).run();

@@ -7,23 +7,22 @@
 
 namespace stiv {
 
-namespace {
-
-bool share_corner(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
-  bool shared = false;
-  for (const Index corner : a) shared |= (corner == b[0]) | (corner == b[1]) | (corner == b[2]);
-  return shared;
-}
-
-}  // namespace
-
 CandidateTest::CandidateTest(const Surface& surface, const Primitives& first, const Primitives& second,
-                             const PositionsView& q, const PackedPoints& points, Report report)
-    : surface_(surface), first_(first), second_(second), q_(q), points_(points), report_(std::move(report)) {}
+                             const PositionsView& q, const PackedPoints& points, NearPairs* near, Report report)
+    : surface_(surface),
+      first_(first),
+      second_(second),
+      q_(q),
+      points_(points),
+      near_(near),
+      report_(std::move(report)) {}
 
 bool CandidateTest::add(const PrimitivePair& pair) {
   const auto &a = first_.corners(pair.first), &b = second_.corners(pair.second);
-  if (share_corner(a, b)) return !intersect(pair) || report_(pair);
+  if (share_corner(a, b)) {
+    list(pair);
+    return !intersect(pair) || report_(pair);
+  }
   pairs_[block_.count] = pair;
   block_.add(a, b);
   return block_.count < TrianglePairs::capacity || finish();
@@ -31,11 +30,18 @@ bool CandidateTest::add(const PrimitivePair& pair) {
 
 bool CandidateTest::finish() {
   TriangleFlags separated;
-  find_separated(block_, points_, separated);
+  find_separated(block_, points_, near_ == nullptr ? 0 : near_->reach, separated);
   const std::size_t count = std::exchange(block_.count, 0);
-  for (std::size_t k = 0; k < count; ++k)
-    if (!separated[k] && intersect(pairs_[k]) && !report_(pairs_[k])) return false;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (separated[k]) continue;
+    list(pairs_[k]);
+    if (intersect(pairs_[k]) && !report_(pairs_[k])) return false;
+  }
   return true;
+}
+
+void CandidateTest::list(const PrimitivePair& pair) {
+  if (near_ != nullptr) near_->pairs.push_back({first_.corners(pair.first), second_.corners(pair.second)});
 }
 
 bool CandidateTest::intersect(const PrimitivePair& pair) const {

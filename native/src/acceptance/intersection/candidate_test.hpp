@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "acceptance/intersection/near_pairs.hpp"
 #include "acceptance/intersection/primitives.hpp"
 #include "acceptance/intersection/separating_plane_filter.hpp"
 
@@ -16,8 +17,9 @@ class CandidateTest {
   using Report = std::function<bool(const PrimitivePair&)>;
 
   /// @param points q, packed
+  /// @param near lists the candidates that no plane separates by its reach; null: none
   CandidateTest(const Surface& surface, const Primitives& first, const Primitives& second, const PositionsView& q,
-                const PackedPoints& points, Report report);
+                const PackedPoints& points, NearPairs* near, Report report);
 
   /// Adds a candidate. Returns false if the report stopped.
   bool add(const PrimitivePair& pair);
@@ -27,11 +29,13 @@ class CandidateTest {
 
  private:
   bool intersect(const PrimitivePair& pair) const;
+  void list(const PrimitivePair& pair);
 
   const Surface& surface_;
   const Primitives &first_, &second_;
   PositionsView q_;
   const PackedPoints& points_;
+  NearPairs* near_;
   Report report_;
   TrianglePairs block_;
   std::array<PrimitivePair, TrianglePairs::capacity> pairs_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "acceptance/intersection/candidate_test.hpp"
+#include "acceptance/intersection/near_pair_list.hpp"
 #include "acceptance/intersection/placed_vertices.hpp"
 #include "acceptance/intersection/stars.hpp"
 
@@ -35,16 +36,23 @@ CornerList corners_within_tested_bodies(const Surface& surface, const CornerList
 /// Searches for intersections of two kinds of primitives, or of one kind with itself.
 class Search {
  public:
+  /// @param reach of the pairs to list; nothing: lists none
   Search(const Surface& surface, const Primitives& first, const Primitives& second, const GroupRelations& bodies,
-         const PositionsView& q, const PackedPoints& points)
+         const PositionsView& q, const PackedPoints& points, std::optional<double> reach)
       : surface_(surface), first_(first), second_(second), bodies_(bodies), q_(q), points_(points) {
     if (!first_.empty() && !second_.empty()) tasks_ = first_.tree().tasks(second_.tree(), bodies_);
+    if (reach) near_.resize(tasks_.size(), {*reach, {}, {}});
   }
 
-  IndexPairs all(const Execution& execution) const {
+  /// Appends the pairs that the whole search listed.
+  void append_near(std::vector<CornerPair>& pairs) const {
+    for (const NearPairs& near : near_) pairs.insert(pairs.end(), near.pairs.begin(), near.pairs.end());
+  }
+
+  IndexPairs all(const Execution& execution) {
     std::vector<IndexPairs> found(tasks_.size());
     execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
-      scan(tasks_[at(task)], [&](const PrimitivePair& pair) {
+      scan(task, [&](const PrimitivePair& pair) {
         found[at(task)].emplace_back(pair.first, pair.second);
         return true;
       });
@@ -52,11 +60,11 @@ class Search {
     return sorted(found);
   }
 
-  bool any(const Execution& execution) const {
+  bool any(const Execution& execution) {
     std::atomic<bool> found{false};
     execution.for_chunks(static_cast<Index>(tasks_.size()), 1, [&](Index, Index, Index task) {
       if (found.load(std::memory_order_relaxed)) return;
-      scan(tasks_[at(task)], [&](const PrimitivePair&) {
+      scan(task, [&](const PrimitivePair&) {
         found.store(true, std::memory_order_relaxed);
         return false;
       });
@@ -67,8 +75,9 @@ class Search {
  private:
   /// Calls `report(pair)` for each intersection until it returns false.
   template <class Report>
-  void scan(const Bvh::Task& task, const Report& report) const {
-    CandidateTest test(surface_, first_, second_, q_, points_, report);
+  void scan(Index task, const Report& report) {
+    NearPairs* const near = near_.empty() ? nullptr : &near_[at(task)];
+    CandidateTest test(surface_, first_, second_, q_, points_, near, report);
     PairBuffer candidates;
     bool more = true;
     candidates.limit = 4096;
@@ -77,7 +86,7 @@ class Search {
       found.count = 0;
       return more;
     };
-    first_.tree().overlaps(task, second_.tree(), bodies_, candidates);
+    first_.tree().overlaps(tasks_[at(task)], second_.tree(), bodies_, candidates);
     if (candidates.full(candidates)) test.finish();
   }
 
@@ -97,41 +106,96 @@ class Search {
   PositionsView q_;
   const PackedPoints& points_;
   std::vector<Bvh::Task> tasks_;
+  std::vector<NearPairs> near_;  // of each task
 };
 
 }  // namespace
 
 class IntersectionTest::Implementation {
  public:
-  explicit Implementation(std::shared_ptr<const Surface> surface)
+  Implementation(std::shared_ptr<const Surface> surface, IntersectionTestOptions options)
       : surface_(std::move(surface)),
         triangles_(*surface_, triangle_corners(*surface_)),
         loose_edges_(*surface_, loose_edge_corners(*surface_)),
         loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
-        stars_(corners_within_tested_bodies(*surface_, triangles_.all_corners()), surface_->vertex_count()),
-        bodies_(pairs_of_bodies(*surface_)) {}
+        stars_(std::make_shared<const Stars>(corners_within_tested_bodies(*surface_, triangles_.all_corners()),
+                                             surface_->vertex_count())),
+        bodies_(pairs_of_bodies(*surface_)) {
+    if (options.lists_near_pairs) near_.emplace(surface_, stars_);
+  }
 
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
   IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
     return find(loose_edges_, q, execution);
   }
   IndexPairs find_loose_vertices(const PositionsView& q, const Execution& execution) {
-    IndexPairs pairs = find(loose_vertices_, q, execution);
-    for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
-    return pairs;
+    return numbered(find(loose_vertices_, q, execution));
+  }
+
+  StaticPairs find_all(const PositionsView& q, const Execution& execution) {
+    check_positions(q, execution);
+    if (near_) near_->begin(q, {}, execution);
+    update({&triangles_, &loose_edges_, &loose_vertices_}, q, {}, execution);
+    NearPairList::Found listed;
+    StaticPairs found;
+    found.faces = find_among(triangles_, q, listed.triangles, execution);
+    found.loose_edges = find_among(loose_edges_, q, listed.loose, execution);
+    found.loose_vertices = numbered(find_among(loose_vertices_, q, listed.loose, execution));
+    if (near_ && found.empty()) near_->accept(q, {}, listed, proofs_, execution);
+    return found;
   }
 
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
-    update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
-    for (const Primitives* first : {&triangles_, &loose_edges_, &loose_vertices_})
-      if (Search(*surface_, *first, triangles_, bodies_, q, placed_->points()).any(execution)) return false;
+    check_positions(q, execution);
+    NearPairList::Found listed;
+    if (!near_) return is_free(q, moved, listed, execution);
+    const std::vector<unsigned char> searched = near_->begin(q, moved, execution);
+    if (!is_free(q, searched, listed, execution)) return false;
+    near_->accept(q, searched, listed, proofs_, execution);
     return true;
   }
 
+  std::shared_ptr<const DeviationTest> deviation_test(const PositionsView& q) const {
+    return near_ ? near_->test_near(q) : nullptr;
+  }
+
  private:
+  bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, NearPairList::Found& listed,
+               const Execution& execution) {
+    update({&triangles_, &loose_edges_, &loose_vertices_}, q, moved, execution);
+    const auto meets = [&](const Primitives& first, std::vector<CornerPair>& near) {
+      Search search = begin_search(first, q);
+      if (search.any(execution)) return true;
+      search.append_near(near);
+      return false;
+    };
+    return !meets(triangles_, listed.triangles) && !meets(loose_edges_, listed.loose) &&
+           !meets(loose_vertices_, listed.loose);
+  }
+
   IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
+    check_positions(q, execution);
     update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
-    return Search(*surface_, first, triangles_, bodies_, q, placed_->points()).all(execution);
+    return begin_search(first, q).all(execution);
+  }
+
+  IndexPairs find_among(const Primitives& first, const PositionsView& q, std::vector<CornerPair>& near,
+                        const Execution& execution) const {
+    Search search = begin_search(first, q);
+    IndexPairs pairs = search.all(execution);
+    search.append_near(near);
+    return pairs;
+  }
+
+  /// A search of primitives among triangles, after an update.
+  Search begin_search(const Primitives& first, const PositionsView& q) const {
+    const std::optional<double> reach = near_ ? std::optional(near_->reach()) : std::nullopt;
+    return {*surface_, first, triangles_, bodies_, q, placed_->points(), reach};
+  }
+
+  IndexPairs numbered(IndexPairs pairs) const {
+    for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
+    return pairs;
   }
 
   void check_positions(const PositionsView& q, const Execution& execution) const {
@@ -146,28 +210,28 @@ class IntersectionTest::Implementation {
 
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
-    check_positions(q, execution);
     std::optional<PlacedVertices> placed = std::exchange(placed_, std::nullopt);  // this may be cancelled
     if (!placed) placed.emplace(*surface_);
-    placed->update(q, moved, execution);
+    placed->update(q, moved, near_ ? near_->margin() : 0, execution);
     for (Primitives* kind : {&triangles_, &loose_edges_, &loose_vertices_})
       kind->note_changes(placed->changed_bodies());
     for (Primitives* kind : kinds) kind->update(placed->boxes(), execution);
-    stars_.find_free(*placed, moved, free_stars_, execution);
-    triangles_.leave_out_neighbours(free_stars_, placed->changed_bodies(), execution);
+    stars_->find_free(*placed, moved, near_ ? near_->reach() : 0, proofs_, execution);
+    triangles_.leave_out_neighbours(proofs_, placed->changed_bodies(), execution);
     placed_ = std::move(placed);
   }
 
   std::shared_ptr<const Surface> surface_;
   Primitives triangles_, loose_edges_, loose_vertices_;
-  Stars stars_;
+  std::shared_ptr<const Stars> stars_;
   GroupRelations bodies_;
-  std::optional<PlacedVertices> placed_;   ///< of the last update, unless it was cancelled
-  std::vector<unsigned char> free_stars_;  ///< of the last update
+  std::optional<PlacedVertices> placed_;  ///< of the last update, unless it was cancelled
+  std::vector<unsigned char> proofs_;     ///< of stars, of the last update
+  std::optional<NearPairList> near_;      ///< if it is wanted
 };
 
-IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
-    : implementation_(std::make_unique<Implementation>(std::move(surface))) {}
+IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface, IntersectionTestOptions options)
+    : implementation_(std::make_unique<Implementation>(std::move(surface), options)) {}
 IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
@@ -187,9 +251,18 @@ IndexPairs IntersectionTest::find_loose_vertices(const PositionsView& q, Executi
   return implementation_->find_loose_vertices(q, execution);
 }
 
+StaticPairs IntersectionTest::find_all(const PositionsView& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_all(q, execution);
+}
+
 bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->is_free(q, moved, execution);
+}
+
+std::shared_ptr<const DeviationTest> IntersectionTest::deviation_test(const PositionsView& q) const {
+  return implementation_->deviation_test(q);
 }
 
 }  // namespace stiv

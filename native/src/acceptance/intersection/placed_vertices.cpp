@@ -19,15 +19,16 @@ bool PlacedVertices::is_placed(const PositionsView& q, Index vertex, bool active
 
 void PlacedVertices::place(const PositionsView& q, Index vertex, bool active) {
   Bounds bounds = Bounds::empty();
-  bounds.include(q.row(vertex).transpose(), 0);
+  bounds.include(q.row(vertex).transpose(), margin_);
   points_[at(vertex)] = {{q(vertex, 0), q(vertex, 1), q(vertex, 2), 0}};
   boxes_[at(vertex)] = PackedBox::of(bounds, active);
 }
 
-void PlacedVertices::update(const PositionsView& q, const std::vector<unsigned char>& moved,
+void PlacedVertices::update(const PositionsView& q, const std::vector<unsigned char>& moved, double margin,
                             const Execution& execution) {
   const auto count = static_cast<Index>(q.rows());
-  const bool is_first = points_.empty();
+  const bool is_first = points_.empty() || margin != margin_;
+  margin_ = margin;
   points_.resize(at(count));
   boxes_.resize(at(count));
   std::vector<std::vector<Index>> changed(at(Execution::chunk_count(count, chunk_size)));

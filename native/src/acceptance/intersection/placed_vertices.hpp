@@ -16,7 +16,9 @@ class PlacedVertices {
   explicit PlacedVertices(const Surface& surface) : surface_(&surface) {}
 
   /// @param moved as in IntersectionTest::is_free
-  void update(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution);
+  /// @param margin of the boxes on each side
+  void update(const PositionsView& q, const std::vector<unsigned char>& moved, double margin,
+              const Execution& execution);
 
   const PackedPoints& points() const { return points_; }
   /// A box is active if its vertex is marked in `moved`.
@@ -33,6 +35,7 @@ class PlacedVertices {
   const Surface* surface_;
   PackedPoints points_;
   std::vector<PackedBox> boxes_;
+  double margin_ = 0;  // of the boxes
   std::vector<unsigned char> changed_bodies_;
 };
 

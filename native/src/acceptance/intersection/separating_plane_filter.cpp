@@ -14,6 +14,7 @@ namespace stiv::HWY_NAMESPACE {
 struct Pair {
   Point first[2], second[3];
   Point magnitude;  ///< of the coordinates
+  Lanes shrinkage;  ///< of a gap along a direction with components of 1, if all corners move by the reach
 };
 
 HWY_INLINE Point magnitude(Point a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
@@ -27,13 +28,14 @@ HWY_INLINE Point load_corners(const TrianglePairs& pairs, std::size_t corner, st
   return load_points(rows);
 }
 
-HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const PackedPoint* points) {
+HWY_INLINE Pair load(const TrianglePairs& pairs, std::size_t at, const PackedPoint* points, double reach) {
   const Point origin = load_corners(pairs, 0, at, points);
   Pair pair;
   for (std::size_t k = 0; k < 2; ++k) pair.first[k] = load_corners(pairs, k + 1, at, points) - origin;
   for (std::size_t k = 0; k < 3; ++k) pair.second[k] = load_corners(pairs, k + 3, at, points) - origin;
   pair.magnitude = larger(magnitude(pair.first[0]), magnitude(pair.first[1]));
   for (const Point& corner : pair.second) pair.magnitude = larger(pair.magnitude, magnitude(corner));
+  pair.shrinkage = all((2 + 0x1p-40) * reach);  // rounding included
   return pair;
 }
 
@@ -48,7 +50,8 @@ HWY_INLINE Mask separates(Point direction, const Pair& pair) {
   const Lanes beyond = hn::Sub(min3(b0, b1, b2), max3(zero, a1, a2));
   const Lanes before = hn::Sub(min3(zero, a1, a2), max3(b0, b1, b2));
   const Lanes error = hn::Mul(all(0x1p-49), dot(magnitude(direction), pair.magnitude));
-  return hn::Gt(hn::Max(beyond, before), hn::Add(error, all(underflow)));
+  const Lanes least = hn::Add(error, hn::Mul(pair.shrinkage, sum_norm(direction)));
+  return hn::Gt(hn::Max(beyond, before), hn::Add(least, all(underflow)));
 }
 
 HWY_INLINE Mask over_edges(Point normal, Point a, Point b, Point c, const Pair& pair) {
@@ -70,13 +73,13 @@ HWY_INLINE Mask separated(const Pair& pair) {
   return hn::Or(quick, upright);
 }
 
-void find_separated(const TrianglePairs& pairs, const PackedPoint* points, unsigned char* result) {
+void find_separated(const TrianglePairs& pairs, const PackedPoint* points, double reach, unsigned char* result) {
   const Doubles d;
   const std::size_t width = hn::Lanes(d);
   static_assert(TrianglePairs::capacity % HWY_MAX_BYTES == 0);
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t at = 0; at < pairs.count; at += width) {
-    hn::Store(hn::IfThenElseZero(separated(load(pairs, at, points)), all(1)), d, flags);
+    hn::Store(hn::IfThenElseZero(separated(load(pairs, at, points, reach)), all(1)), d, flags);
     for (std::size_t lane = 0; lane < width; ++lane) result[at + lane] = flags[lane] != 0;
   }
 }
@@ -87,8 +90,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_separated(const TrianglePairs& pairs, const PackedPoints& points, TriangleFlags& separated) {
-  STIV_FOR_VECTOR_TARGET(find_separated)(pairs, points.data(), separated.data());
+void find_separated(const TrianglePairs& pairs, const PackedPoints& points, double reach, TriangleFlags& separated) {
+  STIV_FOR_VECTOR_TARGET(find_separated)(pairs, points.data(), reach, separated.data());
 }
 
 }  // namespace stiv

@@ -30,6 +30,7 @@ using TriangleFlags = std::array<unsigned char, TrianglePairs::capacity>;
 
 /// 1 for each pair that one of these planes strictly separates, rounding included: orthogonal to the line through the
 /// centers, parallel to a triangle, or orthogonal to a triangle through an edge of it. 1 is certain; 0 is inconclusive.
-void find_separated(const TrianglePairs& pairs, const PackedPoints& points, TriangleFlags& separated);
+/// @param reach the plane also separates the pair wherever each coordinate of its corners differs by no more
+void find_separated(const TrianglePairs& pairs, const PackedPoints& points, double reach, TriangleFlags& separated);
 
 }  // namespace stiv

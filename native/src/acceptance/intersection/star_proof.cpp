@@ -25,16 +25,23 @@ struct InteriorEdge {
   Lanes size;
 };
 
-/// Turns between interior edges seen along `view`, with their error bounds.
+/// Turns between interior edges seen along `view`, with their error bounds. These include changes of the edges by twice
+/// the reach: a product of sizes then grows by that times their sum, and its square.
 struct Turns {
   Point view;
-  Lanes scale;
+  Lanes scale, change, growth, least;
 
-  explicit Turns(Point along) : view(along), scale(hn::Mul(all(rounding * 6), largest(along))) {}
+  Turns(Point along, double reach)
+      : view(along),
+        scale(hn::Mul(all(rounding * 6), largest(along))),
+        change(all(2 * reach)),
+        growth(hn::Mul(all((6 + 0x1p-40) * (2 * reach)), largest(along))),
+        least(all(underflow)) {}
 
   Lanes turn(InteriorEdge from, InteriorEdge to) const { return dot(view, cross(from.vector, to.vector)); }
   Lanes error(InteriorEdge from, InteriorEdge to) const {
-    return hn::Add(hn::Mul(hn::Mul(scale, from.size), to.size), all(underflow));
+    const Lanes rounded = hn::Add(hn::Mul(hn::Mul(scale, from.size), to.size), least);
+    return hn::Add(rounded, hn::Mul(growth, hn::Add(hn::Add(from.size, to.size), change)));
   }
 };
 
@@ -45,7 +52,7 @@ HWY_INLINE Point points_of(const Index* vertices, const PackedPoint* points) {
 }
 
 /// Processes one star in each lane, starting with `first`.
-HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPoint* points) {
+HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPoint* points, double reach) {
   const Doubles d;
   const Point centre = points_of(stars.vertices.data() + first, points);
   InteriorEdge edges[StarBlock::most_triangles + 1];
@@ -58,7 +65,7 @@ HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPo
   Point view{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t k = 0; k < stars.triangles; ++k) view = view + cross(edges[k].vector, edges[k + 1].vector);
 
-  const Turns turns(view);
+  const Turns turns(view, reach);
   Mask free = hn::Eq(hn::Zero(d), hn::Zero(d)),
        before = hn::Not(free);  // edge k may not lie left of edge 0
   for (std::size_t k = 0; k < stars.triangles; ++k) {
@@ -72,12 +79,12 @@ HWY_INLINE Mask proven(const StarBlock& stars, std::size_t first, const PackedPo
   return free;
 }
 
-void prove_stars(const StarBlock& stars, const PackedPoint* points, unsigned char* free) {
+void prove_stars(const StarBlock& stars, const PackedPoint* points, double reach, unsigned char* free) {
   const Doubles d;
   static_assert(HWY_MAX_BYTES / sizeof(double) <= StarBlock::capacity);
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < stars.count; first += hn::Lanes(d)) {
-    hn::Store(hn::IfThenElseZero(proven(stars, first, points), all(1)), d, flags);
+    hn::Store(hn::IfThenElseZero(proven(stars, first, points, reach), all(1)), d, flags);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) free[first + lane] = flags[lane] != 0;
   }
 }
@@ -88,14 +95,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points) {
+std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points,
+                                                          double reach) {
   StarBlock whole = stars;  // unused lanes repeat the last star
   for (std::size_t k = stars.count; k < StarBlock::capacity; ++k) {
     whole.vertices[k] = stars.vertices[stars.count - 1];
     whole.links[k] = stars.links[stars.count - 1];
   }
   std::array<unsigned char, StarBlock::capacity> free{};
-  STIV_FOR_VECTOR_TARGET(prove_stars)(whole, points.data(), free.data());
+  STIV_FOR_VECTOR_TARGET(prove_stars)(whole, points.data(), reach, free.data());
   return free;
 }
 

@@ -23,6 +23,8 @@ struct StarBlock {
 
 /// 1 for each star that is proven free: its triangles share only their common corners and edges. 1 is certain; 0 is
 /// inconclusive. (mathematics.md, "Stars")
-std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points);
+/// @param reach the star is also free wherever each coordinate differs by no more
+std::array<unsigned char, StarBlock::capacity> prove_free(const StarBlock& stars, const PackedPoints& points,
+                                                          double reach);
 
 }  // namespace stiv

@@ -59,8 +59,12 @@ bool chain(std::span<LinkEdge> edges) {
 }
 
 /// A single triangle has no pair of neighbors. Stars with very many triangles are left to the pair tests.
-bool is_provable(std::span<LinkEdge> edges) {
-  return edges.size() > 1 && edges.size() <= StarBlock::most_triangles && chain(edges);
+bool is_provable(Index vertex, std::span<LinkEdge> edges) {
+  const auto repeats_corner = [vertex](const LinkEdge& edge) {
+    return edge.from == vertex || edge.to == vertex || edge.from == edge.to;
+  };
+  return edges.size() > 1 && edges.size() <= StarBlock::most_triangles && std::ranges::none_of(edges, repeats_corner) &&
+         chain(edges);
 }
 
 }  // namespace
@@ -72,7 +76,7 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   for (Index vertex = 0; vertex < vertex_count; ++vertex) {
     start_.push_back(static_cast<Index>(links_.size()));
     const std::span<LinkEdge> edges = table.of(vertex);
-    if (!is_provable(edges)) continue;
+    if (!is_provable(vertex, edges)) continue;
     stars_.push_back(vertex);
     for (const LinkEdge& edge : edges) links_.push_back(edge.from);
     links_.push_back(edges.back().to);
@@ -81,36 +85,71 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   std::stable_sort(stars_.begin(), stars_.end(), [this](Index a, Index b) { return shape(a) < shape(b); });
 }
 
-void Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
-                      std::vector<unsigned char>& free, const Execution& execution) const {
+template <class Skip>
+void Stars::prove(std::span<const Index> stars, const PackedPoints& points, double reach, Proof proof,
+                  const Skip& skips, std::vector<unsigned char>& proofs, const Execution& execution) const {
   constexpr Index chunk_size = 4096;
-  const PackedPoints& points = placed.points();
-  free.resize(points.size(), 0);
-  const auto has_moved = [&](Index vertex) { return moved[at(vertex)] != 0; };
-  execution.for_chunks(static_cast<Index>(stars_.size()), chunk_size, [&](Index begin, Index end, Index) {
+  execution.for_chunks(static_cast<Index>(stars.size()), chunk_size, [&](Index begin, Index end, Index) {
     StarBlock block;
-    const auto prove = [&] {
+    const auto prove_block = [&] {
       if (block.count == 0) return;
-      const auto proven = prove_free(block, points);
-      for (std::size_t k = 0; k < block.count; ++k) free[at(block.vertices[k])] = proven[k];
+      const auto proven = prove_free(block, points, reach);
+      for (std::size_t k = 0; k < block.count; ++k)
+        if (proven[k]) proofs[at(block.vertices[k])] = proof;
       block.count = 0;
     };
-    for (std::size_t k = at(begin); k < at(end); ++k) {
-      const Index vertex = stars_[k];
-      if (!placed.is_in_changed_body(vertex)) continue;
-      free[at(vertex)] = 0;
-      const std::span<const Index> around = link(vertex);
-      if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) continue;
+    for (const Index vertex : stars.subspan(at(begin), at(end - begin))) {
+      if (skips(vertex)) continue;
       const auto [triangles, closed] = shape(vertex);
-      if (block.count == StarBlock::capacity || triangles != block.triangles || closed != block.closed) prove();
+      if (block.count == StarBlock::capacity || triangles != block.triangles || closed != block.closed) prove_block();
       block.triangles = triangles;
       block.closed = closed;
       block.vertices[block.count] = vertex;
-      block.links[block.count] = around.data();
+      block.links[block.count] = link(vertex).data();
       ++block.count;
     }
-    prove();
+    prove_block();
   });
+}
+
+void Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved, double reach,
+                      std::vector<unsigned char>& proofs, const Execution& execution) const {
+  proofs.resize(placed.points().size(), inconclusive);
+  const auto is_unchanged = [&](Index vertex) {
+    if (!placed.is_in_changed_body(vertex)) return true;
+    proofs[at(vertex)] = inconclusive;
+    return !has_moved(vertex, moved);
+  };
+  prove(stars_, placed.points(), reach, reach > 0 ? free_within_reach : free_here, is_unchanged, proofs, execution);
+  if (reach == 0) return;
+  const auto is_decided = [&](Index vertex) {
+    return proofs[at(vertex)] != inconclusive || !placed.is_in_changed_body(vertex) || !has_moved(vertex, moved);
+  };
+  prove(stars_, placed.points(), 0, free_here, is_decided, proofs, execution);
+}
+
+std::vector<Index> Stars::find_open(const std::vector<unsigned char>& proofs,
+                                    const std::vector<unsigned char>& moved) const {
+  std::vector<Index> open;
+  for (const Index vertex : stars_)
+    if (proofs[at(vertex)] != free_within_reach && has_moved(vertex, moved)) open.push_back(vertex);
+  return open;
+}
+
+bool Stars::has_moved(Index vertex, const std::vector<unsigned char>& moved) const {
+  const auto is_marked = [&](Index each) { return moved[at(each)] != 0; };
+  return moved.empty() || is_marked(vertex) || std::ranges::any_of(link(vertex), is_marked);
+}
+
+std::vector<Index> Stars::find_unproven(std::span<const Index> vertices, const PackedPoints& points,
+                                        const Execution& execution) const {
+  std::vector<unsigned char> proofs(points.size(), inconclusive);
+  prove(
+      vertices, points, 0, free_here, [](Index) { return false; }, proofs, execution);
+  std::vector<Index> unproven;
+  for (const Index vertex : vertices)
+    if (proofs[at(vertex)] == inconclusive) unproven.push_back(vertex);
+  return unproven;
 }
 
 std::pair<std::size_t, bool> Stars::shape(Index vertex) const {

@@ -33,11 +33,11 @@ Positions random_corners(std::mt19937& random, int reach, bool integer) {
   return q;
 }
 
-std::vector<unsigned char> separated(const Batch& batch) {
+std::vector<unsigned char> separated(const Batch& batch, double reach = 0) {
   TriangleFlags flags{};
   PackedPoints points;
   for (const auto& row : batch.q.rowwise()) points.push_back({{row[0], row[1], row[2], 0}});
-  find_separated(batch.pairs, points, flags);
+  find_separated(batch.pairs, points, reach, flags);
   return {flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(batch.pairs.count)};
 }
 
@@ -58,6 +58,26 @@ TEST_CASE("separating plane filter: separated pairs do not intersect, and all ve
       if (results.front()[k]) CHECK_FALSE(meets);
       apart += results.front()[k];
       meeting += meets;
+    }
+  }
+  CHECK(apart > 1000);
+  CHECK(meeting > 1000);
+}
+
+TEST_CASE("separating plane filter: pairs that are separated by a reach do not intersect within it") {
+  std::mt19937 random(4);
+  int apart = 0, meeting = 0;
+  for (int round = 0; round < 200; ++round) {
+    const double scale = round % 2 == 0 ? 1 : (round % 4 == 1 ? 1e-7 : 1e7), reach = 0.2 * (1 + round % 3) * scale;
+    const Positions q = scale * random_corners(random, 2, round % 5 == 0);
+    const auto result = separated(Batch(q), reach);
+    Positions moved = q;
+    for (double& value : moved.reshaped()) value += random() % 2 == 0 ? reach : -reach;
+    const Batch batch(moved);
+    for (std::size_t k = 0; k < batch.pairs.count; ++k) {
+      if (result[k]) CHECK_FALSE(batch.meets(k));
+      apart += result[k];
+      meeting += batch.meets(k);
     }
   }
   CHECK(apart > 1000);

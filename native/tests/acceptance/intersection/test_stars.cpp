@@ -48,15 +48,16 @@ bool any_pair_intersects(const CornerRows& triangles, const Positions& q) {
   return false;
 }
 
-std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, const std::vector<unsigned char>& moved) {
+std::vector<unsigned char> find_free(const Stars& stars, const Positions& q, const std::vector<unsigned char>& moved,
+                                     double reach = 0) {
   const Execution execution(2);
   SurfaceDefinition points;
   points.vertex_count = static_cast<Index>(q.rows());
   const Surface surface(std::move(points));
   PlacedVertices placed(surface);
-  placed.update(q, moved, execution);
+  placed.update(q, moved, 0, execution);
   std::vector<unsigned char> free;
-  stars.find_free(placed, moved, free, execution);
+  stars.find_free(placed, moved, reach, free, execution);
   return free;
 }
 
@@ -171,4 +172,29 @@ TEST_CASE("stars: blocks of several shapes give the results of single stars") {
     CHECK(found[static_cast<std::size_t>(centres[star])] == expected[star]);
   CHECK(std::count(expected.begin(), expected.end(), 1) > 100);
   CHECK(std::count(expected.begin(), expected.end(), 0) > 50);
+}
+
+TEST_CASE("stars: those that are free within a reach have no intersecting pair wherever their points differ by it") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int proven = 0, open = 0, meeting = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double scale = round % 3 == 0 ? 1 : (round % 3 == 1 ? 1e-7 : 1e7);
+    const double reach = scale * 0.8 * std::pow(unit(random), 4);
+    const Index count = 3 + static_cast<Index>(random() % 6);
+    const bool closed = random() % 2 == 0;
+    const CornerRows triangles = fan(count, closed);
+    const Positions q = scale * around(count, closed ? 1 : 0.9, 0.3 * unit(random));
+    const auto proof = find_free(Stars(triangles, count + 1), q, {}, reach)[0];
+    Positions moved = q;
+    for (double& value : moved.reshaped()) value += random() % 2 == 0 ? reach : -reach;
+    const bool meets = any_pair_intersects(triangles, moved);
+    if (proof == Stars::free_within_reach) CHECK_FALSE(meets);
+    proven += proof == Stars::free_within_reach;
+    open += proof == Stars::free_here;
+    meeting += meets;
+  }
+  CHECK(proven > 100);
+  CHECK(open > 100);
+  CHECK(meeting > 100);
 }

@@ -359,7 +359,10 @@ class BlenderEdit:
         if self._unguarded is not None or evaluates:
             return None
         session = self._solver.session
-        self._taken = TakenState(session.controls, session.surface, self._goal, self._solver.trail, self.turned)
+        deviations = session.deviation_test(self._writer.threads_beside)
+        self._taken = TakenState(
+            session.controls, session.surface, self._goal, self._solver.trail, self.turned, deviations
+        )
         return self._taken
 
     def write_taken(self, taken: TakenState) -> WriteReport | None:

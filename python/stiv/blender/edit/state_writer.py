@@ -51,6 +51,7 @@ class TakenState:
         goal: of all controls, (m, 3), toward which they were solved.
         trail: that of the solver; another one if the edit has begun again since.
         turned: as `BlenderEdit.turned`.
+        deviations: the test of surfaces that deviate from this one by rounding; None if the session has none.
     """
 
     controls: Floats
@@ -58,6 +59,22 @@ class TakenState:
     goal: Floats
     trail: Trail
     turned: float
+    deviations: stiv.DeviationTest | None = None
+
+
+@dataclass(frozen=True)
+class ShownState:
+    """The last state that passed the test.
+
+    Attributes:
+        trail: that of the solver since then.
+        surface: (N, 3), as accepted.
+        deviations: as in TakenState.
+    """
+
+    trail: Trail
+    surface: Floats
+    deviations: stiv.DeviationTest | None
 
 
 class StateWriter:
@@ -71,10 +88,12 @@ class StateWriter:
         self._near: NearAssembly | None = None
         self._verifier: Verifier | None = None
         self._verifier_beside: Verifier | None = None
-        self._shown: tuple[Trail, Floats] | None = None  # since the last state that passed, and its surface
+        self._shown: ShownState | None = None
+        self._check_beside: stiv.StepCheck | None = None  # of `_verifier_beside`
+        self._deviations: stiv.DeviationTest | None = None  # of the state that is being tested beside a solve
 
     def write_taken(self, taken: TakenState) -> bool:
-        """Write a state that was taken from the session, and test Blender's evaluation with trees of its own.
+        """Write a state that was taken from the session, and test Blender's evaluation without the session.
 
         Returns whether the state remains. Otherwise `write_accepted` must follow once the session is free. Raises
         SceneChangedError if an object was removed or changed.
@@ -82,10 +101,10 @@ class StateWriter:
         if self._solver.trail is not taken.trail:
             return False
         self.write(taken.controls)
-        if not self._is_free_beside(taken.surface):
+        if not self._is_free_beside(taken.surface, taken.deviations):
             return False
         self._solver.trail = Trail(taken.controls, taken.goal)
-        self._shown = self._solver.trail, taken.surface
+        self._shown = ShownState(self._solver.trail, taken.surface, taken.deviations)
         return True
 
     def write_shown(self) -> bool:
@@ -93,11 +112,11 @@ class StateWriter:
 
         Returns whether it remains. Otherwise `write_accepted` must follow. Raises SceneChangedError.
         """
-        if self._shown is None or self._shown[0] is not self._solver.trail:
+        shown = self._shown
+        if shown is None or shown.trail is not self._solver.trail:
             return False
-        trail, surface = self._shown
-        self.write(trail.written)
-        return self._is_free_beside(surface)
+        self.write(shown.trail.written)
+        return self._is_free_beside(shown.surface, shown.deviations)
 
     def write_accepted(self, goal: Floats) -> WriteReport:
         """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
@@ -117,7 +136,8 @@ class StateWriter:
         if not verification.passed:
             return self._fall_back(goal, verification, result)
         self._solver.trail = Trail(self._solver.session.controls, goal)
-        self._shown = self._solver.trail, self._solver.session.surface
+        session = self._solver.session
+        self._shown = ShownState(self._solver.trail, session.surface, session.deviation_test(self.threads_beside))
         return WriteReport(True, result=result)
 
     def _write_session(self) -> Verification:
@@ -153,17 +173,34 @@ class StateWriter:
 
         return Verifier(near.assembly, is_step_free, self._settings.threads, self._solver.excluded)
 
-    def _is_free_beside(self, accepted: Floats) -> bool:
+    @property
+    def threads_beside(self) -> int:
+        """Threads of tests beside a solve, which needs one."""
+        return max(1, (self._settings.threads or os.cpu_count() or 1) - 1)
+
+    def _is_free_beside(self, accepted: Floats, deviations: stiv.DeviationTest | None) -> bool:
         """Test what Blender shows exactly without the session, and not the path to it.
 
         That path is as long as rounding, and leads nowhere: solves continue from the accepted state.
         """
         near, excluded = self._near_of(accepted), self._solver.excluded
         if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded):
-            threads = max(1, (self._settings.threads or os.cpu_count() or 1) - 1)  # the solve needs one
-            check = stiv.StepCheck(near.assembly.surface, threads)
-            self._verifier_beside = Verifier(near.assembly, check.is_end_free, threads, excluded, names_pairs=False)
+            self._check_beside = None
+            self._verifier_beside = Verifier(
+                near.assembly, self._is_end_free, self.threads_beside, excluded, names_pairs=False
+            )
+        self._deviations = deviations
         return self._verifier_beside.verify(bpy.context, near.extended(accepted)).passed
+
+    def _is_end_free(self, accepted: Floats, shown: Floats) -> bool:
+        """The pairs near each other in the accepted state decide, or a search if the shown one deviates by more."""
+        is_free = None if self._deviations is None else self._deviations.is_free(shown)
+        if is_free is not None:
+            return is_free
+        if self._check_beside is None:
+            assert self._verifier_beside is not None
+            self._check_beside = stiv.StepCheck(self._verifier_beside.assembly.surface, self.threads_beside)
+        return self._check_beside.is_end_free(accepted, shown)
 
     def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
         states = self._solver.trail.states()

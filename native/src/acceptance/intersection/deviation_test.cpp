@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Derivation: mathematics.md, "Surfaces within rounding".
+#include "acceptance/intersection/deviation_test.hpp"
+
+#include <atomic>
+#include <utility>
+
+#include "acceptance/intersection/separating_plane_filter.hpp"
+#include "stiv/acceptance/intersections.hpp"
+
+namespace stiv {
+
+namespace {
+
+PackedPoints packed(const PositionsView& q) {
+  PackedPoints points(static_cast<std::size_t>(q.rows()));
+  for (Index row = 0; row < q.rows(); ++row) points[at(row)] = {{q(row, 0), q(row, 1), q(row, 2), 0}};
+  return points;
+}
+
+/// Does `test(begin, end)` hold for all chunks of [0, count)?
+template <class Test>
+bool all_chunks(std::size_t count, const Execution& execution, const Test& test) {
+  constexpr Index chunk_size = 1024;
+  std::atomic<bool> holds{true};
+  execution.for_chunks(static_cast<Index>(count), chunk_size, [&](Index begin, Index end, Index) {
+    if (holds.load(std::memory_order_relaxed) && !test(at(begin), at(end)))
+      holds.store(false, std::memory_order_relaxed);
+  });
+  return holds;
+}
+
+}  // namespace
+
+DeviationTest::Implementation::Implementation(std::shared_ptr<const Surface> surface,
+                                              std::shared_ptr<const Stars> stars, Positions accepted, NearPairs near)
+    : surface_(std::move(surface)), stars_(std::move(stars)), accepted_(std::move(accepted)), near_(std::move(near)) {}
+
+std::optional<bool> DeviationTest::Implementation::is_free(const PositionsView& q, const Execution& execution) const {
+  if (!is_within_reach(q)) return std::nullopt;
+  const PackedPoints points = packed(q);
+  return are_pairs_free(q, points, execution) && are_stars_free(q, points, execution);
+}
+
+/// A difference is rounded, so that it may lie half a unit in the last place above the reach. The pairs hold for this.
+bool DeviationTest::Implementation::is_within_reach(const PositionsView& q) const {
+  surface_->check_positions(q);
+  return q.rows() == 0 || (q - accepted_).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= near_.reach;
+}
+
+bool DeviationTest::Implementation::are_stars_free(const PositionsView& q, const PackedPoints& points,
+                                                   const Execution& execution) const {
+  const std::vector<Index> unproven = stars_->find_unproven(near_.stars, points, execution);
+  return all_chunks(unproven.size(), execution, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (!is_star_free(q, unproven[k])) return false;
+    return true;
+  });
+}
+
+bool DeviationTest::Implementation::is_star_free(const PositionsView& q, Index vertex) const {
+  const std::span<const Index> link = stars_->link(vertex);
+  for (std::size_t a = 1; a < link.size(); ++a)
+    for (std::size_t b = 1; b < a; ++b)
+      if (intersect(q, {{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}})) return false;
+  return true;
+}
+
+bool DeviationTest::Implementation::are_pairs_free(const PositionsView& q, const PackedPoints& points,
+                                                   const Execution& execution) const {
+  return all_chunks(near_.pairs.size(), execution, [&](std::size_t begin, std::size_t end) {
+    TrianglePairs block;
+    std::array<std::size_t, TrianglePairs::capacity> numbers{};
+    const auto is_block_free = [&] {
+      TriangleFlags separated;
+      find_separated(block, points, 0, separated);
+      const std::size_t count = std::exchange(block.count, 0);
+      for (std::size_t k = 0; k < count; ++k)
+        if (!separated[k] && intersect(q, near_.pairs[numbers[k]])) return false;
+      return true;
+    };
+    for (std::size_t k = begin; k < end; ++k) {
+      const CornerPair& pair = near_.pairs[k];
+      if (share_corner(pair.first, pair.second)) {
+        if (intersect(q, pair)) return false;
+        continue;
+      }
+      numbers[block.count] = k;
+      block.add(pair.first, pair.second);
+      if (block.count == TrianglePairs::capacity && !is_block_free()) return false;
+    }
+    return is_block_free();
+  });
+}
+
+bool DeviationTest::Implementation::intersect(const PositionsView& q, const CornerPair& pair) const {
+  const auto& [a, b] = pair;
+  return !surface_->in_one_flip_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q);
+}
+
+DeviationTest::DeviationTest(std::unique_ptr<const Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+DeviationTest::~DeviationTest() = default;
+
+double DeviationTest::reach() const { return implementation_->reach(); }
+
+std::optional<bool> DeviationTest::is_free(const PositionsView& q, Execution& execution) const {
+  const FloatingPointScope floating_point;
+  return implementation_->is_free(q, execution);
+}
+
+}  // namespace stiv
