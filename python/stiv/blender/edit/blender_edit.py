@@ -28,7 +28,9 @@ from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import intersection_notes
 from stiv.blender.scene.near_assembly import near_assembly
+from stiv.blender.scene.obstacle_choice import find_obstacles
 from stiv.blender.scene.stack_twin import kept_twins
+from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
@@ -62,6 +64,7 @@ class BlenderEdit:
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
         """Read the scene for an edit of this kind ("move", "rotate", "scale"); changes nothing.
 
+        In large scenes, objects that certainly stay as they are become obstacles beside the surface.
         Raises InputError naming object, element and ways out, StartIntersectsError if the start intersects.
         """
         return run(cls.begin_steps(context, settings, kind))
@@ -70,7 +73,11 @@ class BlenderEdit:
     def begin_steps(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> Steps[BlenderEdit]:
         """Steps of `begin`; the first reads the scene."""
         check_kind(kind)
-        return cls.begin_with_steps(context, settings, kind, find_participants(context, settings))
+        participants = find_participants(context, settings)
+        obstacles = find_obstacles(context, {each.reference.name for each in participants}, settings)
+        if not obstacles:
+            forget_static_meshes()
+        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles)
 
     @classmethod
     def begin_with(
