@@ -247,6 +247,27 @@ def test_contacts_and_distances_are_those_of_a_surface_of_everything(ground: Any
     assert near.distance == pytest.approx(far.distance, abs=1e-3)
 
 
+@pytest.mark.parametrize("is_solving", [False, True])
+def test_the_least_distance_counts_obstacles_far_away(
+    row: Any, is_solving: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The wall begins at 10, and the box is one large. The session is in use while a job solves."""
+    bpy.data.objects.remove(bpy.data.objects["Neighbour"])
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    if is_solving:
+        monkeypatch.setattr(stiv.EditSession, "least_distance", in_use)
+    for x in (0.0, 3.0, 9.0, -30.0):
+        edit.drag(along_x(x))
+        edit.take_state()
+        found = edit.least_distance()
+        assert found is not None and set(found.bodies) == {"Box", "Wall"}
+        assert found.distance == pytest.approx(9.5 - x, abs=1e-5)
+
+
+def in_use(_session: stiv.EditSession) -> None:
+    raise stiv.InputError("the session is in use")
+
+
 def test_a_start_inside_of_an_obstacle_names_both_objects_and_faces(ground: Any) -> None:
     ground.location.z = 0.2
     bpy.context.view_layer.update()
