@@ -100,6 +100,8 @@ class ObstacleSession final : public SessionImplementation {
     options_.weight_axes = std::move(weight_axes);
   }
 
+  void end_drag() override { next_.reset(); }
+
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
