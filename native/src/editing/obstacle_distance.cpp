@@ -42,7 +42,7 @@ double distance_bound(const Surface& surface, const Obstacles& obstacles, const 
   return bound;
 }
 
-/// The closest pair with the triangles of obstacles that are no farther from a box than a distance.
+/// The closest pair with the triangles of obstacles within a distance of a box.
 std::optional<NearestTriangles> find_near(const Eigen::AlignedBox3d& box, double distance, const Surface& surface,
                                           const Obstacles& obstacles, const PositionsView& q, DistancePairs pairs,
                                           const Execution& execution) {

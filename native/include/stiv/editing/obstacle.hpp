@@ -31,7 +31,7 @@ class Obstacle {
 
   /// Upper bound of the number of triangles near a box; reads only the boxes of blocks.
   Index count_near(const Eigen::AlignedBox3d& box) const;
-  /// Triangles whose bounds touch a box, or are no farther from it than a distance; ascending.
+  /// Triangles whose bounds are within a distance of a box, ascending; at 0, those that touch it.
   std::vector<Index> triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution,
                                     double distance = 0) const;
   /// The corner of triangles that is closest to a point, if one is closer than a distance.
