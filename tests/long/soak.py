@@ -118,7 +118,7 @@ def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account
     account.drags += 1
 
 
-def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> tuple[float, str]:
+def block(all_scenes: list[Scene], seed: list[int], moves: int, account: Account) -> tuple[float, str]:
     """One block from the start: processor seconds, and a hash of the result."""
     chance, begin = np.random.default_rng(seed), time.process_time()
     for scene in all_scenes:
@@ -134,8 +134,8 @@ def run(seed: int, drags: int, moves: int) -> Account:
     account, all_scenes = Account(), scenes()
     samples = WARM_UP + WINDOW + max(-(-drags // (2 * BLOCK)), WINDOW)
     for number in range(samples):
-        block(all_scenes, seed + number, moves, account)
-        seconds, ends = block(all_scenes, 0, moves, account)
+        block(all_scenes, [seed, number], moves, account)
+        seconds, ends = block(all_scenes, [0], moves, account)
         account.repeated_seconds.append(seconds)
         account.repeated_results.add(ends)
         account.memory.append(memory_after(account.drags))
